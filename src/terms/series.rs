@@ -1,0 +1,82 @@
+//! The result type every world returns, and all that statistics and reports know.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// A mean with its standard error, per channel. For a matrix result the error is zero and `replicates` is 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// The estimated value.
+    pub mean: DVec3,
+    /// Standard error of `mean`; NaN where it is not known (one replicate).
+    pub std_error: DVec3,
+    /// Independent replicates behind the error: `replicates − 1` degrees of freedom. 0 means exact.
+    pub replicates: u64,
+}
+
+impl Estimate {
+    /// A value known without error.
+    pub fn exact(mean: DVec3) -> Self {
+        Self { mean, std_error: DVec3::ZERO, replicates: 0 }
+    }
+}
+
+/// Which realisation of the operator a result comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum World {
+    /// Rays in the scene, one estimator per term.
+    Terms,
+    /// Rays in the scene, the full path tracer: only the sum.
+    Path,
+    /// The matrix over patches.
+    Radiosity,
+}
+
+/// Work done for a result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// Paths started.
+    pub paths: u64,
+    /// Rays traced, closest-hit and shadow together.
+    pub rays: u64,
+    /// Samples that were not finite; they are left in the sums, so a result with any is visibly broken.
+    pub non_finite: u64,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+}
+
+/// The terms of one world, as seen by one linear functional of the image (its mean, the mean of a region, …).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Functional {
+    /// `image`, `region 0,3`, `projection 5`, ….
+    pub name: String,
+    /// One estimate per k = 0..=K (empty for the path tracer).
+    pub terms: Vec<Estimate>,
+    /// Everything longer than K.
+    pub tail: Estimate,
+    /// Σ_{k≤K} terms, with the error that their covariance gives.
+    pub sum: Estimate,
+    /// Σ_{k≤K} terms + tail: the whole image.
+    pub total: Estimate,
+}
+
+/// What a world returns.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Series {
+    /// Which world.
+    pub world: World,
+    /// How it was made, for tables and legends: `prefix, mis`.
+    pub label: String,
+    /// The first is the image mean; region means and projections follow.
+    pub functionals: Vec<Functional>,
+    /// Work done.
+    pub cost: Cost,
+}
+
+impl Series {
+    /// The image means.
+    pub fn image(&self) -> &Functional {
+        &self.functionals[0]
+    }
+}
