@@ -1,1 +1,62 @@
-//! (to come)
+//! Random `T^k E`: estimators, written once over [`Transport`].
+//!
+//! `E[X_k] = (T^k E)(x_0)` for every k, and the tail has mean `Σ_{k>K} (T^k E)(x_0)`, so that terms + tail is the whole
+//! radiance: truncation is never hidden.
+//!
+//! | estimator | what one sample is | place |
+//! |---|---|---|
+//! | single | each X_k from a path of its own | [`single_term`] |
+//! | prefix | all X_k from one path, by its prefixes | [`prefix`] |
+//! | path tracer | the sum alone, independent code | [`path_tracer`] |
+//!
+//! Slots of the result: k = 0..=K for the terms, K + 1 for the tail; the path tracer has one slot.
+
+pub mod path_tracer;
+pub mod paths;
+pub mod prefix;
+pub mod render;
+pub mod roulette;
+pub mod single_term;
+pub mod technique;
+
+pub use path_tracer::PathTracer;
+pub use paths::{Batch, Paths};
+pub use prefix::Prefix;
+pub use roulette::Roulette;
+pub use single_term::SingleTerm;
+pub use technique::Technique;
+
+use crate::math::Columns;
+use crate::operator::{Sensor, Transport};
+
+/// Where samples go: slot by slot, wave by wave.
+pub trait TermSink {
+    /// Adds `value[i]` to `slot` of path (`pixel[i]`, `sample[i]`). A path may add to a slot more than once.
+    fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns);
+}
+
+/// How far terms are kept, how light is found, how paths end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// K: the terms k = 0..=K are kept.
+    pub max_bounces: usize,
+    /// How light is found.
+    pub technique: Technique,
+    /// How paths end.
+    pub roulette: Roulette,
+}
+
+/// An estimator of the terms, over any transport.
+pub trait TermEstimator<T: Transport>: Sync {
+    /// Number of slots a sample has.
+    fn slots(&self) -> usize;
+    /// One sample per path of the batch into the sink; returns the number of rays asked for.
+    fn sample(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        batch: &Batch,
+        paths: &mut Paths<T::Wave>,
+        sink: &mut impl TermSink,
+    ) -> u64;
+}

@@ -1,1 +1,14 @@
-//! (to come)
+//! Small shared mathematics: addressed random numbers, directions, columns of vectors.
+//!
+//! Everything that runs per ray is plain scalar code marked `#[inline(always)]`, so that one function serves a single
+//! path and, inside a loop over lanes, a wave of paths, with the same bits.
+
+pub mod columns;
+pub mod direction;
+pub mod random;
+
+pub use columns::Columns;
+pub use random::{Key, Purpose, Rng, Streams};
+
+/// A radiance, reflectance or throughput: linear Rec. 709, one `f32` per channel. Sums of it are kept in [`glam::DVec3`].
+pub type Rgb = glam::Vec3;

@@ -1,9 +1,164 @@
-//! What exists.
+//! What exists: surfaces, lights, sensors.
+//!
+//! A [`Description`] is what a file says; a [`Scene`] is what rays meet.
+//!
+//! | notation | type | place |
+//! |---|---|---|
+//! | x, ω | [`Vertex`] | [`vertex`] |
+//! | ray(x, ω) | [`Scene::trace`] | [`accel`], [`shape`] |
+//! | f(ω → ω') | [`bsdf::diffuse`] | [`bsdf`] |
+//! | E(x, ω) | [`Scene::emission`] | [`emitter`] |
+//! | W(x, ω) | [`Camera`], [`SurfaceSensor`] | [`sensor`] |
 
+mod accel;
+pub mod bsdf;
 pub mod description;
+pub mod emitter;
 mod error;
 pub mod primitive;
+pub mod sensor;
+mod shape;
+pub mod vertex;
 
 pub use description::Description;
 pub use error::SceneError;
 pub use primitive::Primitive;
+pub use sensor::{Camera, SurfaceSensor};
+pub use vertex::{Side, Vertex, VertexWave};
+
+use crate::math::Rgb;
+use accel::Accel;
+use description::Sides;
+use emitter::Lights;
+use glam::{DVec3, Vec3};
+use shape::Shape;
+
+/// Surfaces ready for rays, and their lights.
+pub struct Scene {
+    /// The camera of the description.
+    pub camera: Camera,
+    /// What emits.
+    pub lights: Lights,
+    accel: Accel,
+    /// By side: albedo, emission, whether it takes part in transport.
+    albedo: Vec<Rgb>,
+    emission: Vec<Rgb>,
+    takes_part: Vec<bool>,
+    area: Vec<f64>,
+    /// How far the next ray starts off the surface, metres.
+    offset: f32,
+}
+
+/// Offset of ray origins and margin at edges, as fractions of half the diagonal of the scene.
+const OFFSET: f64 = 1.0 / 65_536.0;
+const MARGIN: f64 = 1.0 / 131_072.0;
+
+impl Scene {
+    /// Builds what rays need. The description must have passed the checks of the loader: finite, no empty shapes.
+    pub fn new(description: &Description) -> Self {
+        let prims = description.primitives();
+        let bounds: Vec<[DVec3; 2]> = prims.iter().map(|(_, p)| p.bounds()).collect();
+        let all = bounds.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let extent = 0.5 * (all[1] - all[0]).length();
+        let margin = MARGIN * extent;
+        let shapes: Vec<Shape> = prims.iter().map(|(_, p)| Shape::new(p, margin)).collect();
+        let widened: Vec<[Vec3; 2]> =
+            bounds.iter().map(|b| [(b[0] - 2.0 * margin).as_vec3(), (b[1] + 2.0 * margin).as_vec3()]).collect();
+        let (mut albedo, mut emission, mut takes_part) = (vec![], vec![], vec![]);
+        for &(shape, _) in &prims {
+            let shape = &description.shapes[shape];
+            let material = &description.materials[shape.material];
+            let rho = material.reflectance.as_vec3();
+            let both = material.sides == Sides::Both;
+            albedo.extend([rho, if both { rho } else { Rgb::ZERO }]);
+            emission.extend([shape.emission.as_vec3(), Rgb::ZERO]);
+            takes_part.extend([true, both]);
+        }
+        Self {
+            camera: Camera::new(&description.camera),
+            lights: Lights::new(description, &prims),
+            accel: Accel::new(shapes, &widened),
+            albedo,
+            emission,
+            takes_part,
+            area: prims.iter().map(|(_, p)| p.area()).collect(),
+            offset: (OFFSET * extent) as f32,
+        }
+    }
+
+    /// Number of sides: two per primitive.
+    pub fn sides(&self) -> u32 {
+        self.takes_part.len() as u32
+    }
+
+    /// Whether a side takes part in transport. One that does not blocks light and is black.
+    pub fn takes_part(&self, side: Side) -> bool {
+        self.takes_part[side as usize]
+    }
+
+    /// Area of a side, m².
+    pub fn area(&self, side: Side) -> f64 {
+        self.area[(side / 2) as usize]
+    }
+
+    /// Albedo ρ of a side.
+    #[inline(always)]
+    pub fn albedo(&self, side: Side) -> Rgb {
+        self.albedo[side as usize]
+    }
+
+    /// The largest albedo of any side, per channel: the bound on ‖T‖₁ and ‖T‖∞.
+    pub fn max_albedo(&self) -> Rgb {
+        self.albedo.iter().fold(Rgb::ZERO, |a, &b| a.max(b))
+    }
+
+    /// Emitted radiance E of a side, W·sr⁻¹·m⁻², the same in every direction.
+    #[inline(always)]
+    pub fn emission(&self, side: Side) -> Rgb {
+        self.emission[side as usize]
+    }
+
+    /// Density of next-event estimation at a point of this side, per area: 0 where it cannot choose.
+    #[inline(always)]
+    pub fn light_density(&self, side: Side) -> f32 {
+        if side & 1 == 0 { self.lights.density[(side / 2) as usize] } else { 0.0 }
+    }
+
+    /// A uniformly distributed point of a side, and the normal there.
+    #[inline(always)]
+    pub fn point(&self, side: Side, u: [f32; 2]) -> (Vec3, Vec3) {
+        let shape = &self.accel.shapes[(side / 2) as usize];
+        let p = shape.settle(shape.point(u));
+        let n = shape.normal(p);
+        (p, if side & 1 == 0 { n } else { -n })
+    }
+
+    /// Where a ray that leaves `p` on the side of `n` starts.
+    #[inline(always)]
+    pub fn lift(&self, p: Vec3, n: Vec3) -> Vec3 {
+        p + n * self.offset
+    }
+
+    /// The first surface seen from `o` in unit direction `d`, or nothing.
+    #[inline(always)]
+    pub fn trace(&self, o: Vec3, d: Vec3) -> Option<Vertex> {
+        let hit = self.accel.closest(o, d);
+        (hit.prim != u32::MAX).then(|| self.arrive(o, d, hit))
+    }
+
+    #[inline(always)]
+    fn arrive(&self, o: Vec3, d: Vec3, hit: shape::Hit) -> Vertex {
+        let shape = &self.accel.shapes[hit.prim as usize];
+        let p = shape.settle(o + d * hit.t);
+        let n = shape.normal(p);
+        let back = shape::dot(n, d) > 0.0;
+        Vertex { p, n: if back { -n } else { n }, omega: -d, side: 2 * hit.prim + u32::from(back) }
+    }
+
+    /// Whether the segment from `p` to `q` is blocked; both ends are lifted off their surfaces.
+    #[inline(always)]
+    pub fn blocked(&self, p: Vec3, n: Vec3, q: Vec3, m: Vec3) -> bool {
+        let o = self.lift(p, n);
+        self.accel.occluded(o, self.lift(q, m) - o)
+    }
+}

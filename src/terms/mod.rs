@@ -1,5 +1,19 @@
 //! What comes out: estimates of the terms `T^k E`, whichever world they come from.
+//!
+//! | notation | type | place |
+//! |---|---|---|
+//! | Σ over samples, by replicate | [`TermFilm`] | [`film`] |
+//! | image of T^k E with its error | [`TermImage`] | [`image`] |
+//! | φ(T^k E) | [`Functional`] | [`functional`] |
+//! | ‖T^k E‖₂ of the image | [`norms::SquaredNorm`] | [`norms`] |
+//! | everything a world returns | [`Series`] | [`series`] |
 
-mod series;
+pub mod film;
+pub mod functional;
+pub mod image;
+pub mod norms;
+pub mod series;
 
+pub use film::{Shape, TermFilm};
+pub use image::TermImage;
 pub use series::{Cost, Estimate, Functional, Series, World};

@@ -1,0 +1,85 @@
+//! All terms from one path: its prefix of length k estimates `T^k E`.
+//!
+//! ```text
+//! X_0 = E(x_0)
+//! X_k = α_{k−1} · w_c · (sample of T E at x_{k−1})  +  α_k · w_s · E(x_k)        α_k = Π_{v<k} weight_v / (1 − q_v)
+//! ```
+//!
+//! with w_c, w_s from the [`Technique`](super::Technique). Loop invariant: before the step at vertex v, every term k ≤ v has
+//! been scored, and `through` is α_v.
+//!
+//! Terms of one path share their prefix, so they are correlated; fits over k must use their covariance.
+//! Reference: Kajiya, *The Rendering Equation* (1986); Veach (1997), ch. 10.
+
+use super::{Batch, Paths, Plan, TermEstimator, TermSink};
+use crate::operator::{Sensor, Transport};
+
+/// The prefix estimator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prefix(pub Plan);
+
+impl<T: Transport> TermEstimator<T> for Prefix {
+    fn slots(&self) -> usize {
+        self.0.max_bounces + 2
+    }
+
+    fn sample(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        batch: &Batch,
+        paths: &mut Paths<T::Wave>,
+        sink: &mut impl TermSink,
+    ) -> u64 {
+        paths.start(t, sensor, batch);
+        paths.emission(t);
+        sink.add(0, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+        batch.len() as u64 + follow(t, &self.0, 0, paths, sink)
+    }
+}
+
+/// Follows paths that stand at vertex `first`, scoring every term beyond it; terms beyond K go to the tail's slot.
+pub(super) fn follow<T: Transport>(
+    t: &T,
+    plan: &Plan,
+    first: usize,
+    paths: &mut Paths<T::Wave>,
+    sink: &mut impl TermSink,
+) -> u64 {
+    let technique = plan.technique;
+    let tail = plan.max_bounces + 1;
+    let mut rays = 0;
+    for v in first.. {
+        // the next term, or the tail; without roulette the tail would never end, and is left out
+        let slot = (v + 1).min(tail);
+        if paths.n == 0 || slot == tail && !plan.roulette.ends() {
+            break;
+        }
+
+        // next-event estimation of term v + 1
+        if technique.connects() {
+            rays += paths.n as u64;
+            paths.connect(t, v);
+            technique.weigh(&mut paths.samples, paths.n);
+            paths.samples.value.multiply(&paths.through, paths.n);
+            sink.add(slot, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+        }
+        if v + 1 == tail - 1 && !technique.scatters() && !plan.roulette.ends() {
+            break;
+        }
+
+        // roulette, once vertex v has been scored
+        paths.roulette(t, v, &plan.roulette);
+
+        // x_v → x_{v+1}, and its emission if hits count
+        rays += paths.n as u64;
+        paths.scatter(t, v);
+        if technique.scatters() {
+            paths.emission(t);
+            technique.weigh(&mut paths.samples, paths.n);
+            paths.samples.value.multiply(&paths.through, paths.n);
+            sink.add(slot, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+        }
+    }
+    rays
+}

@@ -1,0 +1,116 @@
+//! From an estimator and a sensor to a film: every pixel, every sample, in passes that double.
+//!
+//! Passes end at 1, 2, 4, … samples per replicate: there the film is complete, a preview can be shown, and the variance
+//! curve has a point. Inside a pass blocks of pixels are independent jobs. A pixel's samples are added in order by one
+//! thread, so the sums are the same bits for any number of threads.
+
+use super::{Batch, Paths, TermEstimator, TermSink};
+use crate::math::{Columns, Key};
+use crate::operator::{Sensor, Transport};
+use crate::terms::film::{FilmBlock, Shape, TermFilm};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How much to render.
+#[derive(Clone, Copy, Debug)]
+pub struct Amount {
+    /// Samples per pixel.
+    pub spp: u32,
+    /// Independent replicates; `min(16, spp)` is usual.
+    pub replicates: usize,
+    /// The stream.
+    pub key: Key,
+}
+
+impl Amount {
+    /// The usual number of replicates.
+    pub fn new(spp: u32, key: Key) -> Self {
+        Self { spp, replicates: spp.clamp(1, 16) as usize, key }
+    }
+}
+
+/// What watches a render.
+pub trait Watch: Sync {
+    /// Called after every block with the number of paths it took.
+    fn paths(&self, _paths: u64) {}
+    /// Called with the film after every complete pass.
+    fn pass(&mut self, _film: &TermFilm) {}
+}
+
+/// Nobody watches.
+pub struct Unwatched;
+impl Watch for Unwatched {}
+
+/// Pixels of a job, and paths of a wave.
+const BLOCK: u32 = 64;
+const WAVE: u32 = 1024;
+
+impl TermSink for FilmBlock<'_> {
+    #[inline(always)]
+    fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
+        FilmBlock::add(self, slot, pixel, sample, value);
+    }
+}
+
+/// Renders into a new film. When `stop` is set, what has been done so far comes back: every pixel then holds some number of
+/// samples, and all means are still unbiased.
+pub fn render<T: Transport>(
+    t: &T,
+    sensor: &impl Sensor<T>,
+    estimator: &impl TermEstimator<T>,
+    amount: Amount,
+    watch: &mut impl Watch,
+    stop: &AtomicBool,
+) -> TermFilm {
+    let shape = Shape { size: sensor.size(), slots: estimator.slots(), replicates: amount.replicates };
+    let mut film = TermFilm::new(shape);
+    let mut done = 0;
+    while done < amount.spp && !(done > 0 && stop.load(Ordering::Relaxed)) {
+        let until = if done == 0 { amount.replicates as u32 } else { 2 * done }.min(amount.spp);
+        pass(t, sensor, estimator, amount.key, done..until, &mut film, &*watch, stop);
+        done = until;
+        if !stop.load(Ordering::Relaxed) {
+            watch.pass(&film);
+        }
+    }
+    film
+}
+
+#[allow(clippy::too_many_arguments)] // one call site; a struct of them would only rename the list
+fn pass<T: Transport>(
+    t: &T,
+    sensor: &impl Sensor<T>,
+    estimator: &impl TermEstimator<T>,
+    key: Key,
+    samples: std::ops::Range<u32>,
+    film: &mut TermFilm,
+    watch: &(impl Watch + ?Sized),
+    stop: &AtomicBool,
+) {
+    let shape = film.shape;
+    let sums = film.sums.par_chunks_mut(BLOCK as usize * shape.per_pixel());
+    let counts = film.samples.par_chunks_mut(BLOCK as usize);
+    // the first pass is always finished, so that every pixel holds something
+    let may_stop = samples.start > 0;
+    let job = |paths: &mut Paths<T::Wave>, (i, (sums, counts)): (usize, (&mut [f64], &mut [u32]))| {
+        if may_stop && stop.load(Ordering::Relaxed) {
+            return (0, 0);
+        }
+        let first = i as u32 * BLOCK;
+        let pixels = first..first + counts.len() as u32;
+        let mut block = FilmBlock { shape, first, sums, non_finite: 0 };
+        let mut rays = 0;
+        let at_once = WAVE / BLOCK * (BLOCK / pixels.len() as u32);
+        for s in samples.clone().step_by(at_once as usize) {
+            let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + at_once).min(samples.end) };
+            rays += estimator.sample(t, sensor, &batch, paths, &mut block);
+        }
+        counts.iter_mut().for_each(|n| *n += samples.len() as u32);
+        watch.paths(samples.len() as u64 * u64::from(pixels.end - pixels.start));
+        (rays, block.non_finite)
+    };
+    let totals =
+        sums.zip(counts).enumerate().map_init(Paths::default, job).reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    film.rays += totals.0;
+    film.non_finite += totals.1;
+}

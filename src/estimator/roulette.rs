@@ -1,0 +1,174 @@
+//! Russian roulette as data: q is the probability of **termination**, the weight of survival is 1/(1 − q).
+//!
+//! q\[v\] is tested at surface vertex v = 0, 1, … after that vertex is scored (its emission and its connection). The
+//! probability of reaching vertex v is `Q_v = Π_{i<v} (1 − q[i])`, and `E[ X·1{v reached}/Q_v ] = X`: unbiased term by term
+//! whatever the schedule. How large q may be is another matter: with constant survival s the variance is finite only where
+//! the spectral radius of ρ²F/s is below 1 (`q < 1 − ρ²` in a furnace), and the *measured* variance can be trusted only
+//! where the fourth moment is finite (`ρ⁴ < (1 − q)³`).
+
+use crate::math::Rgb;
+use std::{fmt, str::FromStr};
+
+/// A schedule of termination probabilities.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Roulette {
+    /// Paths never end by roulette.
+    Never,
+    /// 0 at vertices before `from`, then `q`. The lecture's is 0, 0, then 0.5.
+    Constant {
+        /// First vertex with roulette.
+        from: usize,
+        /// Probability of termination.
+        q: f64,
+    },
+    /// q\[v\] as listed; the last entry holds for all later vertices.
+    Table(Vec<f64>),
+    /// 0 before `from`, then q = 1 − the largest channel of the albedo: the analog walk, whose variance is always finite.
+    Albedo {
+        /// First vertex with roulette.
+        from: usize,
+    },
+    /// 0 before `from`, then q = 1 − the largest channel of the throughput so far, at least 0.
+    Throughput {
+        /// First vertex with roulette.
+        from: usize,
+    },
+}
+
+impl Roulette {
+    /// The lecture's schedule: none at the first two vertices, then 0.5.
+    pub const LECTURE: Self = Self::Constant { from: 2, q: 0.5 };
+
+    /// q at vertex `v` of a path with this throughput, at a surface with this albedo.
+    #[inline(always)]
+    pub fn termination(&self, v: usize, throughput: Rgb, albedo: Rgb) -> f32 {
+        match self {
+            Self::Never => 0.0,
+            Self::Constant { from, q } => {
+                if v < *from {
+                    0.0
+                } else {
+                    *q as f32
+                }
+            }
+            Self::Table(q) => q.get(v).or(q.last()).map_or(0.0, |&q| q as f32),
+            Self::Albedo { from } => {
+                if v < *from {
+                    0.0
+                } else {
+                    1.0 - albedo.max_element().clamp(0.0, 1.0)
+                }
+            }
+            Self::Throughput { from } => {
+                if v < *from {
+                    0.0
+                } else {
+                    1.0 - throughput.max_element().clamp(0.0, 1.0)
+                }
+            }
+        }
+    }
+
+    /// Whether q is 0 at vertex `v` on every path: nothing to draw.
+    pub fn sleeps(&self, v: usize) -> bool {
+        match self {
+            Self::Never => true,
+            Self::Constant { from, q } => v < *from || *q == 0.0,
+            Self::Table(q) => q.get(v).or(q.last()).is_none_or(|&q| q == 0.0),
+            Self::Albedo { from } | Self::Throughput { from } => v < *from,
+        }
+    }
+
+    /// Whether paths end with probability 1. Where they do not, estimators stop at the last term and report no tail.
+    pub fn ends(&self) -> bool {
+        match self {
+            Self::Never => false,
+            Self::Constant { q, .. } => *q > 0.0,
+            Self::Table(q) => q.last().is_some_and(|&q| q > 0.0),
+            Self::Albedo { .. } | Self::Throughput { .. } => true,
+        }
+    }
+
+    /// The same schedule with no roulette before vertex `v`: terms k ≤ v keep all their samples.
+    #[must_use]
+    pub fn after(self, v: usize) -> Self {
+        match self {
+            Self::Never => Self::Never,
+            Self::Constant { from, q } => Self::Constant { from: from.max(v), q },
+            Self::Albedo { from } => Self::Albedo { from: from.max(v) },
+            Self::Throughput { from } => Self::Throughput { from: from.max(v) },
+            Self::Table(mut q) => {
+                let last = q.last().copied().unwrap_or(0.0);
+                q.resize(q.len().max(v + 1), last);
+                q[..v].fill(0.0);
+                Self::Table(q)
+            }
+        }
+    }
+}
+
+impl fmt::Display for Roulette {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Never => write!(f, "none"),
+            Self::Constant { from: 2, q: 0.5 } => write!(f, "lecture"),
+            Self::Constant { from, q } => write!(f, "constant:{q}@{from}"),
+            Self::Table(q) => write!(f, "table:{}", q.iter().map(f64::to_string).collect::<Vec<_>>().join(",")),
+            Self::Albedo { from } => write!(f, "albedo@{from}"),
+            Self::Throughput { from } => write!(f, "throughput@{from}"),
+        }
+    }
+}
+
+/// `none`, `lecture`, `constant:Q@V`, `table:q0,q1,…`, `albedo[@V]`, `throughput[@V]`.
+impl FromStr for Roulette {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        let grammar = "none, lecture, constant:Q@V, table:q0,q1,…, albedo[@V] or throughput[@V]";
+        let (head, from) = match s.split_once('@') {
+            Some((head, v)) => (head, Some(v.parse().map_err(|_| format!("`{v}` is not a vertex number; {grammar}"))?)),
+            None => (s, None),
+        };
+        let q = |s: &str| match s.trim().parse::<f64>() {
+            Ok(q) if (0.0..1.0).contains(&q) => Ok(q),
+            _ => Err(format!("q = `{s}` is not a probability of termination in [0, 1)")),
+        };
+        match head.split_once(':') {
+            None => match head {
+                "none" => Ok(Self::Never),
+                "lecture" => Ok(Self::LECTURE),
+                "albedo" => Ok(Self::Albedo { from: from.unwrap_or(2) }),
+                "throughput" => Ok(Self::Throughput { from: from.unwrap_or(2) }),
+                _ => Err(format!("unknown roulette `{s}`; {grammar}")),
+            },
+            Some(("constant", value)) => Ok(Self::Constant { from: from.unwrap_or(2), q: q(value)? }),
+            Some(("table", values)) if from.is_none() => {
+                Ok(Self::Table(values.split(',').map(q).collect::<Result<_, _>>()?))
+            }
+            Some(_) => Err(format!("unknown roulette `{s}`; {grammar}")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grammar_round_trips() {
+        for s in ["none", "lecture", "constant:0.25@3", "table:0,0,0.5", "albedo@2", "throughput@0"] {
+            assert_eq!(s.parse::<Roulette>().map(|r| r.to_string()), Ok(s.to_string()));
+        }
+        for s in ["half", "constant:1@0", "table:0.1,x", "constant:-0.1", "lecture:2"] {
+            assert!(s.parse::<Roulette>().is_err(), "{s}");
+        }
+    }
+
+    #[test]
+    fn after_spares_the_first_vertices_only() {
+        let r = Roulette::Table(vec![0.1, 0.2]).after(3);
+        assert_eq!(r, Roulette::Table(vec![0.0, 0.0, 0.0, 0.2]));
+        assert_eq!(Roulette::LECTURE.after(8), Roulette::Constant { from: 8, q: 0.5 });
+    }
+}

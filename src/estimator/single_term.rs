@@ -1,0 +1,83 @@
+//! One integral per length, as in the lecture: each `T^k E` from paths of its own.
+//!
+//! `X_k = α_{k−1} · (one factor of T applied to E at x_{k−1})`, with k − 1 scattering steps before it and fresh paths for
+//! every k. The terms are independent, at the price of `Σ k` rays where prefix reuse needs K.
+//!
+//! The tail has paths of its own too: K steps without scoring, then everything beyond.
+
+use super::{Batch, Paths, Plan, TermEstimator, TermSink, prefix};
+use crate::operator::{Sensor, Transport};
+
+/// The estimator of single terms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SingleTerm(pub Plan);
+
+impl SingleTerm {
+    /// Fresh paths for slot `k`, walked to vertex `steps`.
+    fn walk<T: Transport>(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        batch: &Batch,
+        k: usize,
+        steps: usize,
+        paths: &mut Paths<T::Wave>,
+    ) -> u64 {
+        paths.start(t, sensor, &Batch { key: batch.key.branch(k as u32), ..batch.clone() });
+        let mut rays = batch.len() as u64;
+        for v in 0..steps {
+            paths.roulette(t, v, &self.0.roulette);
+            rays += paths.n as u64;
+            paths.scatter(t, v);
+        }
+        rays
+    }
+}
+
+impl<T: Transport> TermEstimator<T> for SingleTerm {
+    fn slots(&self) -> usize {
+        self.0.max_bounces + 2
+    }
+
+    fn sample(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        batch: &Batch,
+        paths: &mut Paths<T::Wave>,
+        sink: &mut impl TermSink,
+    ) -> u64 {
+        let Plan { max_bounces, technique, ref roulette } = self.0;
+        let mut rays = 0;
+        for k in 0..=max_bounces {
+            rays += self.walk(t, sensor, batch, k, k.saturating_sub(1), paths);
+            if k == 0 {
+                paths.emission(t);
+                sink.add(0, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+                continue;
+            }
+            let v = k - 1;
+            if technique.connects() {
+                rays += paths.n as u64;
+                paths.connect(t, v);
+                technique.weigh(&mut paths.samples, paths.n);
+                paths.samples.value.multiply(&paths.through, paths.n);
+                sink.add(k, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+            }
+            if technique.scatters() {
+                paths.roulette(t, v, roulette);
+                rays += paths.n as u64;
+                paths.scatter(t, v);
+                paths.emission(t);
+                technique.weigh(&mut paths.samples, paths.n);
+                paths.samples.value.multiply(&paths.through, paths.n);
+                sink.add(k, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+            }
+        }
+        if roulette.ends() {
+            rays += self.walk(t, sensor, batch, max_bounces + 1, max_bounces, paths);
+            rays += prefix::follow(t, &self.0, max_bounces, paths, sink);
+        }
+        rays
+    }
+}

@@ -1,0 +1,182 @@
+//! Random numbers by address: nothing is counted, so nothing depends on the order of work.
+//!
+//! `u = hash(key, pixel, sample, place)` with `place = (bounce, purpose, draw)`.
+//!
+//! | symbol | type | meaning |
+//! |---|---|---|
+//! | key | [`Key`] | the run: seed and the name of the stream |
+//! | pixel, sample | `u32` | the path |
+//! | bounce | vertex index v | where on the path |
+//! | purpose | [`Purpose`] | what the number decides |
+//! | draw | 0, 1, … | four numbers each |
+//!
+//! The hash is pcg4d of Jarzynski and Olano, *Hash Functions for GPU Rendering* (JCGT 9(3), 2020).
+
+/// What a random number decides; part of its address.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// The start of the path: the point in the pixel, or on the surface sensor.
+    Start = 0,
+    /// Next-event estimation.
+    Connect = 1,
+    /// The direction of the next ray.
+    Scatter = 2,
+    /// Russian roulette.
+    Roulette = 3,
+}
+
+/// A whole run's stream: equal seeds and names give equal numbers, anything else gives unrelated ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Key(pub [u32; 2]);
+
+impl Key {
+    /// The stream called `name` of a run with this seed.
+    ///
+    /// ```
+    /// use fredholm::math::Key;
+    /// assert_eq!(Key::new(1, "prefix"), Key::new(1, "prefix"));
+    /// assert_ne!(Key::new(1, "prefix"), Key::new(1, "path"));
+    /// ```
+    pub fn new(seed: u64, name: &str) -> Self {
+        // FNV-1a over the name, then the finaliser of splitmix64
+        let name =
+            name.bytes().fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
+        let mut z = name ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        Self([z as u32, (z >> 32) as u32])
+    }
+
+    /// A further stream of this run: `single` gives each term its own.
+    #[must_use]
+    pub fn branch(self, index: u32) -> Self {
+        let v = pcg4d([self.0[0], self.0[1], index, 0x5bd1_e995]);
+        Self([v[0], v[1]])
+    }
+}
+
+/// The numbers of one (path, bounce, purpose), four at a time.
+#[derive(Clone, Copy, Debug)]
+pub struct Rng {
+    key: [u32; 2],
+    pixel: u32,
+    sample: u32,
+    place: u32,
+}
+
+const DRAW: u32 = 1 << 24;
+
+impl Rng {
+    /// The numbers at vertex `bounce` of path (`pixel`, `sample`) for one purpose.
+    #[inline(always)]
+    pub fn at(key: Key, pixel: u32, sample: u32, bounce: usize, purpose: Purpose) -> Self {
+        Self { key: key.0, pixel, sample, place: place(bounce, purpose) }
+    }
+
+    /// Four independent uniform numbers in [0, 1), multiples of 2⁻²⁴.
+    #[inline(always)]
+    pub fn four(&mut self) -> [f32; 4] {
+        let v = pcg4d([self.pixel.wrapping_add(self.key[0]), self.sample, self.place, self.key[1]]);
+        self.place = self.place.wrapping_add(DRAW);
+        v.map(unit)
+    }
+
+    /// One uniform number in [0, 1); the other three of the draw are not used.
+    #[inline(always)]
+    pub fn one(&mut self) -> f32 {
+        self.four()[0]
+    }
+}
+
+#[inline(always)]
+fn place(bounce: usize, purpose: Purpose) -> u32 {
+    (bounce as u32) << 2 | purpose as u32
+}
+
+/// The top 24 bits as a number in [0, 1).
+#[inline(always)]
+fn unit(x: u32) -> f32 {
+    // through i32, which converts in one vector instruction
+    (x >> 8) as i32 as f32 * (1.0 / 16_777_216.0)
+}
+
+#[inline(always)]
+fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
+    for x in &mut v {
+        *x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    }
+    for round in 0..2 {
+        v[0] = v[0].wrapping_add(v[1].wrapping_mul(v[3]));
+        v[1] = v[1].wrapping_add(v[2].wrapping_mul(v[0]));
+        v[2] = v[2].wrapping_add(v[0].wrapping_mul(v[1]));
+        v[3] = v[3].wrapping_add(v[1].wrapping_mul(v[2]));
+        if round == 0 {
+            for x in &mut v {
+                *x ^= *x >> 16;
+            }
+        }
+    }
+    v
+}
+
+/// The streams of a wave: one (pixel, sample) per path, one (bounce, purpose) for all.
+#[derive(Clone, Copy, Debug)]
+pub struct Streams<'a> {
+    /// The run.
+    pub key: Key,
+    /// Pixel of each path.
+    pub pixel: &'a [u32],
+    /// Sample number of each path within its pixel.
+    pub sample: &'a [u32],
+    /// Vertex index, the same for all.
+    pub bounce: usize,
+    /// What the numbers decide.
+    pub purpose: Purpose,
+}
+
+impl Streams<'_> {
+    /// The generator of path `i`.
+    #[inline(always)]
+    pub fn rng(&self, i: usize) -> Rng {
+        Rng::at(self.key, self.pixel[i], self.sample[i], self.bounce, self.purpose)
+    }
+
+    /// Number of paths.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.pixel.len()
+    }
+
+    /// Whether there is no path.
+    pub fn is_empty(&self) -> bool {
+        self.pixel.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_uniform_and_uncorrelated_in_every_address() {
+        // means of u and of products of neighbours over 2^18 addresses, each within 5.5 standard errors
+        let key = Key::new(3, "test");
+        let n = 1u32 << 18;
+        let (mut mean, mut product) = ([0.0; 4], [0.0; 3]);
+        for i in 0..n {
+            let (pixel, sample, bounce) = (i & 63, i >> 12, (i as usize >> 6) & 63);
+            let u = Rng::at(key, pixel, sample, bounce, Purpose::Scatter).four().map(f64::from);
+            let next = [
+                Rng::at(key, pixel + 1, sample, bounce, Purpose::Scatter).one(),
+                Rng::at(key, pixel, sample + 1, bounce, Purpose::Scatter).one(),
+                Rng::at(key, pixel, sample, bounce, Purpose::Connect).one(),
+            ];
+            (0..4).for_each(|j| mean[j] += u[j] - 0.5);
+            (0..3).for_each(|j| product[j] += (u[0] - 0.5) * (f64::from(next[j]) - 0.5));
+        }
+        let n = f64::from(n);
+        assert!(mean.iter().all(|m| (m / n).abs() < 5.5 * (1.0 / 12.0 / n).sqrt()), "{mean:?}");
+        assert!(product.iter().all(|m| (m / n).abs() < 5.5 / 12.0 / n.sqrt()), "{product:?}");
+    }
+}

@@ -1,0 +1,118 @@
+//! The bridge between the worlds: the discrete T = diag(ρ) F, sampled by a walk on its rows.
+//!
+//! `(T^k E)_i = Σ ρ_i F_ij ρ_j F_jl … E`: from row i the walk goes to j with probability F_ij, weight ρ_i, and leaves with
+//! probability 1 − Σ_j F_ij.
+//!
+//! Every estimator that runs here is checked against matrix powers, where there is no discretisation error at all.
+//! Reference: Forsythe and Leibler, *Matrix inversion by a Monte Carlo method* (1950).
+//!
+//! | notation | type | meaning |
+//! |---|---|---|
+//! | F | `rows` | nonnegative, row sums at most 1 |
+//! | ρ | `rho` | row factor, one per channel |
+//! | E | `emission` | one per row and channel |
+//! | c_j | `1/(number of emitting rows)` | density of next-event estimation |
+
+use super::transport::{Sensor, Step, Transport};
+use crate::math::{Rgb, Rng};
+
+/// A random walk on the rows of T = diag(ρ) F.
+#[derive(Clone, Debug)]
+pub struct MatrixWalk {
+    n: usize,
+    rows: Vec<f64>,
+    /// Partial sums along each row.
+    cdf: Vec<f64>,
+    rho: Vec<Rgb>,
+    emission: Vec<Rgb>,
+    emitters: Vec<usize>,
+}
+
+impl MatrixWalk {
+    /// `rows` is F, row by row; `rho` and `emission` have one entry per row.
+    ///
+    /// # Panics
+    /// If the lengths do not fit together.
+    pub fn new(rows: Vec<f64>, rho: Vec<Rgb>, emission: Vec<Rgb>) -> Self {
+        let n = rho.len();
+        assert!(rows.len() == n * n && emission.len() == n, "F is {n} × {n}");
+        let partial = |row: &[f64]| {
+            let sums = row.iter().scan(0.0, |sum, f| {
+                *sum += f;
+                Some(*sum)
+            });
+            sums.collect::<Vec<f64>>()
+        };
+        let cdf = rows.chunks(n).flat_map(partial).collect();
+        let emitters = (0..n).filter(|&i| emission[i] != Rgb::ZERO).collect();
+        Self { n, rows, cdf, rho, emission, emitters }
+    }
+
+    /// The exact terms `T^k E`, k = 0..=`k_max`, one vector of rows each.
+    pub fn powers(&self, k_max: usize) -> Vec<Vec<glam::DVec3>> {
+        let mut terms = vec![self.emission.iter().map(|e| e.as_dvec3()).collect::<Vec<_>>()];
+        for k in 0..k_max {
+            let row = |i: usize| {
+                let sum: glam::DVec3 = (0..self.n).map(|j| terms[k][j] * self.rows[i * self.n + j]).sum();
+                sum * self.rho[i].as_dvec3()
+            };
+            let next = (0..self.n).map(row).collect();
+            terms.push(next);
+        }
+        terms
+    }
+}
+
+impl Transport for MatrixWalk {
+    type State = u32;
+    type Wave = Vec<u32>;
+
+    fn emission(&self, &i: &u32) -> Rgb {
+        self.emission[i as usize]
+    }
+
+    fn scatter(&self, &i: &u32, rng: &mut Rng) -> Option<Step<u32>> {
+        let i = i as usize;
+        let u = rng.four();
+        // 48 bits, so that small entries get their exact share
+        let u = f64::from(u[0]) + f64::from(u[1]) / 16_777_216.0;
+        let j = self.cdf[i * self.n..(i + 1) * self.n].partition_point(|&c| c <= u);
+        if j == self.n {
+            return None;
+        }
+        let other_pdf = if self.emission[j] == Rgb::ZERO { 0.0 } else { 1.0 / self.emitters.len() as f32 };
+        Some(Step { state: j as u32, weight: self.rho[i], pdf: self.rows[i * self.n + j] as f32, other_pdf })
+    }
+
+    fn connect(&self, &i: &u32, rng: &mut Rng) -> Option<Step<u32>> {
+        let count = self.emitters.len();
+        if count == 0 {
+            return None;
+        }
+        let j = self.emitters[((rng.one() * count as f32) as usize).min(count - 1)];
+        let f = self.rows[i as usize * self.n + j] as f32;
+        (f > 0.0).then(|| Step {
+            state: j as u32,
+            weight: self.rho[i as usize] * (f * count as f32),
+            pdf: 1.0 / count as f32,
+            other_pdf: f,
+        })
+    }
+
+    fn albedo(&self, &i: &u32) -> Rgb {
+        self.rho[i as usize]
+    }
+}
+
+/// Pixel i asks for row i.
+#[derive(Clone, Copy, Debug)]
+pub struct Rows(pub u32);
+
+impl Sensor<MatrixWalk> for Rows {
+    fn size(&self) -> [u32; 2] {
+        [self.0, 1]
+    }
+    fn start(&self, _: &MatrixWalk, pixel: u32, _: &mut Rng) -> Option<u32> {
+        Some(pixel)
+    }
+}

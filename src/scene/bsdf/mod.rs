@@ -1,0 +1,7 @@
+//! How a surface scatters: `f(ω → ω')`, in sr⁻¹, and ways to sample it.
+//!
+//! | kind | file |
+//! |---|---|
+//! | Lambertian | [`diffuse`] |
+
+pub mod diffuse;

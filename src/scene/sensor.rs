@@ -1,0 +1,85 @@
+//! Where paths start: the pinhole camera and the surface sensor.
+//!
+//! | sensor | asks for | its mean over everything |
+//! |---|---|---|
+//! | [`Camera`] | radiance towards the eye, uniform in the square of a pixel | the image mean |
+//! | [`SurfaceSensor`] | radiance leaving a uniform surface point in a cosine-distributed direction | `∫ L cos θ dω dA / (πA)`, the L1 norm in the throughput measure over πA |
+
+use super::{Scene, Vertex, description::CameraDescription};
+use crate::math::{Rng, direction::cosine_hemisphere};
+use glam::{DVec3, Vec3};
+
+/// A pinhole camera. Pixel (0, 0) is top left; right = forward × up; pixels are square.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    /// The pinhole.
+    pub origin: Vec3,
+    /// Direction to the top left corner of the image, and across one pixel to the right and down.
+    corner: Vec3,
+    across: Vec3,
+    down: Vec3,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+}
+
+impl Camera {
+    /// The camera a description asks for.
+    pub fn new(c: &CameraDescription) -> Self {
+        let forward = (c.target - c.origin).normalize();
+        let right = forward.cross(c.up).normalize();
+        let up = right.cross(forward);
+        let half = (0.5 * c.fov).to_radians().tan();
+        let pixel = 2.0 * half / f64::from(c.size[0]);
+        let corner: DVec3 = forward - right * half + up * (0.5 * pixel * f64::from(c.size[1]));
+        Self {
+            origin: c.origin.as_vec3(),
+            corner: corner.as_vec3(),
+            across: (right * pixel).as_vec3(),
+            down: (-up * pixel).as_vec3(),
+            size: c.size,
+        }
+    }
+
+    /// Unit direction through a point of a pixel, `u` in [0, 1)² from its top left corner.
+    #[inline(always)]
+    pub fn direction(&self, pixel: u32, u: [f32; 2]) -> Vec3 {
+        let (column, row) = (pixel % self.size[0], pixel / self.size[0]);
+        let d = self.corner + self.across * (column as f32 + u[0]) + self.down * (row as f32 + u[1]);
+        d * (1.0 / (d.x * d.x + d.y * d.y + d.z * d.z).sqrt())
+    }
+}
+
+/// Every side of every surface, seen uniformly by area with a cosine-distributed direction: camera-free.
+#[derive(Clone, Debug)]
+pub struct SurfaceSensor {
+    sides: Vec<u32>,
+    /// Cumulative share of the area.
+    cdf: Vec<f64>,
+    /// Area of all sides that take part, m².
+    pub area: f64,
+}
+
+impl SurfaceSensor {
+    /// All sides that take part in transport: both of a two-sided surface, else the front.
+    pub fn new(scene: &Scene) -> Self {
+        let sides: Vec<u32> = (0..scene.sides()).filter(|&s| scene.takes_part(s)).collect();
+        let areas: Vec<f64> = sides.iter().map(|&s| scene.area(s)).collect();
+        let area = areas.iter().sum();
+        let mut up_to = 0.0;
+        let cdf = areas.iter().map(|a| {
+            up_to += a / area;
+            up_to
+        });
+        Self { cdf: cdf.collect(), sides, area }
+    }
+
+    /// A uniform point with a cosine-distributed direction.
+    pub fn vertex(&self, scene: &Scene, rng: &mut Rng) -> Vertex {
+        let (u, w) = (rng.four(), rng.four());
+        // 48 bits choose the side, so that small ones get their share
+        let share = f64::from(u[0]) + f64::from(u[1]) / 16_777_216.0;
+        let side = self.sides[self.cdf.partition_point(|&c| c <= share).min(self.sides.len() - 1)];
+        let (p, n) = scene.point(side, [u[2], u[3]]);
+        Vertex { p, n, omega: cosine_hemisphere(n, [w[0], w[1]]).0, side }
+    }
+}

@@ -1,0 +1,119 @@
+//! The film: per pixel, per replicate, per slot, the sum of the samples.
+//!
+//! Sample i of a pixel belongs to replicate `i mod R`. Replicates are independent and identically distributed, so with
+//! S_r the sum of replicate r over its n_r samples, `m = Σ S_r / Σ n_r` and
+//!
+//! `se² = R/(R−1) · Σ_r ( (S_r − n_r m) / N )²`
+//!
+//! hold for any linear functional of the image and for any estimator, also where samples inside a replicate depend on each
+//! other.
+//!
+//! | notation | meaning | place |
+//! |---|---|---|
+//! | R | replicates, [`Shape::replicates`] | [`Shape`] |
+//! | slot | k = 0..=K, then the tail; or one for the path tracer | [`Shape::slots`] |
+//! | N | samples of a pixel so far | [`TermFilm::samples`] |
+//!
+//! Memory: `pixels · R · slots · 24` bytes. Sums are `f64`; nothing is clamped, and non-finite samples are counted and left in.
+
+use crate::math::Columns;
+use glam::DVec3;
+
+/// Extent of a film.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Slots of a sample.
+    pub slots: usize,
+    /// Independent replicates R.
+    pub replicates: usize,
+}
+
+impl Shape {
+    /// Number of pixels.
+    pub fn pixels(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize
+    }
+
+    pub(crate) fn per_pixel(&self) -> usize {
+        self.replicates * self.slots * 3
+    }
+}
+
+/// Sums of all samples so far.
+#[derive(Clone, Debug)]
+pub struct TermFilm {
+    /// Extent.
+    pub shape: Shape,
+    /// Samples of each pixel so far.
+    pub samples: Vec<u32>,
+    /// Rays asked for.
+    pub rays: u64,
+    /// Samples that were not finite.
+    pub non_finite: u64,
+    pub(crate) sums: Vec<f64>,
+}
+
+/// The part of a film that one thread works on: some neighbouring pixels.
+pub(crate) struct FilmBlock<'a> {
+    pub(crate) shape: Shape,
+    pub(crate) first: u32,
+    pub(crate) sums: &'a mut [f64],
+    pub(crate) non_finite: u64,
+}
+
+impl FilmBlock<'_> {
+    #[inline(always)]
+    pub(crate) fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
+        let n = pixel.len();
+        let (sample, x, y, z) = (&sample[..n], &value.x[..n], &value.y[..n], &value.z[..n]);
+        let (replicates, slots) = (self.shape.replicates as u32, self.shape.slots);
+        for i in 0..n {
+            let path = (pixel[i] - self.first) * replicates + sample[i] % replicates;
+            let at = (path as usize * slots + slot) * 3;
+            let s = &mut self.sums[at..at + 3];
+            s[0] += f64::from(x[i]);
+            s[1] += f64::from(y[i]);
+            s[2] += f64::from(z[i]);
+            self.non_finite += u64::from(!(x[i] + y[i] + z[i]).is_finite());
+        }
+    }
+}
+
+impl TermFilm {
+    /// An empty film.
+    pub fn new(shape: Shape) -> Self {
+        let sums = vec![0.0; shape.pixels() * shape.per_pixel()];
+        Self { shape, samples: vec![0; shape.pixels()], rays: 0, non_finite: 0, sums }
+    }
+
+    /// Sum of the samples of one pixel, replicate and slot.
+    #[inline(always)]
+    pub fn sum(&self, pixel: usize, replicate: usize, slot: usize) -> DVec3 {
+        let at = pixel * self.shape.per_pixel() + (replicate * self.shape.slots + slot) * 3;
+        DVec3::new(self.sums[at], self.sums[at + 1], self.sums[at + 2])
+    }
+
+    /// Number of samples of one pixel in one replicate.
+    #[inline(always)]
+    pub fn count(&self, pixel: usize, replicate: usize) -> f64 {
+        let (n, r) = (self.samples[pixel] as usize, self.shape.replicates);
+        ((n + r - 1 - replicate) / r) as f64
+    }
+
+    /// Least number of samples of any pixel.
+    pub fn least_samples(&self) -> u32 {
+        self.samples.iter().copied().min().unwrap_or(0)
+    }
+
+    /// Mean and standard error at one pixel of the sum over some slots.
+    pub fn pixel(&self, pixel: usize, slots: std::ops::Range<usize>) -> (DVec3, DVec3) {
+        let (r, n) = (self.shape.replicates, f64::from(self.samples[pixel]));
+        let of = |replicate: usize| slots.clone().map(|s| self.sum(pixel, replicate, s)).sum::<DVec3>();
+        let mean = (0..r).map(of).sum::<DVec3>() / n;
+        let scatter: DVec3 = (0..r).map(|i| ((of(i) - mean * self.count(pixel, i)) / n).powf(2.0)).sum();
+        let replicates = r as f64;
+        (mean, (scatter * (replicates / (replicates - 1.0))).map(f64::sqrt))
+    }
+}
