@@ -13,10 +13,10 @@
 //! | p_ω = p_A r²/cos θ_y | the same in solid angle | `solid_angle` here |
 //! | V | nothing between | [`crate::scene::Scene::blocked`] |
 
-use super::transport::{Sensor, Step, Transport, Wave};
-use crate::math::{Rgb, Rng};
+use super::transport::{self, Samples, Sensor, Step, Transport, Wave};
+use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::scene::bsdf::diffuse::{self, Sampling};
-use crate::scene::{Camera, Scene, SurfaceSensor, Vertex, VertexWave};
+use crate::scene::{Camera, Scene, SurfaceSensor, Vertex, VertexWave, cosine_directions, numbers};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
@@ -51,6 +51,47 @@ pub(crate) fn connection(x: Vec3, n: Vec3, y: Vec3, m: Vec3) -> (Vec3, f32, f32,
     (d, r2, d.x * n.x + d.y * n.y + d.z * n.z, -(d.x * m.x + d.y * m.y + d.z * m.z))
 }
 
+impl SceneTransport<'_> {
+    /// A direction at a vertex: nothing where the surface is black.
+    #[inline(always)]
+    fn depart(&self, at: &Vertex, u: [f32; 4]) -> Option<(Vec3, Rgb, f32)> {
+        let albedo = self.scene.albedo(at.side);
+        (albedo != Rgb::ZERO).then(|| diffuse::sample(albedo, at.n, self.sampling, [u[0], u[1]]))
+    }
+
+    /// The step that a ray from `from` makes when it arrives at `state`.
+    #[inline(always)]
+    fn step(&self, from: Vec3, n: Vec3, state: Vertex, weight: Rgb, pdf: f32) -> Step<Vertex> {
+        let density = self.scene.light_density(state.side);
+        let other_pdf = if density > 0.0 {
+            let (_, r2, _, cos_y) = connection(from, n, state.p, state.n);
+            solid_angle(density, r2, cos_y)
+        } else {
+            0.0
+        };
+        Step { state, weight, pdf, other_pdf }
+    }
+
+    /// A connection before anybody has looked whether it is blocked: nothing where a cosine or the albedo is 0.
+    #[inline(always)]
+    fn propose(&self, at: &Vertex, u: [f32; 4]) -> Option<Step<Vertex>> {
+        let albedo = self.scene.albedo(at.side);
+        if albedo == Rgb::ZERO || self.scene.lights.is_empty() {
+            return None;
+        }
+        let side = 2 * self.scene.lights.choose([u[0], u[1]]);
+        let (y, m) = self.scene.point(side, [u[2], u[3]]);
+        let (d, r2, cos_x, cos_y) = connection(at.p, at.n, y, m);
+        if cos_x <= 0.0 || cos_y <= 0.0 {
+            return None;
+        }
+        let pdf = solid_angle(self.scene.light_density(side), r2, cos_y);
+        let weight = albedo * (FRAC_1_PI * cos_x / pdf);
+        let state = Vertex { p: y, n: m, omega: -d, side };
+        Some(Step { state, weight, pdf, other_pdf: self.sampling.pdf(cos_x) })
+    }
+}
+
 impl Transport for SceneTransport<'_> {
     type State = Vertex;
     type Wave = VertexWave;
@@ -62,40 +103,82 @@ impl Transport for SceneTransport<'_> {
 
     #[inline(always)]
     fn scatter(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
-        let albedo = self.scene.albedo(at.side);
-        if albedo == Rgb::ZERO {
-            return None;
-        }
-        let u = rng.four();
-        let (d, weight, pdf) = diffuse::sample(albedo, at.n, self.sampling, [u[0], u[1]]);
+        let (d, weight, pdf) = self.depart(at, rng.four())?;
         let state = self.scene.trace(self.scene.lift(at.p, at.n), d)?;
-        let (_, r2, _, cos_y) = connection(at.p, at.n, state.p, state.n);
-        let other_pdf = solid_angle(self.scene.light_density(state.side), r2, cos_y);
-        Some(Step { state, weight, pdf, other_pdf })
+        Some(self.step(at.p, at.n, state, weight, pdf))
     }
 
     #[inline(always)]
     fn connect(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
-        let albedo = self.scene.albedo(at.side);
-        if albedo == Rgb::ZERO || self.scene.lights.is_empty() {
-            return None;
-        }
-        let u = rng.four();
-        let side = 2 * self.scene.lights.choose([u[0], u[1]]);
-        let (y, m) = self.scene.point(side, [u[2], u[3]]);
-        let (d, r2, cos_x, cos_y) = connection(at.p, at.n, y, m);
-        if cos_x <= 0.0 || cos_y <= 0.0 || self.scene.blocked(at.p, at.n, y, m) {
-            return None;
-        }
-        let pdf = solid_angle(self.scene.light_density(side), r2, cos_y);
-        let weight = albedo * (FRAC_1_PI * cos_x / pdf);
-        let state = Vertex { p: y, n: m, omega: -d, side };
-        Some(Step { state, weight, pdf, other_pdf: self.sampling.pdf(cos_x) })
+        let step = self.propose(at, rng.four())?;
+        (!self.scene.blocked(at.p, at.n, step.state.p, step.state.n)).then_some(step)
     }
 
     #[inline(always)]
     fn albedo(&self, at: &Vertex) -> Rgb {
         self.scene.albedo(at.side)
+    }
+
+    fn emission_wave(&self, wave: &mut VertexWave, n: usize, value: &mut Columns) {
+        for (i, &side) in wave.side[..n].iter().enumerate() {
+            value.set(i, self.scene.emission(side));
+        }
+    }
+
+    /// Random numbers in bulk and shadow rays in packets, where the scene is small and flat; the same bits.
+    fn connect_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples) {
+        if !self.scene.in_packets() {
+            return transport::connect_one_by_one(self, wave, streams, out);
+        }
+        numbers(streams, &mut wave.rays.u);
+        let mut shadow = 0;
+        for i in 0..streams.len() {
+            let (at, u) = (wave.get(i), wave.rays.u.each_ref().map(|u| u[i]));
+            if let Some(s) = self.propose(&at, u) {
+                let (o, d) = self.scene.segment(at.p, at.n, s.state.p, s.state.n);
+                wave.rays.o.set(i, o);
+                wave.rays.d.set(i, d);
+                wave.rays.list[shadow] = i as u32;
+                shadow += 1;
+                out.set(i, s.weight * self.emission(&s.state), s.pdf, s.other_pdf);
+            } else {
+                out.set(i, Rgb::ZERO, 1.0, 0.0);
+            }
+        }
+        self.scene.block_packets(&mut wave.rays, shadow);
+        for &i in &wave.rays.list[..shadow] {
+            if wave.rays.prim[i as usize] != 0 {
+                out.set(i as usize, Rgb::ZERO, 1.0, 0.0);
+            }
+        }
+    }
+
+    /// Random numbers in bulk and rays in packets, where the scene is small and flat; the same bits.
+    fn scatter_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
+        if !self.scene.in_packets() || self.sampling == Sampling::Uniform {
+            return transport::scatter_one_by_one(self, wave, streams, out, alive);
+        }
+        let n = streams.len();
+        numbers(streams, &mut wave.rays.u);
+        let VertexWave { p, n: normals, omega, side, rays } = wave;
+        cosine_directions(normals, &rays.u, &mut rays.d, &mut rays.cosine, n);
+        for i in 0..n {
+            rays.o.set(i, self.scene.lift(p.get(i), normals.get(i)));
+        }
+        let cosine = std::mem::take(&mut rays.cosine);
+        self.scene.trace_packets(rays, n, |i, state| {
+            let albedo = self.scene.albedo(side[i]);
+            if albedo != Rgb::ZERO {
+                let s = self.step(p.get(i), normals.get(i), state, albedo, self.sampling.pdf(cosine[i]));
+                p.set(i, state.p);
+                normals.set(i, state.n);
+                omega.set(i, state.omega);
+                side[i] = state.side;
+                out.set(i, s.weight, s.pdf, s.other_pdf);
+                alive.push(i as u32);
+            }
+        });
+        rays.cosine = cosine;
     }
 }
 
@@ -124,6 +207,24 @@ impl Sensor<SceneTransport<'_>> for Camera {
     fn start(&self, t: &SceneTransport, pixel: u32, rng: &mut Rng) -> Option<Vertex> {
         let u = rng.four();
         t.scene.trace(self.origin, self.direction(pixel, [u[0], u[1]]))
+    }
+    fn start_wave(&self, t: &SceneTransport, wave: &mut VertexWave, streams: Streams, alive: &mut Vec<u32>) {
+        if !t.scene.in_packets() {
+            return transport::start_one_by_one(self, t, wave, streams, alive);
+        }
+        numbers(streams, &mut wave.rays.u);
+        let VertexWave { p, n, omega, side, rays } = wave;
+        for i in 0..streams.len() {
+            rays.o.set(i, self.origin);
+            rays.d.set(i, self.direction(streams.pixel[i], [rays.u[0][i], rays.u[1][i]]));
+        }
+        t.scene.trace_packets(rays, streams.len(), |i, state| {
+            p.set(i, state.p);
+            n.set(i, state.n);
+            omega.set(i, state.omega);
+            side[i] = state.side;
+            alive.push(i as u32);
+        });
     }
 }
 

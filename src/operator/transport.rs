@@ -54,22 +54,43 @@ pub trait Transport: Sync {
 
     /// `out.value[i]` = one sample of (T E)(state i), with both densities; the states stay.
     fn connect_wave(&self, wave: &mut Self::Wave, streams: Streams, out: &mut Samples) {
-        for i in 0..streams.len() {
-            match self.connect(&wave.get(i), &mut streams.rng(i)) {
-                Some(s) => out.set(i, s.weight * self.emission(&s.state), s.pdf, s.other_pdf),
-                None => out.set(i, Rgb::ZERO, 1.0, 0.0),
-            }
-        }
+        connect_one_by_one(self, wave, streams, out);
     }
 
     /// State i moves on and `out.value[i]` is its weight; the indices of paths that live are pushed to `alive`, ascending.
     fn scatter_wave(&self, wave: &mut Self::Wave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
-        for i in 0..streams.len() {
-            if let Some(s) = self.scatter(&wave.get(i), &mut streams.rng(i)) {
-                wave.set(i, s.state);
-                out.set(i, s.weight, s.pdf, s.other_pdf);
-                alive.push(i as u32);
-            }
+        scatter_one_by_one(self, wave, streams, out, alive);
+    }
+}
+
+/// The default of [`Transport::connect_wave`].
+pub(crate) fn connect_one_by_one<T: Transport + ?Sized>(
+    t: &T,
+    wave: &mut T::Wave,
+    streams: Streams,
+    out: &mut Samples,
+) {
+    for i in 0..streams.len() {
+        match t.connect(&wave.get(i), &mut streams.rng(i)) {
+            Some(s) => out.set(i, s.weight * t.emission(&s.state), s.pdf, s.other_pdf),
+            None => out.set(i, Rgb::ZERO, 1.0, 0.0),
+        }
+    }
+}
+
+/// The default of [`Transport::scatter_wave`].
+pub(crate) fn scatter_one_by_one<T: Transport + ?Sized>(
+    t: &T,
+    wave: &mut T::Wave,
+    streams: Streams,
+    out: &mut Samples,
+    alive: &mut Vec<u32>,
+) {
+    for i in 0..streams.len() {
+        if let Some(s) = t.scatter(&wave.get(i), &mut streams.rng(i)) {
+            wave.set(i, s.state);
+            out.set(i, s.weight, s.pdf, s.other_pdf);
+            alive.push(i as u32);
         }
     }
 }
@@ -135,11 +156,22 @@ pub trait Sensor<T: Transport>: Sync {
     fn start(&self, t: &T, pixel: u32, rng: &mut Rng) -> Option<T::State>;
     /// The starts of a wave; indices of those that exist are pushed to `alive`, ascending.
     fn start_wave(&self, t: &T, wave: &mut T::Wave, streams: Streams, alive: &mut Vec<u32>) {
-        for i in 0..streams.len() {
-            if let Some(state) = self.start(t, streams.pixel[i], &mut streams.rng(i)) {
-                wave.set(i, state);
-                alive.push(i as u32);
-            }
+        start_one_by_one(self, t, wave, streams, alive);
+    }
+}
+
+/// The default of [`Sensor::start_wave`].
+pub(crate) fn start_one_by_one<T: Transport, W: Sensor<T> + ?Sized>(
+    sensor: &W,
+    t: &T,
+    wave: &mut T::Wave,
+    streams: Streams,
+    alive: &mut Vec<u32>,
+) {
+    for i in 0..streams.len() {
+        if let Some(state) = sensor.start(t, streams.pixel[i], &mut streams.rng(i)) {
+            wave.set(i, state);
+            alive.push(i as u32);
         }
     }
 }

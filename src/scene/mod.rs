@@ -15,6 +15,7 @@ pub mod bsdf;
 pub mod description;
 pub mod emitter;
 mod error;
+mod packets;
 pub mod primitive;
 pub mod sensor;
 mod shape;
@@ -32,6 +33,9 @@ use description::Sides;
 use emitter::Lights;
 use glam::{DVec3, Vec3};
 use shape::Shape;
+use vertex::Rays;
+
+pub(crate) use packets::{cosine_directions, numbers};
 
 /// Surfaces ready for rays, and their lights.
 pub struct Scene {
@@ -40,6 +44,8 @@ pub struct Scene {
     /// What emits.
     pub lights: Lights,
     accel: Accel,
+    /// Whether waves are traced in packets.
+    packets: bool,
     /// By side: albedo, emission, whether it takes part in transport.
     albedo: Vec<Rgb>,
     emission: Vec<Rgb>,
@@ -75,6 +81,7 @@ impl Scene {
             takes_part.extend([true, both]);
         }
         Self {
+            packets: packets::suit(&shapes),
             camera: Camera::new(&description.camera),
             lights: Lights::new(description, &prims),
             accel: Accel::new(shapes, &widened),
@@ -146,6 +153,36 @@ impl Scene {
         (hit.prim != u32::MAX).then(|| self.arrive(o, d, hit))
     }
 
+    /// Whether waves are traced in packets.
+    pub(crate) fn in_packets(&self) -> bool {
+        self.packets
+    }
+
+    /// This scene without packets, for tests: the plain twin.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn one_by_one(mut self) -> Self {
+        self.packets = false;
+        self
+    }
+
+    /// The first surfaces seen along the first `n` rays of a wave; `at(i, vertex)` is called in order for rays that see one.
+    #[inline(always)]
+    pub(crate) fn trace_packets(&self, rays: &mut Rays, n: usize, mut at: impl FnMut(usize, Vertex)) {
+        packets::closest(&self.accel.shapes, rays, n);
+        for i in 0..n {
+            if rays.prim[i] != u32::MAX {
+                at(i, self.arrive(rays.o.get(i), rays.d.get(i), shape::Hit { t: rays.t[i], prim: rays.prim[i] }));
+            }
+        }
+    }
+
+    /// For each ray named by the first `n` of `rays.list`: `rays.prim[ray] = 1` if its segment is blocked, else 0.
+    #[inline(always)]
+    pub(crate) fn block_packets(&self, rays: &mut Rays, n: usize) {
+        packets::occluded(&self.accel.shapes, rays, n);
+    }
+
     #[inline(always)]
     fn arrive(&self, o: Vec3, d: Vec3, hit: shape::Hit) -> Vertex {
         let shape = &self.accel.shapes[hit.prim as usize];
@@ -158,7 +195,14 @@ impl Scene {
     /// Whether the segment from `p` to `q` is blocked; both ends are lifted off their surfaces.
     #[inline(always)]
     pub fn blocked(&self, p: Vec3, n: Vec3, q: Vec3, m: Vec3) -> bool {
+        let (o, d) = self.segment(p, n, q, m);
+        self.accel.occluded(o, d)
+    }
+
+    /// Origin and displacement of the segment from `p` to `q`, both ends lifted off their surfaces.
+    #[inline(always)]
+    pub(crate) fn segment(&self, p: Vec3, n: Vec3, q: Vec3, m: Vec3) -> (Vec3, Vec3) {
         let o = self.lift(p, n);
-        self.accel.occluded(o, self.lift(q, m) - o)
+        (o, self.lift(q, m) - o)
     }
 }

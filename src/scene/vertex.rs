@@ -39,6 +39,8 @@ pub(crate) struct Rays {
     pub(crate) prim: Vec<u32>,
     pub(crate) list: Vec<u32>,
     pub(crate) cosine: Vec<f32>,
+    /// Four random numbers each.
+    pub(crate) u: [Vec<f32>; 4],
 }
 
 impl VertexWave {
@@ -51,6 +53,7 @@ impl VertexWave {
         }
         self.rays.t = vec![0.0; n];
         self.rays.cosine = vec![0.0; n];
+        self.rays.u = std::array::from_fn(|_| vec![0.0; n]);
     }
 
     #[inline(always)]

@@ -1,0 +1,135 @@
+//! Rays in packets: every primitive of a small scene against sixteen rays at once.
+//!
+//! The plain twin is [`Accel`](super::accel::Accel), one ray at a time through the tree; both use the same formulas of
+//! [`shape`](super::shape) and give ties to the lower number, so they give the same bits (tested). The loops over lanes are
+//! plain Rust that the compiler vectorises; `pulp` compiles them for several instruction sets and chooses at run time.
+
+use super::shape::Shape;
+use super::vertex::Rays;
+use crate::math::{Columns, Streams};
+use glam::Vec3;
+use pulp::{Arch, Simd};
+
+/// Rays in a packet.
+const LANES: usize = 16;
+/// Beyond this many primitives the tree is faster.
+const SMALL: usize = 64;
+
+/// Whether a scene is worth tracing in packets: few primitives, all of them flat.
+pub(crate) fn suit(shapes: &[Shape]) -> bool {
+    shapes.len() <= SMALL && shapes.iter().all(|s| matches!(s, Shape::Flat(_) | Shape::Triangle(_)))
+}
+
+type Lane = [f32; LANES];
+
+#[inline(always)]
+fn load(column: &[f32], at: usize) -> Lane {
+    let mut lane = [0.0; LANES];
+    lane.copy_from_slice(&column[at..at + LANES]);
+    lane
+}
+
+#[inline(always)]
+fn nearest(
+    meet: impl Fn(Vec3, Vec3) -> (f32, bool),
+    id: u32,
+    o: &[Lane; 3],
+    d: &[Lane; 3],
+    t: &mut Lane,
+    prim: &mut [u32; LANES],
+) {
+    for i in 0..LANES {
+        let (s, met) = meet(Vec3::new(o[0][i], o[1][i], o[2][i]), Vec3::new(d[0][i], d[1][i], d[2][i]));
+        let nearer = met & (s < t[i]);
+        t[i] = if nearer { s } else { t[i] };
+        prim[i] = if nearer { id } else { prim[i] };
+    }
+}
+
+/// The nearest hits of the first `n` rays, `prim = u32::MAX` where there is none. Reads and writes whole packets.
+#[pulp::with_simd(closest = Arch::new())]
+#[inline(always)]
+pub(crate) fn closest_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], rays: &'a mut Rays, n: usize) {
+    for at in (0..n).step_by(LANES) {
+        let o = [load(&rays.o.x, at), load(&rays.o.y, at), load(&rays.o.z, at)];
+        let d = [load(&rays.d.x, at), load(&rays.d.y, at), load(&rays.d.z, at)];
+        let (mut t, mut prim) = ([f32::INFINITY; LANES], [u32::MAX; LANES]);
+        for (id, shape) in shapes.iter().enumerate() {
+            match shape {
+                Shape::Flat(s) => nearest(|o, d| s.meet(o, d), id as u32, &o, &d, &mut t, &mut prim),
+                Shape::Triangle(s) => nearest(|o, d| s.meet(o, d), id as u32, &o, &d, &mut t, &mut prim),
+                Shape::Ball(_) | Shape::Disc(_) => {}
+            }
+        }
+        rays.t[at..at + LANES].copy_from_slice(&t);
+        rays.prim[at..at + LANES].copy_from_slice(&prim);
+    }
+}
+
+#[inline(always)]
+fn block(meet: impl Fn(Vec3, Vec3) -> (f32, bool), r: &[Lane; 6], blocked: &mut [u32; LANES]) {
+    for i in 0..LANES {
+        let (s, met) = meet(Vec3::new(r[0][i], r[1][i], r[2][i]), Vec3::new(r[3][i], r[4][i], r[5][i]));
+        blocked[i] |= u32::from(met & (s < 1.0));
+    }
+}
+
+/// For each of the first `n` rays in `rays.list`: `rays.prim[ray] = 1` where something lies on `o + t·d`, 0 < t < 1, else 0.
+#[pulp::with_simd(occluded = Arch::new())]
+#[inline(always)]
+pub(crate) fn occluded_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], rays: &'a mut Rays, n: usize) {
+    for at in (0..n).step_by(LANES) {
+        let list = &rays.list[at..n.min(at + LANES)];
+        let mut r = [[0.0; LANES]; 6];
+        let columns = [&rays.o.x, &rays.o.y, &rays.o.z, &rays.d.x, &rays.d.y, &rays.d.z];
+        for (lane, column) in r.iter_mut().zip(columns) {
+            for (a, &ray) in lane.iter_mut().zip(list) {
+                *a = column[ray as usize];
+            }
+        }
+        let mut blocked = [0; LANES];
+        for shape in shapes {
+            match shape {
+                Shape::Flat(s) => block(|o, d| s.meet(o, d), &r, &mut blocked),
+                Shape::Triangle(s) => block(|o, d| s.meet(o, d), &r, &mut blocked),
+                Shape::Ball(_) | Shape::Disc(_) => {}
+            }
+        }
+        for (&ray, &b) in list.iter().zip(&blocked) {
+            rays.prim[ray as usize] = b;
+        }
+    }
+}
+
+/// The four numbers of the first draw of every stream, as columns.
+#[pulp::with_simd(numbers = Arch::new())]
+#[inline(always)]
+pub(crate) fn numbers_with_simd<'a, S: Simd>(_simd: S, streams: Streams<'a>, u: &'a mut [Vec<f32>; 4]) {
+    let n = streams.len();
+    let (pixel, sample) = (&streams.pixel[..n], &streams.sample[..n]);
+    let [a, b, c, d] = u.each_mut().map(|u| &mut u[..n]);
+    let streams = Streams { pixel, sample, ..streams };
+    for i in 0..n {
+        [a[i], b[i], c[i], d[i]] = streams.rng(i).four();
+    }
+}
+
+/// Cosine-distributed directions about the normals, from the first two columns of numbers.
+#[pulp::with_simd(cosine_directions = Arch::new())]
+#[inline(always)]
+pub(crate) fn cosine_directions_with_simd<'a, S: Simd>(
+    _simd: S,
+    normals: &'a Columns,
+    u: &'a [Vec<f32>; 4],
+    d: &'a mut Columns,
+    cosine: &'a mut [f32],
+    n: usize,
+) {
+    let (nx, ny, nz) = (&normals.x[..n], &normals.y[..n], &normals.z[..n]);
+    let (dx, dy, dz, cosine) = (&mut d.x[..n], &mut d.y[..n], &mut d.z[..n], &mut cosine[..n]);
+    let (u0, u1) = (&u[0][..n], &u[1][..n]);
+    for i in 0..n {
+        let (v, z) = crate::math::direction::cosine_hemisphere(Vec3::new(nx[i], ny[i], nz[i]), [u0[i], u1[i]]);
+        (dx[i], dy[i], dz[i], cosine[i]) = (v.x, v.y, v.z, z);
+    }
+}
