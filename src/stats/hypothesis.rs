@@ -102,6 +102,9 @@ pub fn critical(level: f64, dof: f64) -> f64 {
     // ln p is a concave, falling function of ln t: from anywhere Newton's method overshoots once at most, then closes in
     // from the right. (The quantile of the library loses its way at ν = 1 and at large ν.)
     let mut t = -Normal::standard().inverse_cdf(0.5 * level);
+    if dof.is_infinite() {
+        return t;
+    }
     for _ in 0..50 {
         let (p, h) = (two_sided_p(t, dof), 1e-4);
         let slope = (two_sided_p(t * (1.0 + h), dof) / two_sided_p(t / (1.0 + h), dof)).ln() / (2.0 * h.ln_1p());

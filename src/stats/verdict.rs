@@ -208,6 +208,7 @@ struct Item {
     functional: String,
     is_image: bool,
     effect: Measured,
+    /// What is no noise and no difference either: discretisation.
     allowance: f64,
     /// What `f32` may lose: never a difference.
     rounding: f64,
@@ -228,6 +229,11 @@ impl Item {
         }
     }
 
+    /// |t|, to order p-values that underflow.
+    fn t(&self) -> f64 {
+        self.effect.mean.abs() / self.effect.std_error
+    }
+
     /// t* s: half the interval, before the allowance.
     fn noise(&self, level: f64) -> f64 {
         if self.effect.std_error == 0.0 { 0.0 } else { critical(level, self.effect.dof) * self.effect.std_error }
@@ -238,44 +244,34 @@ fn judge(family: &[Item], criterion: &Criterion) -> Comparison {
     let adjusted = holm(&family.iter().map(Item::p).collect::<Vec<_>>());
     let images = family.iter().filter(|i| i.is_image).count();
     // α shared over the image means for the intervals, over the whole family for the power to reject
-    let (interval_level, reject_level) = (criterion.alpha / images as f64, criterion.alpha / family.len() as f64);
-    let verdicts: Vec<Verdict> = family
-        .iter()
-        .zip(adjusted)
-        .map(|(item, p)| verdict(item, p, criterion, interval_level, reject_level))
-        .collect();
+    let levels = (criterion.alpha / images as f64, criterion.alpha / family.len() as f64);
 
-    let mut rows: Vec<Verdict> = Vec::new();
-    let mut quantities: Vec<Quantity> = Vec::new();
-    family.iter().for_each(|i| {
-        if !quantities.contains(&i.quantity) {
-            quantities.push(i.quantity);
+    let mut quantities: Vec<Quantity> = family.iter().filter(|i| i.is_image).map(|i| i.quantity).collect();
+    quantities.dedup(); // three channels each
+    let row = |quantity: &Quantity| {
+        let all: Vec<(&Item, f64)> =
+            family.iter().zip(adjusted.iter().copied()).filter(|(i, _)| i.quantity == *quantity).collect();
+        // a rejection anywhere speaks first, by its clearest; then what could not be judged; else the widest image mean
+        let clearest = |a: &&(&Item, f64), b: &&(&Item, f64)| a.1.total_cmp(&b.1).then(b.0.t().total_cmp(&a.0.t()));
+        let rejected = all.iter().filter(|(_, p)| *p <= criterion.alpha).min_by(clearest);
+        let speaker = rejected.or_else(|| all.iter().find(|(_, p)| p.is_nan()));
+        match speaker {
+            Some((item, p)) => Some(verdict(item, *p, criterion, levels)),
+            None => {
+                let reach = |v: &Verdict| v.interval.0.abs().max(v.interval.1.abs()) / v.delta;
+                let images = all.iter().filter(|(i, _)| i.is_image).map(|(i, p)| verdict(i, *p, criterion, levels));
+                images.max_by(|a, b| reach(a).total_cmp(&reach(b)))
+            }
         }
-    });
-    for quantity in quantities {
-        let of_quantity = || family.iter().zip(&verdicts).filter(|(i, _)| i.quantity == quantity);
-        // a rejection anywhere speaks first, the clearest one; then what could not be judged; else the widest image mean
-        let rejected = of_quantity().filter(|(_, v)| v.outcome == Outcome::Differs).min_by(|a, b| {
-            (a.1.p, -a.0.ratio()).partial_cmp(&(b.1.p, -b.0.ratio())).unwrap_or(std::cmp::Ordering::Equal)
-        });
-        let unknown = || of_quantity().find(|(_, v)| v.reason == Some(NO_ERROR) || v.reason == Some(NOT_FINITE));
-        let reach = |v: &Verdict| v.interval.0.abs().max(v.interval.1.abs()) / v.delta;
-        let widest = || of_quantity().filter(|(i, _)| i.is_image).max_by(|a, b| reach(a.1).total_cmp(&reach(b.1)));
-        rows.extend(rejected.or_else(unknown).or_else(widest).map(|(_, v)| v.clone()));
-    }
+    };
+    let rows: Vec<Verdict> = quantities.iter().filter_map(row).collect();
     Comparison { outcome: overall(&rows), rows, family: family.len() }
 }
 
-impl Item {
-    /// |effect| / s, to break ties between p-values that underflow.
-    fn ratio(&self) -> f64 {
-        self.effect.mean.abs() / self.effect.std_error
-    }
-}
-
-fn verdict(item: &Item, p: f64, criterion: &Criterion, interval_level: f64, reject_level: f64) -> Verdict {
-    let (effect, delta) = (item.effect.mean, item.delta);
-    let (noise, reject) = (item.noise(interval_level), item.noise(reject_level));
+/// `levels`: of the interval, of a rejection.
+fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Verdict {
+    let (effect, s, delta) = (item.effect.mean, item.effect.std_error, item.delta);
+    let (noise, reject) = (item.noise(levels.0), item.noise(levels.1));
     let half = noise + item.allowance;
     let outcome = if p <= criterion.alpha {
         Outcome::Differs
@@ -287,14 +283,14 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, interval_level: f64, reje
     // undecided is δ − noise − a < |effect| ≤ reject + a + rounding. That is empty once noise + reject ≤ room, and both
     // fall as 1/√n
     let room = delta - 2.0 * item.allowance - item.rounding;
-    let undecided = outcome == Outcome::Inconclusive;
-    let reason = match () {
-        () if !undecided => None,
-        () if !effect.is_finite() => Some(NOT_FINITE),
-        () if item.effect.std_error.is_nan() => Some(NO_ERROR),
-        () if room <= 0.0 => Some(ALLOWANCE),
-        () => None,
+    let reason = match outcome {
+        Outcome::Agrees | Outcome::Differs => None,
+        Outcome::Inconclusive if !effect.is_finite() => Some(NOT_FINITE),
+        Outcome::Inconclusive if s.is_nan() => Some(NO_ERROR),
+        Outcome::Inconclusive if room <= 0.0 => Some(ALLOWANCE),
+        Outcome::Inconclusive => None,
     };
+    let noise_decides = outcome == Outcome::Inconclusive && reason.is_none();
     Verdict {
         name: item.quantity.name(),
         functional: item.functional.clone(),
@@ -303,10 +299,10 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, interval_level: f64, reje
         p,
         min_detectable: item.allowance
             + item.rounding
-            + power::min_detectable(item.effect.std_error, item.effect.dof, reject_level, criterion.beta),
+            + power::min_detectable(s, item.effect.dof, levels.1, criterion.beta),
         outcome,
         delta,
-        needed_factor: (undecided && reason.is_none()).then(|| ((noise + reject) / room).powi(2)),
+        needed_factor: noise_decides.then(|| ((noise + reject) / room).powi(2)),
         reason,
     }
 }
