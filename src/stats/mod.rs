@@ -1,1 +1,35 @@
-//! (to come)
+//! Do two worlds agree, and how sure are we?
+//!
+//! ```text
+//! effect = ⟨W, T^k E⟩₁ − ⟨W, T^k E⟩₂      Agrees: proved within ±δ      Differs: proved ≠ 0      else Inconclusive
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | x̄, S | mean and covariance over replicates | [`moments`] |
+//! | t, ν, p | tests of one mean against another, Holm's adjustment | [`hypothesis`] |
+//! | δ, α | margin of equivalence, family level: verdicts on whole results | [`verdict`] |
+//! | n, β | sample sizes and what a test could have seen | [`power`] |
+//! | γ | observed rate of decay of the terms | [`decay`] |
+//! | b | slope of the variance against samples | [`slope`] |
+//! | SUITE_ALPHA | significance of this project's own tests | [`ledger`] |
+//!
+//! Two principles. *Not rejected is not agreed*: a verdict of agreement is an equivalence test, and it needs samples.
+//! *Aggregate*: image means, regions and projections are compared, never pixels one by one, because a bias common to
+//! many pixels is invisible in each and obvious in their mean.
+
+pub mod decay;
+pub mod hypothesis;
+pub mod ledger;
+mod line;
+pub mod moments;
+pub mod power;
+pub mod slope;
+pub mod verdict;
+
+pub use decay::{NoRate, Rate, TermMeans, observed_rate, ratio, tail_window};
+pub use hypothesis::{Measured, critical, difference, holm, two_sided_p};
+pub use moments::{Moments, estimate};
+pub use power::{min_detectable, needed_samples};
+pub use slope::{Slope, variance_slope};
+pub use verdict::{Comparison, Criterion, Outcome, Verdict, compare, discretisation};

@@ -1,0 +1,301 @@
+//! The only place where the significance of tests lives.
+//!
+//! ```text
+//! P(some test of a full run fails by chance) ≤ Σ_tests share ≤ SUITE_ALPHA        level of one comparison = share / m
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | SUITE_ALPHA | false alarms per full run | [`SUITE_ALPHA`] |
+//! | share | what one test may spend of it | [`Entry::share`] |
+//! | m | how many scalars it compares (three per RGB value) | [`Entry::comparisons`] |
+//! | t* | critical value of one comparison | [`Entry::threshold`] |
+//!
+//! Bonferroni inside a test and between tests; no independence is needed. A suite of a hundred tests at 1 % each would
+//! raise a false alarm in 63 % of the runs with fresh seeds; fixed seeds only hide that until some innocent change
+//! rolls the dice again.
+//!
+//! **To add a statistical test**, add a line to [`ENTRIES`] (the name is the test function's, so that the replay line
+//! works; three comparisons for every RGB value that it will judge), then:
+//!
+//! ```
+//! # use fredholm::{stats::ledger, terms::Estimate};
+//! # use glam::DVec3;
+//! # let measured = Estimate { mean: DVec3::ONE, std_error: DVec3::splat(1e-4), replicates: 256 };
+//! let mut account = ledger::open("example_of_the_ledger", 0); // in tests/: common::open("…"), which knows the seed
+//! let rng_seed = account.seed();
+//! account.assert_equivalent("T1", &measured, DVec3::ONE, DVec3::splat(0.01));
+//! ```
+//!
+//! `tests/ledger.rs` checks that the shares stay within the budget and that every entry belongs to a test.
+//!
+//! A test of *equivalence* fails by chance only if its noise is too large for δ: plan se ≤ δ / (t* + z_β) with
+//! [`needed_samples`](super::needed_samples). The failure message says whether the values differ or the noise hides the
+//! answer; the cure of the second is samples, never a larger δ or another seed.
+
+use super::hypothesis::{Measured, ROUNDING, critical};
+use crate::terms::Estimate;
+use glam::DVec3;
+
+/// Chance of a false alarm in one full run of the tests.
+pub const SUITE_ALPHA: f64 = 1e-6;
+
+/// What one test may spend.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// Name of the test function.
+    pub name: &'static str,
+    /// Scalar comparisons it makes.
+    pub comparisons: u32,
+    /// Its part of [`SUITE_ALPHA`].
+    pub share: f64,
+}
+
+const fn entry(name: &'static str, comparisons: u32, share: f64) -> Entry {
+    Entry { name, comparisons, share }
+}
+
+/// Every statistical test of the project.
+pub const ENTRIES: &[Entry] = &[
+    entry("example_of_the_ledger", 3, 1e-9),
+    // tests/statistics.rs
+    entry("null_families_are_rejected_at_alpha", 4, 1e-8),
+    entry("true_effects_do_not_raise_false_alarms_elsewhere", 1, 1e-8),
+    entry("p_values_are_uniform_without_an_effect", 8, 1e-8),
+    entry("a_shift_of_three_percent_is_found", 1, 1e-8),
+    entry("the_planned_power_is_reached", 2, 1e-8),
+    entry("rates_have_the_error_they_claim", 4, 1e-8),
+    entry("variance_slopes_have_the_error_they_claim", 2, 1e-8),
+];
+
+impl Entry {
+    /// Two-sided level of one of its comparisons.
+    pub fn level(&self) -> f64 {
+        self.share / f64::from(self.comparisons)
+    }
+
+    /// Critical value of one comparison whose standard error has `dof` degrees of freedom (∞: the normal quantile).
+    pub fn threshold(&self, dof: f64) -> f64 {
+        critical(self.level(), dof)
+    }
+}
+
+/// The entry of a test.
+///
+/// # Panics
+/// If the test is not declared: an undeclared test would spend significance that nobody counts.
+pub fn share(name: &str) -> &'static Entry {
+    let found = ENTRIES.iter().find(|e| e.name == name);
+    found.unwrap_or_else(|| panic!("`{name}` is not in the ledger: add it to ENTRIES in src/stats/ledger.rs"))
+}
+
+/// Opens the account of a test. `base_seed` is 0 unless the run asks for fresh seeds.
+///
+/// # Panics
+/// If the test is not declared.
+pub fn open(name: &str, base_seed: u64) -> Account {
+    Account { entry: *share(name), base_seed, spent: 0 }
+}
+
+/// A test at work: it counts its comparisons and stops at the declared number.
+#[derive(Debug)]
+pub struct Account {
+    entry: Entry,
+    base_seed: u64,
+    spent: u32,
+}
+
+impl Account {
+    /// The seed of this test: its own, so that no other test can shift its numbers. FNV-1a of the name, then of the
+    /// base seed.
+    pub fn seed(&self) -> u64 {
+        let bytes = self.entry.name.bytes().chain(self.base_seed.to_le_bytes());
+        bytes.fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
+    }
+
+    /// Takes `n` comparisons from the account and returns the level of each.
+    ///
+    /// # Panics
+    /// If the test declared fewer.
+    pub fn spend(&mut self, n: u32) -> f64 {
+        self.spent += n;
+        let Entry { name, comparisons, .. } = self.entry;
+        assert!(self.spent <= comparisons, "`{name}` makes more than the {comparisons} comparisons it declared");
+        self.entry.level()
+    }
+
+    /// Passes only if `estimate` lies within ±`delta` of `truth` in every channel, with its whole interval at the
+    /// ledger's level. `delta` is absolute: `truth * 0.01` for one percent.
+    ///
+    /// # Panics
+    /// If not; the message tells a difference from a lack of samples.
+    #[track_caller]
+    pub fn assert_equivalent(&mut self, what: &str, estimate: &Estimate, truth: DVec3, delta: DVec3) {
+        self.each_channel(what, estimate, truth, |m, half, c| {
+            let effect = (m.mean - truth[c]).abs();
+            if effect + half <= delta[c] {
+                Ok(())
+            } else if effect > half {
+                Err(format!("differs (δ = {:.6e})", delta[c]))
+            } else {
+                let factor = (2.0 * half / delta[c]).powi(2);
+                Err(format!("noise hides δ = {:.6e}: needs {factor:.1} times the samples", delta[c]))
+            }
+        });
+    }
+
+    /// Passes if the interval of `estimate` at the ledger's level contains `truth`, up to [`ROUNDING`]. It says nothing
+    /// about the size of a difference that it did not find: prefer [`Account::assert_equivalent`].
+    ///
+    /// # Panics
+    /// If not.
+    #[track_caller]
+    pub fn assert_consistent(&mut self, what: &str, estimate: &Estimate, truth: DVec3) {
+        self.each_channel(what, estimate, truth, |m, half, c| {
+            let inside = (m.mean - truth[c]).abs() <= half + ROUNDING * truth[c].abs();
+            if inside { Ok(()) } else { Err("differs".into()) }
+        });
+    }
+
+    /// Passes if `estimate` is told apart from `truth` in at least one channel: the proof that a test can see a bug. It
+    /// fails by chance with the power it lacks, so plan for β ≤ the level.
+    ///
+    /// # Panics
+    /// If the difference is not seen.
+    #[track_caller]
+    pub fn assert_differs(&mut self, what: &str, estimate: &Estimate, truth: DVec3) {
+        let level = self.spend(3);
+        let seen = (0..3).any(|c| {
+            let m = Measured::of(estimate, c);
+            (m.mean - truth[c]).abs() > half_width(m, level) + ROUNDING * truth[c].abs()
+        });
+        assert!(seen, "{}", self.message(what, "is not told apart", estimate, truth));
+    }
+
+    #[track_caller]
+    fn each_channel(
+        &mut self,
+        what: &str,
+        estimate: &Estimate,
+        truth: DVec3,
+        judge: impl Fn(Measured, f64, usize) -> Result<(), String>,
+    ) {
+        let level = self.spend(3);
+        for c in 0..3 {
+            let m = Measured::of(estimate, c);
+            if let Err(verdict) = judge(m, half_width(m, level), c) {
+                let channel = ["red", "green", "blue"][c];
+                panic!("{}", self.message(&format!("{what}, {channel}"), &verdict, estimate, truth));
+            }
+        }
+    }
+
+    /// What a failed comparison prints.
+    fn message(&self, what: &str, verdict: &str, estimate: &Estimate, truth: DVec3) -> String {
+        let sigmas = (estimate.mean - truth) / estimate.std_error;
+        format!(
+            "{what}: {verdict}\n  expected  {truth}\n  got       {}\n  std error {} ({} replicates)\n  effect    {} std \
+             errors, level {:.1e} each\n  seed      {}\n  replay    FREDHOLM_SEED={} cargo test --release {}",
+            estimate.mean,
+            estimate.std_error,
+            estimate.replicates,
+            sigmas,
+            self.entry.level(),
+            self.seed(),
+            self.base_seed,
+            self.entry.name
+        )
+    }
+}
+
+/// t* s; 0 for an exact value.
+fn half_width(m: Measured, level: f64) -> f64 {
+    if m.std_error == 0.0 { 0.0 } else { critical(level, m.dof) * m.std_error }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    /// The message of the panic, or "" if it passes. Names the account that the example in the module text owns.
+    fn outcome(judge: impl FnOnce(&mut Account)) -> String {
+        let mut account = open("example_of_the_ledger", 7);
+        match catch_unwind(AssertUnwindSafe(|| judge(&mut account))) {
+            Ok(()) => String::new(),
+            Err(e) => e.downcast_ref::<String>().cloned().unwrap(),
+        }
+    }
+
+    fn measured(mean: f64, std_error: f64) -> Estimate {
+        Estimate { mean: DVec3::splat(mean), std_error: DVec3::splat(std_error), replicates: 256 }
+    }
+
+    const ONE: DVec3 = DVec3::ONE;
+
+    #[test]
+    fn equivalence_needs_the_whole_interval_inside() {
+        let t = share("example_of_the_ledger").threshold(255.0);
+        let delta = DVec3::splat(0.01);
+        let edge = (0.01 - 0.002) / t;
+        assert_eq!(outcome(|a| a.assert_equivalent("T1", &measured(1.002, 0.999 * edge), ONE, delta)), "");
+        let hidden = outcome(|a| a.assert_equivalent("T1", &measured(1.002, 1.001 * edge), ONE, delta));
+        assert!(hidden.contains("noise hides"), "{hidden}");
+        let off = outcome(|a| a.assert_equivalent("T1", &measured(1.02, edge), ONE, delta));
+        assert!(off.contains("differs") && off.contains("expected") && off.contains("1.02"), "{off}");
+        assert!(off.contains("FREDHOLM_SEED=7 cargo test --release example_of_the_ledger"), "{off}");
+    }
+
+    #[test]
+    fn consistency_and_difference_split_at_the_critical_value() {
+        let t = share("example_of_the_ledger").threshold(255.0);
+        let (inside, outside) = (measured(1.0 + 0.999 * t * 0.01, 0.01), measured(1.0 - 1.001 * t * 0.01, 0.01));
+        assert_eq!(outcome(|a| a.assert_consistent("T1", &inside, ONE)), "");
+        assert!(outcome(|a| a.assert_consistent("T1", &outside, ONE)).contains("differs"));
+        assert_eq!(outcome(|a| a.assert_differs("T1", &outside, ONE)), "");
+        assert!(outcome(|a| a.assert_differs("T1", &inside, ONE)).contains("is not told apart"));
+    }
+
+    #[test]
+    fn values_without_noise_pass_to_rounding_only() {
+        let exact = |x| Estimate::exact(DVec3::splat(x));
+        assert_eq!(outcome(|a| a.assert_consistent("T1", &exact(1.0 + 0.9 * ROUNDING), ONE)), "");
+        assert_ne!(outcome(|a| a.assert_consistent("T1", &exact(1.0 + 1.1 * ROUNDING), ONE)), "");
+    }
+
+    #[test]
+    fn nan_never_passes() {
+        for broken in
+            [measured(f64::NAN, 0.1), measured(1.0, f64::NAN), Estimate { replicates: 1, ..measured(1.0, 0.1) }]
+        {
+            assert_ne!(outcome(|a| a.assert_equivalent("x", &broken, ONE, ONE)), "");
+            assert_ne!(outcome(|a| a.assert_consistent("x", &broken, ONE)), "");
+            assert_ne!(outcome(|a| a.assert_differs("x", &broken, 2.0 * ONE)), "");
+        }
+    }
+
+    #[test]
+    fn an_account_cannot_be_overdrawn() {
+        let message = outcome(|a| {
+            a.assert_consistent("first", &measured(1.0, 0.1), ONE);
+            a.assert_consistent("second", &measured(1.0, 0.1), ONE);
+        });
+        assert!(message.contains("more than the 3 comparisons"), "{message}");
+    }
+
+    #[test]
+    #[should_panic(expected = "not in the ledger")]
+    fn an_undeclared_test_is_refused() {
+        let _ = share("nobody declared me");
+    }
+
+    #[test]
+    fn seeds_belong_to_names_and_to_runs() {
+        let seed = |name, base| open(name, base).seed();
+        let a = seed("example_of_the_ledger", 0);
+        assert_eq!(a, seed("example_of_the_ledger", 0));
+        assert_ne!(a, seed("example_of_the_ledger", 1));
+        assert_ne!(a, seed(ENTRIES[1].name, 0));
+    }
+}

@@ -1,0 +1,93 @@
+//! How fast does the variance fall?
+//!
+//! ```text
+//! ln V(n) = ln c + b ln n      b = −1: independent samples;  b < −1: stratified or low-discrepancy points
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | V(n) | variance of the mean of n samples, estimated from R replicates | `points` |
+//! | ν | degrees of freedom of each V(n) | `dof` |
+//! | b | the slope | [`Slope::slope`] |
+//!
+//! A variance from ν degrees of freedom follows V χ²_ν/ν, so ln V(n) has the variance ψ′(ν/2) ≈ 2/ν + 2/ν² whatever V
+//! is, and the points have equal weight. They share their replicates: V(n) is read off the running means at n = 1, 2,
+//! 4, …. The means at n ≤ m of independent samples correlate by √(n/m), and their sample variances by the square of
+//! that, so the fit uses Cov(ln V(n), ln V(m)) = (2/ν + 2/ν²) · n/m. **Approximation:** the matrix is exact to this order
+//! for independent samples; stratified and low-discrepancy points forget their past faster, for them it is too large.
+
+use super::line;
+use nalgebra::DMatrix;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// A slope in log-log scale with its error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slope {
+    /// b.
+    pub slope: f64,
+    /// Standard error of b.
+    pub std_error: f64,
+    /// ln c: the fitted logarithm of V(1).
+    pub intercept: f64,
+    /// Misfit; about `points − 2` if the curve is a power law.
+    pub chi_squared: f64,
+    /// P(misfit at least this large | power law). NaN with two points.
+    pub p: f64,
+}
+
+/// Fits b to `points` = (n, V(n)). `dof` is R − 1 for the variance of one functional; for a variance averaged over
+/// pixels it lies between R − 1 and pixels × (R − 1), and R − 1 is the cautious choice.
+///
+/// None with fewer than two different n, or if a variance is not positive and finite (a zero-variance estimator has no
+/// slope).
+pub fn variance_slope(points: &[(f64, f64)], dof: f64) -> Option<Slope> {
+    if points.iter().any(|&(n, v)| !(n > 0.0 && v > 0.0 && n.is_finite() && v.is_finite())) {
+        return None;
+    }
+    let x: Vec<f64> = points.iter().map(|p| p.0.ln()).collect();
+    let y: Vec<f64> = points.iter().map(|p| p.1.ln()).collect();
+    let relative = 2.0 / dof + 2.0 / (dof * dof);
+    let covariance = DMatrix::from_fn(x.len(), x.len(), |i, j| relative * (-(x[i] - x[j]).abs()).exp());
+    let line = line::fit(&x, &y, covariance)?;
+    let p = ChiSquared::new(x.len() as f64 - 2.0).map_or(f64::NAN, |d| d.sf(line.chi_squared));
+    Some(Slope {
+        slope: line.slope,
+        std_error: line.std_error,
+        intercept: line.intercept,
+        chi_squared: line.chi_squared,
+        p,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn an_exact_power_law_is_found() {
+        for b in [-1.0, -1.5, -3.0] {
+            let points: Vec<_> = (0..6).map(|i| f64::from(1 << i)).map(|n| (n, 7.0 * n.powf(b))).collect();
+            let s = variance_slope(&points, 15.0).unwrap();
+            assert!((s.slope - b).abs() < 1e-12 && (s.intercept - 7f64.ln()).abs() < 1e-12);
+            assert!(s.chi_squared < 1e-20 && s.p > 0.999);
+        }
+    }
+
+    #[test]
+    fn two_points_by_hand() {
+        // Var(y₂ − y₁) = 2 r (1 − n/m), r = 2/ν + 2/ν²
+        let s = variance_slope(&[(1.0, 8.0), (4.0, 2.0)], 10.0).unwrap();
+        let r: f64 = 0.22;
+        assert!((s.slope + 1.0).abs() < 1e-12);
+        assert!((s.std_error - (2.0 * r * 0.75).sqrt() / 4f64.ln()).abs() < 1e-12);
+        assert!(s.p.is_nan());
+    }
+
+    #[test]
+    fn no_slope_without_variance() {
+        assert!(variance_slope(&[(1.0, 0.0), (2.0, 0.0)], 15.0).is_none());
+        assert!(variance_slope(&[(1.0, f64::NAN), (2.0, 1.0)], 15.0).is_none());
+        assert!(variance_slope(&[(1.0, 1.0)], 15.0).is_none());
+    }
+}

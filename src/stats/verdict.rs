@@ -1,0 +1,319 @@
+//! Do two worlds agree, term by term?
+//!
+//! ```text
+//! Differs        some comparison is rejected by Holm at the family level α
+//! Agrees         none is, and |effect| + t* s + a ≤ δ for every image mean
+//! Inconclusive   neither: the noise hides an effect as large as δ
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | effect | first world − second world | [`Verdict::effect`] |
+//! | s, ν | standard error of the effect, its degrees of freedom | [`difference`](super::difference) |
+//! | a | allowance: an error that is no noise (discretisation) | [`compare`] |
+//! | δ | 2 % of the term + 10⁻⁴ of the whole image, per channel | [`Criterion`] |
+//! | α | chance that two equal worlds are told apart anywhere in the whole family | [`Criterion::alpha`] |
+//! | t* | critical value at α over the number of image means: the intervals hold all at once | [`Verdict::interval`] |
+//!
+//! The family is every functional (image mean, regions, projections) × every quantity (terms, tail, sum, total) ×
+//! channel. All of it can reject. Only image means must also *prove* agreement: a region sees more noise, and that no
+//! test rejected it proves nothing. Two one-sided tests as one interval: Schuirmann, *J. Pharmacokinetics and
+//! Biopharmaceutics* 15 (1987).
+
+use super::hypothesis::{Measured, ROUNDING, critical, difference, holm, two_sided_p};
+use super::power;
+use crate::terms::{Estimate, Functional, Series};
+use glam::DVec3;
+use serde::Serialize;
+
+/// What a comparison found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// Equal within δ, proved.
+    Agrees,
+    /// Different, proved.
+    Differs,
+    /// The samples do not decide.
+    Inconclusive,
+}
+
+/// The thresholds of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Criterion {
+    /// δ as a fraction of the term.
+    pub of_term: f64,
+    /// δ as a fraction of the whole image, added.
+    pub of_total: f64,
+    /// Family level.
+    pub alpha: f64,
+    /// β of [`Verdict::min_detectable`]: chance to miss an effect of that size.
+    pub beta: f64,
+}
+
+impl Default for Criterion {
+    fn default() -> Self {
+        Self { of_term: 0.02, of_total: 1e-4, alpha: 1e-3, beta: 1e-3 }
+    }
+}
+
+/// One comparison, or one row that speaks for many.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verdict {
+    /// `T0`, `T1`, …, `tail`, `sum`, `total`.
+    pub name: String,
+    /// The functional and channel the numbers belong to: `image, red`.
+    pub functional: String,
+    /// First − second.
+    pub effect: f64,
+    /// Where the effect lies, all image means at once at level 1 − α; widened by the allowance.
+    pub interval: (f64, f64),
+    /// Holm-adjusted p-value: rejected if ≤ α.
+    pub p: f64,
+    /// Smallest true effect that would have been rejected with probability 1 − β.
+    pub min_detectable: f64,
+    /// What was found.
+    pub outcome: Outcome,
+    /// The margin of equivalence.
+    pub delta: f64,
+    /// If inconclusive: with this many times the samples one of the other outcomes is certain, whatever the effect.
+    /// None if no number of samples will do.
+    pub needed_factor: Option<f64>,
+    /// If inconclusive for another reason than noise: which.
+    pub reason: Option<&'static str>,
+}
+
+/// The comparison of two results.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// One row per quantity, in the words of its worst functional and channel.
+    pub rows: Vec<Verdict>,
+    /// How many scalar comparisons share α.
+    pub family: usize,
+    /// Differs if any row does; Agrees if every row does.
+    pub outcome: Outcome,
+}
+
+/// `Some(reason)` texts of [`Verdict::reason`].
+const NO_ERROR: &str = "the standard error is unknown: one replicate only (raise the samples per pixel)";
+const NOT_FINITE: &str = "a mean is not finite";
+const ALLOWANCE: &str = "the allowance for discretisation alone exceeds what δ can resolve: refine the mesh";
+
+const CHANNELS: [&str; 3] = ["red", "green", "blue"];
+
+/// Compares every quantity that both results have. `allowance` holds, as the means of functionals, an absolute error
+/// that is not noise, such as [`discretisation`]; a functional not named there takes the first one's. Empty: none.
+///
+/// K may differ: the common terms are compared, but then `tail` and `sum` mean different things and are left out. The
+/// path tracer has no terms: against it only `total` is compared. With nothing in common the outcome is Inconclusive.
+///
+/// Values without error on both sides agree if they are equal to [`ROUNDING`] of the whole image and differ otherwise,
+/// whatever δ: there is no noise to excuse them.
+pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Functional]) -> Comparison {
+    let mut family = Vec::new();
+    let (Some(image_a), Some(image_b)) = (a.functionals.first(), b.functionals.first()) else {
+        return Comparison { rows: Vec::new(), family: 0, outcome: Outcome::Inconclusive };
+    };
+    let delta_of = |q: Quantity| margin(criterion, q, image_a, image_b);
+    for (i, fa) in a.functionals.iter().enumerate() {
+        let Some(fb) = b.functionals.iter().find(|f| f.name == fa.name) else { continue };
+        let allowed = allowance.iter().find(|f| f.name == fa.name).or(allowance.first());
+        for quantity in shared_quantities(fa, fb) {
+            let (Some(x), Some(y)) = (quantity.of(fa), quantity.of(fb)) else { continue };
+            let extra = allowed.and_then(|f| quantity.of(f)).map_or(DVec3::ZERO, |e| e.mean.abs());
+            let whole = 0.5 * (image_a.total.mean.abs() + image_b.total.mean.abs());
+            for (c, channel) in CHANNELS.iter().enumerate() {
+                family.push(Item {
+                    quantity,
+                    functional: format!("{}, {channel}", fa.name),
+                    is_image: i == 0,
+                    effect: difference(Measured::of(&x, c), Measured::of(&y, c)),
+                    allowance: extra[c],
+                    rounding: ROUNDING * whole[c],
+                    delta: delta_of(quantity)[c].max(ROUNDING * whole[c]),
+                });
+            }
+        }
+    }
+    judge(&family, criterion)
+}
+
+/// |fine − coarse| of two meshes of one world, as an allowance: where the error falls at least as fast as h, the finer
+/// mesh is closer to the limit than the two are to each other.
+pub fn discretisation(fine: &Series, coarse: &Series) -> Vec<Functional> {
+    let gap = |a: &Estimate, b: &Estimate| Estimate::exact((a.mean - b.mean).abs());
+    let functional = |f: &Functional| {
+        let c = coarse.functionals.iter().find(|c| c.name == f.name)?;
+        Some(Functional {
+            name: f.name.clone(),
+            terms: f.terms.iter().zip(&c.terms).map(|(a, b)| gap(a, b)).collect(),
+            tail: gap(&f.tail, &c.tail),
+            sum: gap(&f.sum, &c.sum),
+            total: gap(&f.total, &c.total),
+        })
+    };
+    fine.functionals.iter().filter_map(functional).collect()
+}
+
+/// What of a functional is compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Quantity {
+    Term(usize),
+    Tail,
+    Sum,
+    Total,
+}
+
+impl Quantity {
+    fn of(self, f: &Functional) -> Option<Estimate> {
+        match self {
+            Self::Term(k) => f.terms.get(k).copied(),
+            Self::Tail => Some(f.tail),
+            Self::Sum => Some(f.sum),
+            Self::Total => Some(f.total),
+        }
+    }
+
+    fn name(self) -> String {
+        match self {
+            Self::Term(k) => format!("T{k}"),
+            Self::Tail => "tail".into(),
+            Self::Sum => "sum".into(),
+            Self::Total => "total".into(),
+        }
+    }
+}
+
+fn shared_quantities(a: &Functional, b: &Functional) -> Vec<Quantity> {
+    let mut all: Vec<_> = (0..a.terms.len().min(b.terms.len())).map(Quantity::Term).collect();
+    if !all.is_empty() && a.terms.len() == b.terms.len() {
+        all.extend([Quantity::Tail, Quantity::Sum]);
+    }
+    all.push(Quantity::Total);
+    all
+}
+
+/// δ: always from the image means, so that a projection, whose value is near zero, has the margin of its term.
+fn margin(criterion: &Criterion, quantity: Quantity, a: &Functional, b: &Functional) -> DVec3 {
+    let size = |q: Quantity| {
+        let abs = |f| q.of(f).map_or(DVec3::ZERO, |e| e.mean.abs());
+        0.5 * (abs(a) + abs(b))
+    };
+    criterion.of_term * size(quantity) + criterion.of_total * size(Quantity::Total)
+}
+
+/// One member of the family.
+struct Item {
+    quantity: Quantity,
+    functional: String,
+    is_image: bool,
+    effect: Measured,
+    /// What is no noise and no difference either: discretisation.
+    allowance: f64,
+    /// What `f32` may lose: never a difference.
+    rounding: f64,
+    delta: f64,
+}
+
+impl Item {
+    /// P(an effect at least this large | the true effect is within allowance and rounding). Without noise it is 0 or 1.
+    fn p(&self) -> f64 {
+        let excess = self.effect.mean.abs() - self.allowance - self.rounding;
+        let s = self.effect.std_error;
+        if excess.is_nan() || s.is_nan() {
+            f64::NAN
+        } else if excess <= 0.0 {
+            1.0
+        } else {
+            two_sided_p(excess / s, self.effect.dof) // s = 0: t = ∞
+        }
+    }
+
+    /// |t|, to order p-values that underflow.
+    fn t(&self) -> f64 {
+        self.effect.mean.abs() / self.effect.std_error
+    }
+
+    /// t* s: half the interval, before the allowance.
+    fn noise(&self, level: f64) -> f64 {
+        if self.effect.std_error == 0.0 { 0.0 } else { critical(level, self.effect.dof) * self.effect.std_error }
+    }
+}
+
+fn judge(family: &[Item], criterion: &Criterion) -> Comparison {
+    let adjusted = holm(&family.iter().map(Item::p).collect::<Vec<_>>());
+    let images = family.iter().filter(|i| i.is_image).count();
+    // α shared over the image means for the intervals, over the whole family for the power to reject
+    let levels = (criterion.alpha / images as f64, criterion.alpha / family.len() as f64);
+
+    let mut quantities: Vec<Quantity> = family.iter().filter(|i| i.is_image).map(|i| i.quantity).collect();
+    quantities.dedup(); // three channels each
+    let row = |quantity: &Quantity| {
+        let all: Vec<(&Item, f64)> =
+            family.iter().zip(adjusted.iter().copied()).filter(|(i, _)| i.quantity == *quantity).collect();
+        // a rejection anywhere speaks first, by its clearest; then what could not be judged; else the widest image mean
+        let clearest = |a: &&(&Item, f64), b: &&(&Item, f64)| a.1.total_cmp(&b.1).then(b.0.t().total_cmp(&a.0.t()));
+        let rejected = all.iter().filter(|(_, p)| *p <= criterion.alpha).min_by(clearest);
+        let speaker = rejected.or_else(|| all.iter().find(|(_, p)| p.is_nan()));
+        match speaker {
+            Some((item, p)) => Some(verdict(item, *p, criterion, levels)),
+            None => {
+                let reach = |v: &Verdict| v.interval.0.abs().max(v.interval.1.abs()) / v.delta;
+                let images = all.iter().filter(|(i, _)| i.is_image).map(|(i, p)| verdict(i, *p, criterion, levels));
+                images.max_by(|a, b| reach(a).total_cmp(&reach(b)))
+            }
+        }
+    };
+    let rows: Vec<Verdict> = quantities.iter().filter_map(row).collect();
+    Comparison { outcome: overall(&rows), rows, family: family.len() }
+}
+
+/// `levels`: of the interval, of a rejection.
+fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Verdict {
+    let (effect, s, delta) = (item.effect.mean, item.effect.std_error, item.delta);
+    let (noise, reject) = (item.noise(levels.0), item.noise(levels.1));
+    let half = noise + item.allowance;
+    let outcome = if p <= criterion.alpha {
+        Outcome::Differs
+    } else if effect.abs() + half <= delta {
+        Outcome::Agrees
+    } else {
+        Outcome::Inconclusive
+    };
+    // undecided is δ − noise − a < |effect| ≤ reject + a + rounding. That is empty once noise + reject ≤ room, and both
+    // fall as 1/√n
+    let room = delta - 2.0 * item.allowance - item.rounding;
+    let reason = match outcome {
+        Outcome::Agrees | Outcome::Differs => None,
+        Outcome::Inconclusive if !effect.is_finite() => Some(NOT_FINITE),
+        Outcome::Inconclusive if s.is_nan() => Some(NO_ERROR),
+        Outcome::Inconclusive if room <= 0.0 => Some(ALLOWANCE),
+        Outcome::Inconclusive => None,
+    };
+    let noise_decides = outcome == Outcome::Inconclusive && reason.is_none();
+    Verdict {
+        name: item.quantity.name(),
+        functional: item.functional.clone(),
+        effect,
+        interval: (effect - half, effect + half),
+        p,
+        min_detectable: item.allowance
+            + item.rounding
+            + power::min_detectable(s, item.effect.dof, levels.1, criterion.beta),
+        outcome,
+        delta,
+        needed_factor: noise_decides.then(|| ((noise + reject) / room).powi(2)),
+        reason,
+    }
+}
+
+fn overall(rows: &[Verdict]) -> Outcome {
+    let any = |o| rows.iter().any(|r| r.outcome == o);
+    if any(Outcome::Differs) {
+        Outcome::Differs
+    } else if rows.is_empty() || any(Outcome::Inconclusive) {
+        Outcome::Inconclusive
+    } else {
+        Outcome::Agrees
+    }
+}
