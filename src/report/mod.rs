@@ -1,1 +1,36 @@
-//! (to come)
+//! What a reader sees: pictures, plots, tables, and the files that hold them.
+//!
+//! Everything here consumes plain data and returns plain data or a file. Nothing upstream imports from this folder,
+//! nothing here prints, and equal input gives equal bytes: no time stamps, no system fonts, no hash order.
+//!
+//! | file | module |
+//! |---|---|
+//! | `terms.exr` | [`exr`] |
+//! | `T00.png`, `terms.png`, `partial_00.png` | [`picture`], [`sheet`] |
+//! | z maps of `compare` | [`zmap`] |
+//! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
+//! | `summary.json` | [`summary`] |
+//! | `index.html` | [`html`] |
+//! | tables on the terminal | [`table`] |
+
+mod axis;
+mod base64;
+pub mod decay;
+mod error;
+pub mod exr;
+mod files;
+pub mod html;
+mod interval;
+mod null_as_nan;
+pub mod picture;
+pub mod plot;
+pub mod sheet;
+pub mod summary;
+pub mod table;
+pub mod typeset;
+pub mod variance;
+pub mod zmap;
+
+pub use error::ReportError;
+pub use files::write_atomically;
+pub use interval::half_width_95;

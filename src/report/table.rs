@@ -1,0 +1,187 @@
+//! Tables for the terminal: aligned, at most 100 columns wide, made of text only.
+//!
+//! One number per term stands for the colour: the mean of the three channels. Its error is the mean of the three
+//! errors, which bounds the true one whatever the correlation of the channels (triangle inequality of the L2 norm).
+//! A dash means "not known", never zero.
+
+use super::{
+    half_width_95,
+    summary::{Outcome, Verdict},
+};
+use crate::terms::{Estimate, Functional};
+
+/// The series of one world: a row per term, then the tail and the sums.
+///
+/// `rays` counts the rays spent on each k; with an empty slice the column is left out.
+///
+/// ```
+/// use fredholm::{report::table::series, terms::{Estimate, Functional}};
+/// use glam::DVec3;
+/// let terms: Vec<_> = [1.0, 0.5, 0.25].map(|v| Estimate::exact(DVec3::splat(v))).into();
+/// let of = |v: f64| Estimate::exact(DVec3::splat(v));
+/// let furnace = Functional { name: "image".into(), terms, tail: of(0.25), sum: of(1.75), total: of(2.0) };
+/// let table = series("furnace", &furnace, &[]);
+/// assert!(table.lines().any(|l| l.split_whitespace().eq(["1", "0.5000", "0", "0.5000", "25.0", "%"])));
+/// ```
+pub fn series(label: &str, functional: &Functional, rays: &[u64]) -> String {
+    let total = average(&functional.total).0;
+    let mut rows = vec![["k", "mean", "± 95 %", "ratio", "share", "rays"].map(String::from)];
+    let mut push = |name: String, estimate: &Estimate, ratio: String, rays: String| {
+        let (mean, half) = average(estimate);
+        let share = if total == 0.0 { dash() } else { format!("{:.1} %", 100.0 * mean / total) };
+        rows.push([name, significant(mean, 4), known(half), ratio, share, rays]);
+    };
+    let mut previous: Option<f64> = None;
+    for (k, term) in functional.terms.iter().enumerate() {
+        let mean = average(term).0;
+        let ratio = previous.filter(|&p| p != 0.0).map_or_else(dash, |p| significant(mean / p, 4));
+        push(k.to_string(), term, ratio, rays.get(k).map_or_else(dash, |&n| count(n)));
+        previous = Some(mean);
+    }
+    if let Some(last) = functional.terms.len().checked_sub(1) {
+        push(format!("k > {last}"), &functional.tail, String::new(), String::new());
+        push(format!("Σ k ≤ {last}"), &functional.sum, String::new(), String::new());
+    }
+    push("all".into(), &functional.total, String::new(), String::new());
+    let columns = if rays.is_empty() { 5 } else { 6 };
+    let rows: Vec<Vec<String>> = rows.into_iter().map(|row| row.into_iter().take(columns).collect()).collect();
+    format!("{label}\n{}", aligned(&rows, &[Side::Right; 6]))
+}
+
+/// The verdicts of a comparison.
+pub fn verdicts(verdicts: &[Verdict]) -> String {
+    let header = ["what", "difference", "95 % interval", "p", "detectable", "verdict"];
+    let mut rows = vec![header.map(String::from).to_vec()];
+    rows.extend(verdicts.iter().map(|v| {
+        let interval = format!("[{}, {}]", signed(v.interval.0), signed(v.interval.1));
+        let words = format!("{} {}", mark(v.outcome), outcome(v.outcome));
+        vec![shortened(&v.name, 34), signed(v.effect), interval, p_value(v.p), known(v.min_detectable), words]
+    }));
+    aligned(&rows, &[Side::Left, Side::Right, Side::Left, Side::Right, Side::Right, Side::Left])
+}
+
+/// The word of an outcome.
+pub fn outcome(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Agrees => "agrees",
+        Outcome::Differs => "differs",
+        Outcome::Inconclusive => "inconclusive",
+    }
+}
+
+/// The sign of an outcome.
+pub fn mark(outcome: Outcome) -> char {
+    match outcome {
+        Outcome::Agrees => '✓',
+        Outcome::Differs => '✗',
+        Outcome::Inconclusive => '?',
+    }
+}
+
+/// Mean over the channels and half width of its 95 % interval (NaN: not known).
+pub fn average(estimate: &Estimate) -> (f64, f64) {
+    let mean = estimate.mean.element_sum() / 3.0;
+    let std_error = estimate.std_error.element_sum() / 3.0;
+    (mean, half_width_95(std_error, estimate.replicates))
+}
+
+/// A number with `digits` significant digits; powers of ten outside 10⁻³ … 10⁵.
+///
+/// ```
+/// use fredholm::report::table::significant;
+/// assert_eq!(significant(0.123456, 3), "0.123");
+/// assert_eq!(significant(99.996, 4), "100.0");
+/// assert_eq!(significant(1.234e-5, 3), "1.23e-5");
+/// assert_eq!(significant(0.0, 3), "0");
+/// ```
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    if !value.is_finite() {
+        return value.to_string();
+    }
+    // Let the formatter round first, so that 9.9996 counts as 10.00.
+    let scientific = format!("{value:.*e}", digits - 1);
+    let exponent: i32 = scientific.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
+    if !(-3..5).contains(&exponent) {
+        return scientific;
+    }
+    let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// A count in thousands, millions or billions.
+///
+/// ```
+/// assert_eq!(fredholm::report::table::count(16_777_216), "16.8 M");
+/// assert_eq!(fredholm::report::table::count(999), "999");
+/// ```
+pub fn count(n: u64) -> String {
+    let value = n as f64;
+    let (scaled, unit) = match n {
+        0..1_000 => return n.to_string(),
+        1_000..999_950 => (value / 1e3, "k"),
+        999_950..999_950_000 => (value / 1e6, "M"),
+        _ => (value / 1e9, "G"),
+    };
+    format!("{scaled:.1} {unit}")
+}
+
+/// A p value: small ones as powers of ten.
+pub(super) fn p_value(p: f64) -> String {
+    if p.is_nan() { dash() } else { significant(p, 2) }
+}
+
+/// Three digits and a sign; a dash where nothing is known.
+pub(super) fn signed(value: f64) -> String {
+    if value.is_nan() {
+        return dash();
+    }
+    let sign = if value > 0.0 { "+" } else { "" };
+    format!("{sign}{}", significant(value, 3))
+}
+
+/// Two digits; a dash where nothing is known.
+pub(super) fn known(value: f64) -> String {
+    if value.is_nan() { dash() } else { significant(value, 2) }
+}
+
+fn dash() -> String {
+    "–".into()
+}
+
+fn shortened(text: &str, longest: usize) -> String {
+    if text.chars().count() <= longest {
+        return text.into();
+    }
+    text.chars().take(longest - 1).chain(['…']).collect()
+}
+
+#[derive(Clone, Copy)]
+enum Side {
+    Left,
+    Right,
+}
+
+/// Rows as lines, two blanks between columns, a rule under the header.
+fn aligned(rows: &[Vec<String>], sides: &[Side]) -> String {
+    let columns = rows.first().map_or(0, Vec::len);
+    let width = |c: usize| rows.iter().map(|row| row[c].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut out = String::new();
+    for (i, row) in rows.iter().enumerate() {
+        let cells = row.iter().zip(&widths).zip(sides).map(|((text, &w), side)| match side {
+            Side::Left => format!("{text:<w$}"),
+            Side::Right => format!("{text:>w$}"),
+        });
+        let line = cells.collect::<Vec<_>>().join("  ");
+        out.push_str(line.trim_end());
+        out.push('\n');
+        if i == 0 {
+            out.push_str(&"─".repeat(widths.iter().sum::<usize>() + 2 * (columns.max(1) - 1)));
+            out.push('\n');
+        }
+    }
+    out
+}

@@ -1,0 +1,175 @@
+//! Text in pictures and plots: the DejaVu fonts built into the program, so that every machine draws the same letters.
+//!
+//! Layout is done in SVG and rasterised by `resvg`; no system font is ever consulted. Lengths are CSS pixels.
+
+use std::{
+    fmt::Write,
+    sync::{Arc, OnceLock},
+};
+
+use plotters::style::{FontStyle, IntoFont, register_font};
+use resvg::{tiny_skia, usvg};
+
+use super::{ReportError, picture::Picture};
+
+/// Family of labels and titles.
+pub const SANS: &str = "DejaVu Sans";
+/// Family of command lines.
+pub const MONO: &str = "DejaVu Sans Mono";
+
+/// Where a picture comes from; printed small beneath every sheet and figure.
+///
+/// ```
+/// use fredholm::report::typeset::Caption;
+/// let c = Caption { command: "fredholm series cornell --spp 64".into(), seed: 0, scene: "cornell".into() };
+/// assert_eq!(c.lines(1000.0, 12.0), ["fredholm series cornell --spp 64", "scene cornell · seed 0"]);
+/// assert!(c.lines(120.0, 12.0).len() > 2);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Caption {
+    /// The command that makes the picture again.
+    pub command: String,
+    /// Seed of its random numbers.
+    pub seed: u64,
+    /// Name of the scene.
+    pub scene: String,
+}
+
+impl Caption {
+    /// The caption broken into lines that fit `width` in the monospaced font.
+    pub fn lines(&self, width: f64, font_size: f64) -> Vec<String> {
+        let columns = (width / text_width("0", MONO, font_size)).floor().max(8.0) as usize;
+        let origin = format!("scene {} · seed {}", self.scene, self.seed);
+        [&self.command, &origin].into_iter().flat_map(|text| wrap(text, columns)).collect()
+    }
+}
+
+/// Breaks at blanks so that no line is longer than `columns` characters; a longer word is cut.
+pub(super) fn wrap(text: &str, columns: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    let mut used = 0;
+    for word in text.split_whitespace() {
+        let letters: Vec<char> = word.chars().collect();
+        for (i, piece) in letters.chunks(columns.max(1)).enumerate() {
+            let gap = usize::from(used > 0 && i == 0);
+            if used + gap + piece.len() > columns && used > 0 {
+                lines.push(String::new());
+                used = 0;
+            }
+            if let Some(line) = lines.last_mut() {
+                line.extend((used > 0 && i == 0).then_some(' '));
+                line.extend(piece);
+                used = line.chars().count();
+            }
+        }
+    }
+    lines
+}
+
+/// Width of a line of text in pixels.
+pub fn text_width(text: &str, family: &str, font_size: f64) -> f64 {
+    register_fonts();
+    const MEASURED_AT: f64 = 1000.0;
+    // The font is registered above, so measuring cannot fail; an em per letter is the safe width if it ever does.
+    let em = (family, MEASURED_AT)
+        .into_font()
+        .box_size(text)
+        .map_or(text.chars().count() as f64, |(w, _)| f64::from(w) / MEASURED_AT);
+    // The plot crate measures fonts by their height (ascent to descent); DejaVu's is 1.164 em.
+    em * DEJAVU_HEIGHT * font_size
+}
+
+const DEJAVU_HEIGHT: f64 = 1.164;
+
+/// Makes the fonts known to the plot crate. The one place where that happens.
+pub(super) fn register_fonts() {
+    static ONCE: OnceLock<()> = OnceLock::new();
+    ONCE.get_or_init(|| {
+        for (family, style, bytes) in [
+            (SANS, FontStyle::Normal, dejavu::sans::regular()),
+            (SANS, FontStyle::Bold, dejavu::sans::bold()),
+            (MONO, FontStyle::Normal, dejavu::sans_mono::regular()),
+        ] {
+            // The bytes are compiled in and parse: a test draws with all three.
+            let _ = register_font(family, style, bytes);
+        }
+    });
+}
+
+/// Letters that mean something to SVG and HTML, written so that they mean themselves.
+///
+/// ```
+/// assert_eq!(fredholm::report::typeset::escape("a < b & \"c\""), "a &lt; b &amp; &quot;c&quot;");
+/// ```
+pub fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            // Control characters are not allowed in XML, escaped or not.
+            c if c.is_control() && !c.is_whitespace() => out.push('\u{fffd}'),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// A line of text as an SVG element; `(x, y)` is the left end of its baseline.
+pub(super) fn text_element(x: f64, y: f64, font_size: f64, family: &str, attributes: &str, text: &str) -> String {
+    let text = escape(text);
+    format!("<text x=\"{x}\" y=\"{y}\" font-family=\"{family}\" font-size=\"{font_size}\" {attributes}>{text}</text>\n")
+}
+
+/// The caption as SVG elements, its first baseline at `y`.
+pub(super) fn caption_elements(lines: &[String], x: f64, mut y: f64, font_size: f64) -> String {
+    let mut out = String::new();
+    for line in lines {
+        let _ = out.write_str(&text_element(x, y, font_size, MONO, "fill=\"#555555\"", line));
+        y += font_size * LINE;
+    }
+    out
+}
+
+/// Distance of two baselines in font sizes.
+pub(super) const LINE: f64 = 1.4;
+
+/// Draws an SVG document at `scale` on white.
+pub(super) fn rasterise(svg: &str, scale: f32) -> Result<Picture, ReportError> {
+    static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
+    let fonts = FONTS.get_or_init(|| {
+        let mut database = usvg::fontdb::Database::new();
+        for bytes in [dejavu::sans::regular(), dejavu::sans::bold(), dejavu::sans_mono::regular()] {
+            database.load_font_data(bytes.to_vec());
+        }
+        Arc::new(database)
+    });
+    let wrong = |cause: &dyn ToString| {
+        ReportError::new("(drawing)", cause.to_string(), "this is a defect of the program: please report it")
+    };
+    let options = usvg::Options { fontdb: Arc::clone(fonts), font_family: SANS.into(), ..usvg::Options::default() };
+    let tree = usvg::Tree::from_str(svg, &options).map_err(|e| wrong(&e))?;
+    let size = tree.size();
+    let pixels = |length: f32| (length * scale).round() as u32;
+    let mut canvas = tiny_skia::Pixmap::new(pixels(size.width()), pixels(size.height()))
+        .ok_or_else(|| wrong(&format!("a canvas of {}×{} is not possible", size.width(), size.height())))?;
+    canvas.fill(tiny_skia::Color::WHITE);
+    resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut canvas.as_mut());
+    Ok(Picture {
+        width: canvas.width() as usize,
+        height: canvas.height() as usize,
+        pixels: canvas.pixels().iter().map(|p| [p.red(), p.green(), p.blue()]).collect(),
+    })
+}
+
+/// An empty page with the given elements on it, rasterised at scale 1.
+pub(super) fn page(width: usize, height: usize, elements: &str) -> Result<Picture, ReportError> {
+    let svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+         viewBox=\"0 0 {width} {height}\">\n{elements}</svg>\n"
+    );
+    rasterise(&svg, 1.0)
+}
