@@ -1,7 +1,9 @@
 //! What exists.
 
+pub mod builtin;
 pub mod description;
 mod error;
+pub mod load;
 pub mod primitive;
 
 pub use description::Description;
