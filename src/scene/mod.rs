@@ -12,9 +12,11 @@
 
 mod accel;
 pub mod bsdf;
+pub mod builtin;
 pub mod description;
 pub mod emitter;
 mod error;
+pub mod load;
 mod packets;
 pub mod primitive;
 pub mod sensor;

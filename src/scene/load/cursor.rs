@@ -1,0 +1,210 @@
+//! Strict reading: a cursor is a value with its dotted key, and asks it for exactly one type.
+//!
+//! Every refusal names the value, the file and line (or the override) and the key, and says what to do.
+
+use super::{
+    nearest::suggest,
+    tree::{Node, Place, Value},
+};
+use crate::scene::SceneError;
+use glam::DVec3;
+use std::path::Path;
+
+/// Positions and lengths live in (1e-12, 1e12) metres, so that their squares fit the `f32` of the rays.
+pub(super) const LARGEST_LENGTH: f64 = 1e12;
+/// Radiances and powers up to here fit `f32` with room for a path's weights.
+const LARGEST_LIGHT: f64 = 1e30;
+
+/// A value of the scene with its key.
+#[derive(Clone, Debug)]
+pub(super) struct Cursor<'a> {
+    pub(super) file: &'a Path,
+    pub(super) key: String,
+    pub(super) node: &'a Node,
+}
+
+impl<'a> Cursor<'a> {
+    /// An error at this value.
+    pub(super) fn error(&self, what: impl Into<String>) -> SceneError {
+        match self.node.place {
+            Place::Line(line) if self.key.is_empty() => SceneError::new(what).at(self.file, line),
+            Place::Line(line) => SceneError::new(what).at(self.file, line).key(&self.key),
+            Place::Override => SceneError::new(what).key(format!("--set {}", self.key)),
+            Place::Program => SceneError::new(what).file(self.file).key(&self.key),
+        }
+    }
+
+    fn mistyped(&self, wanted: &str) -> SceneError {
+        let help = format!("write {wanted}");
+        self.error(format!("expected {wanted}, found {}", self.node.value.kind())).help(help)
+    }
+
+    fn join(&self, key: &str) -> String {
+        if self.key.is_empty() { key.to_owned() } else { format!("{}.{key}", self.key) }
+    }
+
+    /// The entries of a table.
+    pub(super) fn entries(&self) -> Result<Vec<(&'a str, Cursor<'a>)>, SceneError> {
+        let Value::Table(t) = &self.node.value else { return Err(self.mistyped("a table")) };
+        Ok(t.iter().map(|(k, node)| (k.as_str(), Cursor { file: self.file, key: self.join(k), node })).collect())
+    }
+
+    /// Refuses every key of a table that is not one of `legal`.
+    pub(super) fn only(&self, legal: &[&str]) -> Result<(), SceneError> {
+        match self.entries()?.iter().find(|(k, _)| !legal.contains(k)) {
+            Some((k, c)) => Err(c.error(format!("unknown key `{k}`")).help(suggest(k, "keys here", legal))),
+            None => Ok(()),
+        }
+    }
+
+    /// The value of a key, if it is there.
+    pub(super) fn get(&self, key: &str) -> Option<Cursor<'a>> {
+        self.node.get(key).map(|node| Cursor { file: self.file, key: self.join(key), node })
+    }
+
+    /// The value of a key; `example` shows what to add when it is missing.
+    pub(super) fn require(&self, key: &str, example: &str) -> Result<Cursor<'a>, SceneError> {
+        self.get(key).ok_or_else(|| {
+            let here = Cursor { key: self.join(key), ..self.clone() };
+            here.error(format!("missing key `{key}`")).help(format!("add {example}"))
+        })
+    }
+
+    /// The elements of an array.
+    pub(super) fn items(&self, wanted: &str) -> Result<Vec<Cursor<'a>>, SceneError> {
+        let Value::List(l) = &self.node.value else { return Err(self.mistyped(wanted)) };
+        let item = |(i, node)| Cursor { file: self.file, key: format!("{}[{i}]", self.key), node };
+        Ok(l.iter().enumerate().map(item).collect())
+    }
+
+    fn several<const N: usize>(&self, wanted: &str) -> Result<[Cursor<'a>; N], SceneError> {
+        let items = self.items(wanted)?;
+        let found = items.len();
+        items.try_into().map_err(|_| {
+            self.error(format!("expected {wanted}, found {found}")).help(format!("write {N} values in brackets"))
+        })
+    }
+
+    /// A finite number.
+    pub(super) fn number(&self) -> Result<f64, SceneError> {
+        let x = match self.node.value {
+            Value::Integer(i) => i as f64,
+            Value::Float(x) => x,
+            _ => return Err(self.mistyped("a number")),
+        };
+        if x.is_finite() { Ok(x) } else { Err(self.error(format!("{x} is not finite")).help("write a finite number")) }
+    }
+
+    /// A number of metres of sensible size.
+    pub(super) fn length(&self) -> Result<f64, SceneError> {
+        let x = self.number()?;
+        if x.abs() <= LARGEST_LENGTH {
+            return Ok(x);
+        }
+        Err(self.error(format!("{x} m is too far for single-precision rays")).help("stay within 1e12 m"))
+    }
+
+    /// An integer in `[low, high]`.
+    pub(super) fn integer(&self, low: i64, high: i64) -> Result<i64, SceneError> {
+        let Value::Integer(i) = self.node.value else { return Err(self.mistyped("an integer")) };
+        if (low..=high).contains(&i) {
+            return Ok(i);
+        }
+        Err(self
+            .error(format!("{i} is outside [{low}, {high}]"))
+            .help(format!("write an integer from {low} to {high}")))
+    }
+
+    /// `true` or `false`.
+    pub(super) fn flag(&self) -> Result<bool, SceneError> {
+        if let Value::Flag(b) = self.node.value { Ok(b) } else { Err(self.mistyped("true or false")) }
+    }
+
+    /// A string with something in it.
+    pub(super) fn text(&self) -> Result<&'a str, SceneError> {
+        match &self.node.value {
+            Value::Text(s) if s.trim().is_empty() => Err(self.error("the string is empty").help("write something")),
+            Value::Text(s) => Ok(s),
+            _ => Err(self.mistyped("a string")),
+        }
+    }
+
+    /// One of a few words.
+    pub(super) fn choice<T: Copy>(&self, kind: &str, known: &[(&str, T)]) -> Result<T, SceneError> {
+        let word = self.text()?;
+        known.iter().find(|(k, _)| *k == word).map(|&(_, v)| v).ok_or_else(|| {
+            let names: Vec<&str> = known.iter().map(|(k, _)| *k).collect();
+            self.error(format!("`{word}` is no {kind}")).help(suggest(word, "known here", &names))
+        })
+    }
+
+    /// A pair of numbers.
+    pub(super) fn pair(&self) -> Result<[f64; 2], SceneError> {
+        let [a, b] = self.several("2 numbers")?;
+        Ok([a.number()?, b.number()?])
+    }
+
+    /// Width and height in pixels.
+    pub(super) fn size(&self) -> Result<[u32; 2], SceneError> {
+        let [w, h] = self.several("2 integers")?;
+        let pixels = |c: Cursor| Ok(c.integer(1, 32768)?.unsigned_abs() as u32);
+        Ok([pixels(w)?, pixels(h)?])
+    }
+
+    /// A position, an edge or a direction, metres.
+    pub(super) fn vector(&self) -> Result<DVec3, SceneError> {
+        let [x, y, z] = self.several("3 numbers")?;
+        Ok(DVec3::new(x.length()?, y.length()?, z.length()?))
+    }
+
+    /// A row of a transform.
+    pub(super) fn row(&self) -> Result<[f64; 4], SceneError> {
+        let [a, b, c, d] = self.several("4 numbers")?;
+        Ok([a.length()?, b.length()?, c.length()?, d.length()?])
+    }
+
+    /// The three rows of a transform.
+    pub(super) fn rows(&self) -> Result<[Cursor<'a>; 3], SceneError> {
+        self.several("3 rows of 4 numbers")
+    }
+
+    /// The three corners of a face, each below `count`.
+    pub(super) fn face(&self, count: usize) -> Result<[u32; 3], SceneError> {
+        let corners = self.several::<3>("3 vertex indices")?;
+        let mut face = [0; 3];
+        for (out, c) in face.iter_mut().zip(corners) {
+            let i = c.integer(i64::MIN, i64::MAX)?;
+            *out = u32::try_from(i).ok().filter(|&i| (i as usize) < count).ok_or_else(|| {
+                self.error(format!("vertex index {i} is out of range, the mesh has {count} vertices"))
+                    .help("indices start at 0")
+            })?;
+        }
+        Ok(face)
+    }
+
+    /// An albedo per channel, each in [0, 1].
+    pub(super) fn reflectance(&self) -> Result<DVec3, SceneError> {
+        let rgb = self.colour()?;
+        match rgb.to_array().into_iter().find(|x| !(0.0..=1.0).contains(x)) {
+            Some(x) => Err(self
+                .error(format!("reflectance {x} is outside [0, 1]"))
+                .help("a surface returns at most what it receives, or the Neumann series may diverge")),
+            None => Ok(rgb),
+        }
+    }
+
+    /// Radiance or power per channel, none negative.
+    pub(super) fn light(&self, name: &str) -> Result<DVec3, SceneError> {
+        let rgb = self.colour()?;
+        match rgb.to_array().into_iter().find(|x| !(0.0..=LARGEST_LIGHT).contains(x)) {
+            Some(x) if x < 0.0 => Err(self.error(format!("{name} {x} is negative")).help("light is at least 0")),
+            Some(x) => Err(self.error(format!("{name} {x} is too large")).help("stay below 1e30")),
+            None => Ok(rgb),
+        }
+    }
+
+    fn colour(&self) -> Result<DVec3, SceneError> {
+        let [r, g, b] = self.several("3 numbers")?;
+        Ok(DVec3::new(r.number()?, g.number()?, b.number()?))
+    }
+}

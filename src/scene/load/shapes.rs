@@ -1,0 +1,271 @@
+//! `[[shapes]]`: geometry that has area, a material that exists, and light per area or in total.
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | L | radiance leaving the front, W·sr⁻¹·m⁻² | `emission` |
+//! | Φ | power leaving the shape, W | `power` |
+//! | A | area of the front of the whole shape, m² | [`Primitive::area`](crate::scene::Primitive::area) |
+//!
+//! A Lambertian emitter sends Φ = L·A·∫cos θ dω = π A L, hence `L = Φ/(π A)`.
+
+use super::{beside, cursor::Cursor, nearest::suggest, obj, tree::Place};
+use crate::scene::{
+    SceneError,
+    description::{Geometry, Material, Shape, Sides},
+};
+use glam::{DMat3, DVec3};
+use std::f64::consts::PI;
+
+/// The kinds of shape with the keys of their geometry.
+pub(super) const KINDS: [(&str, &[&str]); 6] = [
+    ("mesh", &["vertices", "faces", "transform"]),
+    ("obj", &["file", "transform"]),
+    ("quad", &["origin", "edge_u", "edge_v"]),
+    ("box", &["min", "max", "rotate_y", "inward"]),
+    ("sphere", &["center", "radius", "z", "inward"]),
+    ("disk", &["center", "normal", "radius"]),
+];
+/// The keys every shape may have.
+pub(super) const LIGHT_KEYS: [&str; 4] = ["type", "material", "emission", "power"];
+
+/// Shorter than this is nothing, metres.
+const SMALLEST: f64 = 1e-12;
+/// A sine this small is parallel, a height this much smaller than the longest edge is flat.
+const FLAT: f64 = 1e-9;
+
+/// What the shapes of a file amount to.
+pub(super) struct Read {
+    pub(super) shapes: Vec<Shape>,
+    pub(super) materials: Vec<Material>,
+    pub(super) warnings: Vec<String>,
+    pub(super) hints: Vec<String>,
+}
+
+/// Reads every shape; OBJ files add their own materials behind those of the file.
+pub(super) fn read(list: &Cursor, materials: Vec<Material>) -> Result<Read, SceneError> {
+    let mut out = Read { shapes: Vec::new(), materials, warnings: Vec::new(), hints: Vec::new() };
+    let named = out.materials.len();
+    for c in list.items("an array of tables, [[shapes]]")? {
+        let at = c.require("type", "type = \"quad\"; types: mesh, obj, quad, box, sphere, disk")?;
+        let kinds: Vec<(&str, (&str, &[&str]))> = KINDS.iter().map(|&(k, keys)| (k, (k, keys))).collect();
+        let (kind, keys) = at.choice("type of shape", &kinds)?;
+        if let Some(uvs) = c.get("uvs").filter(|_| kind == "mesh") {
+            return Err(uvs.error("uvs are not supported yet").help("remove them: there are no textures to place"));
+        }
+        c.only(&[&LIGHT_KEYS, keys].concat())?;
+        if kind == "obj" {
+            let material = c.get("material").map(|m| material(&m, &out.materials[..named])).transpose()?;
+            append_obj(&c, material, &mut out)?;
+            continue;
+        }
+        let at = c.require("material", "material = \"…\", a name from [materials]")?;
+        let material = material(&at, &out.materials[..named])?;
+        let geometry = geometry(&c, kind)?;
+        let emission = emission(&c, area(&geometry))?.unwrap_or(DVec3::ZERO);
+        out.shapes.push(Shape { name: c.key.clone(), geometry, material, emission });
+    }
+    Ok(out)
+}
+
+fn material(c: &Cursor, materials: &[Material]) -> Result<usize, SceneError> {
+    let name = c.text()?;
+    materials.iter().position(|m| m.name == name).ok_or_else(|| {
+        let names: Vec<&str> = materials.iter().map(|m| m.name.as_str()).collect();
+        c.error(format!("unknown material `{name}`")).help(suggest(name, "materials", &names))
+    })
+}
+
+/// Front area of a shape, m².
+fn area(geometry: &Geometry) -> f64 {
+    geometry.primitives().iter().map(|p| p.area()).sum()
+}
+
+/// L from `emission`, or Φ/(π A) from `power`; nothing if neither is there.
+fn emission(c: &Cursor, area: f64) -> Result<Option<DVec3>, SceneError> {
+    match (c.get("emission"), c.get("power")) {
+        (Some(_), Some(power)) => {
+            Err(power.error("emission and power are both given").help("keep one: emission = power / (pi * area)"))
+        }
+        (Some(e), None) => e.light("emission").map(Some),
+        (None, Some(p)) => Ok(Some(p.light("power")? / (PI * area))),
+        (None, None) => Ok(None),
+    }
+}
+
+fn geometry(c: &Cursor, kind: &str) -> Result<Geometry, SceneError> {
+    match kind {
+        "mesh" => mesh(c),
+        "quad" => quad(c),
+        "box" => cuboid(c),
+        "sphere" => sphere(c),
+        _ => disk(c),
+    }
+}
+
+fn mesh(c: &Cursor) -> Result<Geometry, SceneError> {
+    let points = c.require("vertices", "vertices = [[x, y, z], …]")?.items("an array of points")?;
+    let mut vertices = points.iter().map(Cursor::vector).collect::<Result<Vec<_>, _>>()?;
+    let list = c.require("faces", "faces = [[0, 1, 2], …]")?;
+    let rows = list.items("an array of triangles")?;
+    if rows.is_empty() {
+        return Err(list.error("the mesh has no faces").help("add triangles such as [0, 1, 2]"));
+    }
+    let mut faces = rows.iter().map(|f| f.face(vertices.len())).collect::<Result<Vec<_>, _>>()?;
+    if let Some((f, row)) = faces.iter().zip(&rows).find(|(f, _)| flat(f.map(|i| vertices[i as usize]))) {
+        let e = row.error(format!("the triangle {f:?} has no area"));
+        return Err(e.help("its three corners must not lie on one line"));
+    }
+    if let Some(t) = transform(c)? {
+        t.apply(&mut vertices, &mut faces);
+    }
+    Ok(Geometry::Mesh { vertices, faces })
+}
+
+fn quad(c: &Cursor) -> Result<Geometry, SceneError> {
+    let origin = c.require("origin", "a corner: origin = [0, 0, 0]")?.vector()?;
+    let (at_u, at_v) = (c.require("edge_u", "edge_u = [1, 0, 0]")?, c.require("edge_v", "edge_v = [0, 1, 0]")?);
+    let edge = |at: &Cursor| {
+        let e = at.vector()?;
+        let zero = || at.error("the edge has zero length").help("the quad spans origin + u edge_u + v edge_v");
+        if e.length() < SMALLEST { Err(zero()) } else { Ok(e) }
+    };
+    let (edge_u, edge_v) = (edge(&at_u)?, edge(&at_v)?);
+    if edge_u.normalize().cross(edge_v.normalize()).length() <= FLAT {
+        let e = at_v.error("edge_u and edge_v are parallel, the quad has no area");
+        return Err(e.help("choose edges along two directions"));
+    }
+    Ok(Geometry::Quad { origin, edge_u, edge_v })
+}
+
+fn cuboid(c: &Cursor) -> Result<Geometry, SceneError> {
+    let min = c.require("min", "the smallest corner: min = [-1, -1, -1]")?.vector()?;
+    let at = c.require("max", "the largest corner: max = [1, 1, 1]")?;
+    let max = at.vector()?;
+    if let Some(i) = (0..3).find(|&i| max[i] - min[i] < SMALLEST) {
+        let axis = ["x", "y", "z"][i];
+        let e = at.error(format!("the box has no extent along {axis}: min {}, max {}", min[i], max[i]));
+        return Err(e.help("max must exceed min along every axis"));
+    }
+    let rotate_y = c.get("rotate_y").map_or(Ok(0.0), |r| r.number())?;
+    Ok(Geometry::Box { min, max, rotate_y, inward: inward(c)? })
+}
+
+fn sphere(c: &Cursor) -> Result<Geometry, SceneError> {
+    let center = c.require("center", "center = [0, 0, 0]")?.vector()?;
+    let radius = radius(c)?;
+    let z = match c.get("z") {
+        None => [-1.0, 1.0],
+        Some(at) => {
+            let [low, high] = at.pair()?;
+            let help = "z = [low, high] in radii from the centre, -1 <= low < high <= 1";
+            if low < -1.0 || high > 1.0 {
+                return Err(at.error(format!("the band [{low}, {high}] leaves the sphere")).help(help));
+            }
+            if high - low <= FLAT {
+                return Err(at.error(format!("the band [{low}, {high}] is empty")).help(help));
+            }
+            [low, high]
+        }
+    };
+    Ok(Geometry::Sphere { center, radius, z, inward: inward(c)? })
+}
+
+fn disk(c: &Cursor) -> Result<Geometry, SceneError> {
+    let center = c.require("center", "center = [0, 0, 0]")?.vector()?;
+    let at = c.require("normal", "the direction of the front: normal = [0, 1, 0]")?;
+    let normal = at.vector()?;
+    if normal.length() < SMALLEST {
+        return Err(at.error("the normal has zero length").help("write a direction of any length"));
+    }
+    Ok(Geometry::Disk { center, normal, radius: radius(c)? })
+}
+
+fn radius(c: &Cursor) -> Result<f64, SceneError> {
+    let at = c.require("radius", "radius = 1")?;
+    let radius = at.length()?;
+    if radius >= SMALLEST {
+        return Ok(radius);
+    }
+    Err(at.error(format!("radius {radius} is not positive")).help("write a length in metres above 0"))
+}
+
+fn inward(c: &Cursor) -> Result<bool, SceneError> {
+    c.get("inward").map_or(Ok(false), |i| i.flag())
+}
+
+/// True if a triangle has no area worth the name.
+pub(super) fn flat([a, b, c]: [DVec3; 3]) -> bool {
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    longest < SMALLEST || (b - a).cross(c - a).length() <= FLAT * longest * longest
+}
+
+/// x ↦ M x + t
+struct Transform {
+    linear: DMat3,
+    shift: DVec3,
+}
+
+fn transform(c: &Cursor) -> Result<Option<Transform>, SceneError> {
+    let Some(at) = c.get("transform") else { return Ok(None) };
+    let [x, y, z] = at.rows()?;
+    let rows = [x.row()?, y.row()?, z.row()?];
+    let linear = DMat3::from_cols_array_2d(&rows.map(|[a, b, c, _]| [a, b, c])).transpose();
+    let scale = linear.x_axis.length() * linear.y_axis.length() * linear.z_axis.length();
+    if linear.determinant().abs() <= FLAT * scale {
+        let e = at.error("the transform flattens the shape, its determinant is zero");
+        return Err(e.help("three rows [a, b, c, t] with linearly independent [a, b, c]"));
+    }
+    Ok(Some(Transform { linear, shift: DVec3::from(rows.map(|r| r[3])) }))
+}
+
+impl Transform {
+    /// The front stays the image of the front: a mirroring transform reverses the winding of every face.
+    fn apply(&self, vertices: &mut [DVec3], faces: &mut [[u32; 3]]) {
+        vertices.iter_mut().for_each(|v| *v = self.linear * *v + self.shift);
+        if self.linear.determinant() < 0.0 {
+            faces.iter_mut().for_each(|f| f.swap(1, 2));
+        }
+    }
+}
+
+/// One shape per group and material of the file, with the MTL's materials unless the scene names one.
+fn append_obj(c: &Cursor, material: Option<usize>, out: &mut Read) -> Result<(), SceneError> {
+    let at = c.require("file", "file = \"model.obj\", relative to the scene file")?;
+    let path = beside(c.file, at.text()?);
+    let mut model = obj::read(&path, material.is_none()).map_err(|e| match at.node.place {
+        // the file exists but is wrong: its own line says more than ours
+        _ if e.line.is_some() || path.is_file() => e,
+        Place::Program => e,
+        _ => at.error(format!("cannot read `{}`", path.display())).help("paths are relative to the scene file"),
+    })?;
+    if let Some(t) = transform(c)? {
+        model.pieces.iter_mut().for_each(|p| t.apply(&mut p.vertices, &mut p.faces));
+    }
+    let mesh = |p: &obj::Piece| Geometry::Mesh { vertices: p.vertices.clone(), faces: p.faces.clone() };
+    let total = model.pieces.iter().map(|p| area(&mesh(p))).sum();
+    let given = emission(c, total)?;
+    if let (Some(_), None) = (given, material) {
+        let at = c.get("emission").or(c.get("power")).unwrap_or(c.clone());
+        let help = "name a material for the whole file, write Ke in its MTL, or pass --emit MATERIAL=r,g,b";
+        return Err(at.error("the light of an OBJ comes from its MTL").help(help));
+    }
+    for p in &model.pieces {
+        let (material, emission) = match material {
+            Some(m) => (m, given.unwrap_or(DVec3::ZERO)),
+            None => (intern(&model.materials[p.material], &mut out.materials), model.materials[p.material].emission),
+        };
+        out.shapes.push(Shape { name: p.name.clone(), geometry: mesh(p), material, emission });
+    }
+    out.warnings.append(&mut model.warnings);
+    out.hints.append(&mut model.hints);
+    Ok(())
+}
+
+/// The index of an MTL material among all materials. Equal ones of several files are one.
+fn intern(m: &obj::Surface, materials: &mut Vec<Material>) -> usize {
+    let material = Material { name: m.name.clone(), reflectance: m.reflectance, sides: Sides::Both };
+    materials.iter().position(|o| *o == material).unwrap_or_else(|| {
+        materials.push(material);
+        materials.len() - 1
+    })
+}
