@@ -1,1 +1,5 @@
-//! (to come)
+//! What T is.
+
+pub mod form_factor;
+pub mod matrix;
+pub mod patches;
