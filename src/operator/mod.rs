@@ -1,6 +1,17 @@
 //! What T is: one symbol, three realisations.
+//!
+//! | world | T is | place |
+//! |---|---|---|
+//! | continuous | rays in a scene: can be sampled | [`scene_transport`] |
+//! | discrete | a matrix over patches, diag(ρ) F: can be applied | [`patches`], [`form_factor`], [`matrix`] |
+//! | walk | a random walk on that matrix: can be sampled, and is known exactly | [`matrix_walk`] |
+//!
+//! Sampling is the trait [`Transport`]; applying is [`matrix::LinearOperator`].
 
+pub mod form_factor;
+pub mod matrix;
 pub mod matrix_walk;
+pub mod patches;
 pub mod scene_transport;
 pub mod transport;
 

@@ -1,0 +1,205 @@
+//! The form factors of a mesh of patches: the geometry of the discrete operator.
+//!
+//! ```text
+//! Aᵢ Fᵢⱼ = sᵢ sⱼ Vᵢⱼ ∫∫ cos θ cos θ' / πr² dA dA'        Σⱼ Fᵢⱼ ≤ 1,   Aᵢ Fᵢⱼ = Aⱼ Fⱼᵢ
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | Fᵢⱼ | share of the diffuse power leaving i that arrives at j | [`FormFactors::f`] |
+//! | Aᵢ | true, uncovered area | [`FormFactors::area`] |
+//! | sᵢ | true over flat area | [`Patch::stretch`] |
+//! | Vᵢⱼ | visible share of the pair | [`Sampling`] |
+//!
+//! Two patches of one sphere, seen from inside, need no facets: there the kernel is the constant 1/4πR², so
+//! AᵢFᵢⱼ = Vᵢⱼ AᵢAⱼ/4πR², i = j included.
+
+mod geometry;
+mod invariants;
+mod shaft;
+mod visibility;
+
+use crate::operator::patches::{Patch, Patches, polygon::radius_about};
+use geometry::{Side, exchange, facing};
+pub use geometry::{point_to_polygon, polygon_to_polygon};
+pub use invariants::Invariants;
+use rayon::prelude::*;
+use shaft::{Blocker, End};
+use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
+use visibility::visible_share;
+pub use visibility::{Sampling, Visibility};
+
+/// The matrix F with the areas that make it symmetric.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FormFactors {
+    /// Number of patches.
+    pub n: usize,
+    /// Fᵢⱼ at `i·n + j`.
+    pub f: Vec<f32>,
+    /// Aᵢ, m².
+    pub area: Vec<f64>,
+    /// Visibility rays traced.
+    pub rays: u64,
+}
+
+/// How to watch and stop a long computation.
+#[derive(Clone, Copy, Default)]
+pub struct Watch<'a> {
+    /// Called with (rows done, rows in all), from any thread.
+    pub progress: Option<&'a (dyn Fn(usize, usize) + Sync)>,
+    /// Set it to stop early.
+    pub stop: Option<&'a AtomicBool>,
+}
+
+/// The computation was stopped before its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the form factors were stopped before their end")]
+pub struct Stopped;
+
+/// More possible blockers than this per pair are not listed; the visibility test then looks at the whole scene.
+const MAX_LISTED: usize = 32;
+
+impl FormFactors {
+    /// All form factors, the upper triangle computed and the lower mirrored. The result does not depend on the number
+    /// of threads.
+    ///
+    /// # Errors
+    /// [`Stopped`] when the flag in `watch` was set.
+    pub fn new(
+        patches: &Patches,
+        visibility: &dyn Visibility,
+        sampling: Sampling,
+        watch: Watch<'_>,
+    ) -> Result<Self, Stopped> {
+        let n = patches.len();
+        let area = patches.areas();
+        let blockers: Vec<Blocker> = patches.primitives().iter().map(Blocker::new).collect();
+        let sides: Vec<Side> = patches.iter().map(side).collect();
+        let pairs = Pairs { patches, sides, blockers, visibility, sampling };
+        let stopped = || watch.stop.is_some_and(|s| s.load(Relaxed));
+        let (done, rays) = (AtomicUsize::new(0), AtomicU64::new(0));
+
+        let mut f = vec![0.0f32; n * n];
+        f.par_chunks_mut(n).with_max_len(1).enumerate().for_each(|(i, row)| {
+            if stopped() {
+                return;
+            }
+            let mut work = Scratch::default();
+            for j in i..n {
+                row[j] = (pairs.exchange(i, j, &mut work) / area[i]) as f32;
+            }
+            rays.fetch_add(work.rays, Relaxed);
+            let done = done.fetch_add(1, Relaxed) + 1;
+            if let Some(report) = watch.progress {
+                report(done, n);
+            }
+        });
+        if stopped() {
+            return Err(Stopped);
+        }
+        mirror(&mut f, &area);
+        Ok(Self { n, f, area, rays: rays.into_inner() })
+    }
+
+    /// Row i of F.
+    pub fn row(&self, i: usize) -> &[f32] {
+        &self.f[i * self.n..(i + 1) * self.n]
+    }
+
+    /// Closure, reciprocity and bounds, measured.
+    pub fn invariants(&self) -> Invariants {
+        Invariants::of(self)
+    }
+}
+
+/// Fⱼᵢ = Fᵢⱼ Aᵢ/Aⱼ for i < j, tile by tile for the sake of the cache.
+fn mirror(f: &mut [f32], area: &[f64]) {
+    const TILE: usize = 64;
+    let n = area.len();
+    for i0 in (0..n).step_by(TILE) {
+        for j0 in (i0..n).step_by(TILE) {
+            for i in i0..(i0 + TILE).min(n) {
+                for j in j0.max(i + 1)..(j0 + TILE).min(n) {
+                    f[j * n + i] = (f64::from(f[i * n + j]) * (area[i] / area[j])) as f32;
+                }
+            }
+        }
+    }
+}
+
+fn side(p: &Patch) -> Side {
+    Side { normal: p.normal, centre: p.centre, radius: radius_about(&p.polygon, p.centre), area: p.flat_area }
+}
+
+struct Pairs<'a> {
+    patches: &'a Patches,
+    sides: Vec<Side>,
+    blockers: Vec<Blocker>,
+    visibility: &'a dyn Visibility,
+    sampling: Sampling,
+}
+
+#[derive(Default)]
+struct Scratch {
+    a: Vec<glam::DVec3>,
+    b: Vec<glam::DVec3>,
+    among: Vec<u32>,
+    rays: u64,
+}
+
+impl Pairs<'_> {
+    /// Aᵢ Fᵢⱼ.
+    fn exchange(&self, i: usize, j: usize, work: &mut Scratch) -> f64 {
+        let (a, b) = (&self.patches[i], &self.patches[j]);
+        if let (Some((_, radius)), true) = (a.ball, a.ball == b.ball && a.primitive == b.primitive) {
+            // a ball seen from outside is convex: no point of it sees another
+            if a.is_concave() != b.is_concave() || !a.is_concave() {
+                return 0.0;
+            }
+            let clear = a.stretch * a.flat_area * b.stretch * b.flat_area / (2.0 * TAU * radius * radius);
+            return clear * self.visible(i, j, &a.polygon, &b.polygon, false, &mut work.among, &mut work.rays);
+        }
+        if a.primitive == b.primitive {
+            return 0.0;
+        }
+        let (sa, sb) = (&self.sides[i], &self.sides[j]);
+        let Some((pa, pb)) = facing(&a.polygon, sa, &b.polygon, sb, &mut work.a, &mut work.b) else { return 0.0 };
+        let share = self.visible(i, j, pa, pb, true, &mut work.among, &mut work.rays);
+        if share == 0.0 { 0.0 } else { share * a.stretch * b.stretch * exchange(pa, sa, pb, sb) }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn visible(
+        &self,
+        i: usize,
+        j: usize,
+        pa: &[glam::DVec3],
+        pb: &[glam::DVec3],
+        flat_kernel: bool,
+        among: &mut Vec<u32>,
+        rays: &mut u64,
+    ) -> f64 {
+        let (a, b) = (&self.patches[i], &self.patches[j]);
+        let (ea, eb) = (End::new(a, pa), End::new(b, pb));
+        among.clear();
+        for (k, blocker) in self.blockers.iter().enumerate() {
+            let own = (k == a.primitive && a.ball.is_none()) || (k == b.primitive && b.ball.is_none());
+            if !own && blocker.may_block(&ea, &eb) {
+                among.push(k as u32);
+                if among.len() > MAX_LISTED {
+                    break;
+                }
+            }
+        }
+        if among.is_empty() {
+            return 1.0;
+        }
+        let pair = (i as u64) << 32 | j as u64;
+        let (share, traced) = visible_share(self.sampling, (a, pa), (b, pb), flat_kernel, pair, |x, y| {
+            if among.len() > MAX_LISTED { self.visibility.visible(x, y) } else { self.visibility.visible_among(x, y, among) }
+        });
+        *rays += u64::from(traced);
+        share
+    }
+}

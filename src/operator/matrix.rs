@@ -1,0 +1,134 @@
+//! The operator over patches: `T_h = diag(ρ) F`, one channel at a time.
+//!
+//! ```text
+//! (T u)ᵢ  = ρᵢ Σⱼ Fᵢⱼ uⱼ                            apply
+//! (T* u)ⱼ = (1/Aⱼ) Σᵢ Aᵢ ρᵢ Fᵢⱼ uᵢ                  adjoint in ⟨u, v⟩_A = Σᵢ Aᵢ uᵢ vᵢ
+//! ‖T‖∞ = maxᵢ (T 1)ᵢ      ‖T‖₁ = maxⱼ (T* 1)ⱼ       exact for the matrix, since all entries are ≥ 0
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | u | radiance per patch | slices of length [`LinearOperator::len`] |
+//! | ρ | albedo of the channel | [`PatchOperator::rho`] |
+//! | F, A | form factors and areas | [`FormFactors`] |
+//!
+//! Every sum runs in a fixed order, so results do not depend on the number of threads.
+
+mod spectrum;
+
+use super::form_factor::FormFactors;
+use rayon::prelude::*;
+pub use spectrum::{Spectral, spectral_radius};
+
+/// Something that can be applied to radiance per patch, and so can its adjoint.
+pub trait LinearOperator: Sync {
+    /// Number of patches.
+    fn len(&self) -> usize;
+
+    /// There are no patches.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// y = T x.
+    fn apply(&self, x: &[f64], y: &mut [f64]);
+
+    /// y = T* x: ⟨y, T x⟩_A = ⟨T* y, x⟩_A in the area inner product.
+    fn apply_adjoint(&self, x: &[f64], y: &mut [f64]);
+}
+
+/// `diag(ρ) F` for one channel.
+#[derive(Clone, Debug)]
+pub struct PatchOperator<'a> {
+    /// The geometry.
+    pub factors: &'a FormFactors,
+    /// Albedo per patch.
+    pub rho: Vec<f64>,
+}
+
+impl<'a> PatchOperator<'a> {
+    /// The operator of these albedos.
+    ///
+    /// ```
+    /// use fredholm::operator::{form_factor::FormFactors, matrix::{LinearOperator, PatchOperator}};
+    /// let plates = FormFactors { n: 2, f: vec![0.0, 1.0, 1.0, 0.0], area: vec![1.0, 1.0], rays: 0 };
+    /// let t = PatchOperator::new(&plates, vec![0.9, 0.4]);
+    /// let mut bounce = [0.0; 2];
+    /// t.apply(&[1.0, 0.0], &mut bounce);
+    /// assert_eq!(bounce, [0.0, 0.4]);
+    /// ```
+    ///
+    /// # Panics
+    /// If there are not as many albedos as patches.
+    pub fn new(factors: &'a FormFactors, rho: Vec<f64>) -> Self {
+        assert_eq!(rho.len(), factors.n, "one albedo per patch");
+        Self { factors, rho }
+    }
+
+    /// Tᵢⱼ = ρᵢ Fᵢⱼ.
+    pub fn entry(&self, i: usize, j: usize) -> f64 {
+        self.rho[i] * f64::from(self.factors.row(i)[j])
+    }
+
+    /// ‖T‖∞ = maxᵢ ρᵢ Σⱼ Fᵢⱼ: no patch gains more than this in one bounce.
+    pub fn norm_inf(&self) -> f64 {
+        let mut y = vec![0.0; self.len()];
+        self.apply(&vec![1.0; self.len()], &mut y);
+        y.into_iter().fold(0.0, f64::max)
+    }
+
+    /// ‖T‖₁ in the area measure, maxⱼ (1/Aⱼ) Σᵢ Aᵢ ρᵢ Fᵢⱼ: no light loses less than its complement in one bounce.
+    pub fn norm_1(&self) -> f64 {
+        let mut y = vec![0.0; self.len()];
+        self.apply_adjoint(&vec![1.0; self.len()], &mut y);
+        y.into_iter().fold(0.0, f64::max)
+    }
+
+    /// Norm in the weight A/ρ, in which T is self-adjoint. Patches with ρ = 0 do not count: T u vanishes there.
+    pub fn weighted_norm(&self, x: &[f64]) -> f64 {
+        let terms = x.iter().zip(&self.rho).zip(&self.factors.area);
+        terms.filter(|((_, r), _)| **r > 0.0).map(|((x, r), a)| a * x * x / r).sum::<f64>().sqrt()
+    }
+}
+
+impl LinearOperator for PatchOperator<'_> {
+    fn len(&self) -> usize {
+        self.factors.n
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        y.par_iter_mut().with_min_len(16).enumerate().for_each(|(i, y)| *y = self.rho[i] * dot(self.factors.row(i), x));
+    }
+
+    fn apply_adjoint(&self, x: &[f64], y: &mut [f64]) {
+        const BLOCK: usize = 512;
+        let area = &self.factors.area;
+        y.par_chunks_mut(BLOCK).enumerate().for_each(|(block, y)| {
+            let first = block * BLOCK;
+            y.fill(0.0);
+            for i in 0..self.len() {
+                let weight = area[i] * self.rho[i] * x[i];
+                let row = &self.factors.row(i)[first..first + y.len()];
+                for (y, f) in y.iter_mut().zip(row) {
+                    *y += weight * f64::from(*f);
+                }
+            }
+            for (y, a) in y.iter_mut().zip(&area[first..]) {
+                *y /= a;
+            }
+        });
+    }
+}
+
+/// Σ aⱼ xⱼ in eight interleaved sums, so that the compiler can use vector registers.
+fn dot(a: &[f32], x: &[f64]) -> f64 {
+    let (blocks, rest) = a.as_chunks::<8>();
+    let (xs, tail) = x.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for (a, x) in blocks.iter().zip(xs) {
+        for l in 0..8 {
+            sums[l] += f64::from(a[l]) * x[l];
+        }
+    }
+    sums.iter().sum::<f64>() + rest.iter().zip(tail).map(|(a, x)| f64::from(*a) * x).sum::<f64>()
+}

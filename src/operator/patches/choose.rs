@@ -1,0 +1,227 @@
+//! How finely each surface is divided.
+//!
+//! ```text
+//! cells of a region of area A = max(1, round(A/a)),      a such that the patches are as near n as can be
+//! ```
+
+use super::{
+    Cover, CoverTest, Grid, Tree,
+    polygon::{area_vector, extent},
+    sides_of,
+    tree::{meeting, share},
+};
+use crate::scene::{Primitive, description::Sides};
+use glam::DVec3;
+
+/// More meetings with other surfaces than this on one primitive are left uncut; its cells are sampled instead.
+const MAX_CUTS: usize = 64;
+
+/// A primitive after the cuts, with the cover of every piece on both sides.
+pub(super) enum Region {
+    Flat { tree: Tree, pieces: Vec<Piece> },
+    Curved { primitive: Primitive, sides: usize },
+}
+
+/// A cell of the cut tree.
+#[derive(Clone, Copy)]
+pub(super) struct Piece {
+    node: usize,
+    cover: [Cover; 2],
+}
+
+/// A primitive after the division.
+#[derive(Clone, Debug)]
+pub(super) enum Shape {
+    Flat { tree: Tree, cover: Vec<[Cover; 2]> },
+    Curved(Grid),
+}
+
+/// A cell on its way to become a patch.
+pub(super) struct Cell {
+    pub(super) number: usize,
+    pub(super) polygon: Vec<DVec3>,
+    pub(super) area: f64,
+    pub(super) cover: [Cover; 2],
+}
+
+/// The outline of a flat primitive with straight edges.
+pub(super) fn outline(p: &Primitive) -> Option<Vec<DVec3>> {
+    match *p {
+        Primitive::Triangle(p) => Some(p.to_vec()),
+        Primitive::Parallelogram { origin: o, edge_u: u, edge_v: v } => Some(vec![o, o + u, o + u + v, o + v]),
+        Primitive::Sphere { .. } | Primitive::Disk { .. } => None,
+    }
+}
+
+/// Cuts every flat primitive where others meet it and finds out which pieces are covered.
+pub(super) fn regions(primitives: &[(Primitive, Sides)], cover: &CoverTest) -> Vec<Region> {
+    let one = |(number, &(primitive, sides)): (usize, &(Primitive, Sides))| {
+        let Some(polygon) = outline(&primitive) else {
+            return Region::Curved { primitive, sides: sides_of(sides).count() };
+        };
+        let normal = area_vector(&polygon).normalize();
+        let mut tree = Tree::new(polygon.clone());
+        let sampled = !cut(&mut tree, &polygon, normal, primitives, number);
+        let side = |side: usize, p: &[DVec3]| {
+            if !sides_of(sides).contains(&side) {
+                return Cover::Covered;
+            }
+            if sampled {
+                return Cover::Mixed;
+            }
+            cover.classify(number, p, if side == 0 { normal } else { -normal })
+        };
+        let pieces = tree.cells().map(|(node, p)| Piece { node, cover: [side(0, p), side(1, p)] }).collect();
+        Region::Flat { tree, pieces }
+    };
+    primitives.iter().enumerate().map(one).collect()
+}
+
+/// Returns whether straight cuts were enough to separate what is covered from what is free.
+fn cut(tree: &mut Tree, polygon: &[DVec3], normal: DVec3, all: &[(Primitive, Sides)], own: usize) -> bool {
+    let size = polygon.iter().map(|p| p.distance(polygon[0])).fold(0.0, f64::max);
+    let margin = DVec3::splat(1e-9 * size);
+    let fold = |p: &[DVec3]| p.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], &x| [a.min(x), b.max(x)]);
+    let [lo, hi] = fold(polygon);
+    let mut cuts = 0;
+    for (_, (other, _)) in all.iter().enumerate().filter(|(i, _)| *i != own) {
+        let [a, b] = other.bounds();
+        if (a - margin).cmpgt(hi).any() || (b + margin).cmplt(lo).any() {
+            continue;
+        }
+        let Some(q) = outline(other) else {
+            // a sphere or disk that reaches the plane covers a region with a curved edge
+            let corners = (0..8).map(|i| DVec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), a, b));
+            let [s, t] = extent(&corners.collect::<Vec<_>>(), normal);
+            let d = normal.dot(polygon[0]);
+            if s <= d + margin.x && t >= d - margin.x {
+                return false;
+            }
+            continue;
+        };
+        for segment in meeting(polygon, normal, &q) {
+            if tree.cut(normal, segment) {
+                cuts += 1;
+                if cuts == MAX_CUTS {
+                    return false;
+                }
+            }
+        }
+    }
+    true
+}
+
+/// The cell area that brings the number of patches nearest to `n`.
+pub(super) fn cell_area(regions: &[Region], n: usize) -> f64 {
+    let count = |a: f64| regions.iter().map(|r| r.count(a)).sum::<usize>();
+    let whole: f64 = regions.iter().map(Region::area).sum();
+    let (mut fine, mut coarse) = (whole / (4 * n + 4 * regions.len()) as f64, whole);
+    // invariant: count(fine) ≥ n > count(coarse), unless even the coarsest mesh has n patches
+    if count(coarse) >= n {
+        return coarse;
+    }
+    while count(fine) < n {
+        fine *= 0.5;
+    }
+    for _ in 0..60 {
+        let a = (fine * coarse).sqrt();
+        if count(a) >= n { fine = a } else { coarse = a }
+    }
+    if count(fine) - n <= n - count(coarse) { fine } else { coarse }
+}
+
+impl Region {
+    fn area(&self) -> f64 {
+        match self {
+            Self::Flat { tree, .. } => tree.cells().map(|(_, p)| area_vector(p).length()).sum(),
+            Self::Curved { primitive, .. } => primitive.area(),
+        }
+    }
+
+    /// Patches at cell area `a`.
+    fn count(&self, a: f64) -> usize {
+        match self {
+            Self::Flat { tree, pieces } => {
+                let cells = tree.cells().zip(pieces);
+                cells.map(|((_, p), piece)| share(p, a) * piece.sides()).sum()
+            }
+            Self::Curved { primitive, sides } => grid(primitive, a).map_or(0, |g| g.len()) * sides,
+        }
+    }
+
+    /// Divides into cells of about the area `a`.
+    pub(super) fn divide(self, primitive: &Primitive, a: f64) -> Shape {
+        match self {
+            Self::Flat { mut tree, pieces } => {
+                let mut cover = vec![[Cover::Covered; 2]; tree.len()];
+                for piece in pieces {
+                    let cells = tree.cells().find(|(i, _)| *i == piece.node).map_or(1, |(_, p)| share(p, a));
+                    let first = tree.len();
+                    tree.bisect(piece.node, if piece.sides() == 0 { 1 } else { cells });
+                    cover[piece.node] = piece.cover;
+                    cover.resize(first, [Cover::Covered; 2]);
+                    cover.resize(tree.len(), piece.cover);
+                }
+                Shape::Flat { tree, cover }
+            }
+            Self::Curved { .. } => match grid(primitive, a) {
+                Some(grid) => Shape::Curved(grid),
+                None => Shape::Flat { tree: Tree::new(Vec::new()), cover: Vec::new() },
+            },
+        }
+    }
+}
+
+impl Piece {
+    fn sides(&self) -> usize {
+        self.cover.iter().filter(|c| **c != Cover::Covered).count()
+    }
+}
+
+fn grid(p: &Primitive, a: f64) -> Option<Grid> {
+    match *p {
+        Primitive::Sphere { center, radius, z, inward } => Some(Grid::sphere(center, radius, z, inward, a)),
+        Primitive::Disk { center, normal, radius } => Some(Grid::disk(center, normal, radius, a)),
+        Primitive::Triangle(_) | Primitive::Parallelogram { .. } => None,
+    }
+}
+
+impl Shape {
+    /// Cell numbers are below this.
+    pub(super) fn len(&self) -> usize {
+        match self {
+            Self::Flat { tree, .. } => tree.len(),
+            Self::Curved(grid) => grid.len(),
+        }
+    }
+
+    pub(super) fn locate(&self, p: DVec3) -> usize {
+        match self {
+            Self::Flat { tree, .. } => tree.locate(p),
+            Self::Curved(grid) => grid.locate(p),
+        }
+    }
+
+    pub(super) fn cells(&self) -> Vec<Cell> {
+        match self {
+            Self::Flat { tree, cover } => {
+                let one = |(i, p): (usize, &[DVec3])| Cell {
+                    number: i,
+                    polygon: p.to_vec(),
+                    area: area_vector(p).length(),
+                    cover: cover[i],
+                };
+                tree.cells().map(one).collect()
+            }
+            Self::Curved(grid) => {
+                let one = |(number, f): (usize, super::curved::Facet)| Cell {
+                    number,
+                    polygon: f.polygon,
+                    area: f.area,
+                    cover: [Cover::Mixed; 2],
+                };
+                grid.facets().into_iter().enumerate().map(one).collect()
+            }
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! The surfaces of a scene as patches: the basis of the discrete operator.
+//!
+//! ```text
+//! L ≈ Σᵢ Lᵢ 1_{Pᵢ}        Pᵢ convex, flat, of nearly equal area, restricted to what is uncovered
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | Pᵢ | patch: one side of a cell | [`Patch::polygon`] |
+//! | Aᵢ | its true, uncovered area, m² | [`Patch::area`] |
+//! | Aᵢᶠ | area of the flat polygon, m² | [`Patch::flat_area`] |
+//! | ρᵢ, Eᵢ | albedo and emitted radiance | [`Patch::reflectance`], [`Patch::emission`] |
+//! | A | area of all reflecting sides, covered or not | [`Patches::surface_area`] |
+//!
+//! Flat primitives are first cut where others touch or cross them, so that a block standing on the floor cuts its
+//! footprint out of it (after Baum, Mann, Smith and Winget 1991, "Making radiosity usable"); spheres and disks become
+//! facets that keep their true area.
+
+mod brute_force;
+mod choose;
+mod cover;
+mod curved;
+pub mod polygon;
+mod tree;
+
+use crate::scene::{Description, Primitive, SceneError, description::Sides};
+pub use brute_force::{BruteForce, Hit};
+use choose::Shape;
+use cover::{Cover, CoverTest};
+use curved::Grid;
+use glam::DVec3;
+use tree::Tree;
+
+/// A point of the true surface with the normal of the side meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// Metres.
+    pub position: DVec3,
+    /// Unit normal of the side meant.
+    pub normal: DVec3,
+}
+
+/// One side of one cell of a surface.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    /// Corners, counter-clockwise seen from the side meant.
+    pub polygon: Vec<DVec3>,
+    /// Unit normal of the side meant.
+    pub normal: DVec3,
+    /// Centre of mass of the polygon.
+    pub centre: DVec3,
+    /// True area, without what is covered, m².
+    pub area: f64,
+    /// Area of the polygon, m².
+    pub flat_area: f64,
+    /// True area, covered or not, over the area of the polygon: 1 on flat surfaces with straight edges.
+    pub stretch: f64,
+    /// Number of the primitive.
+    pub primitive: usize,
+    /// The side of the primitive's normal.
+    pub front: bool,
+    /// The sphere the polygon stands for a piece of: centre and radius.
+    pub ball: Option<(DVec3, f64)>,
+    /// Albedo per channel.
+    pub reflectance: DVec3,
+    /// Radiance it emits, W·sr⁻¹·m⁻²; zero on the back.
+    pub emission: DVec3,
+}
+
+impl Patch {
+    /// The point of the true surface that a point of the polygon stands for.
+    pub fn lift(&self, p: DVec3) -> SurfacePoint {
+        match self.ball {
+            None => SurfacePoint { position: p, normal: self.normal },
+            Some((center, radius)) => {
+                let out = (p - center).normalize();
+                SurfacePoint { position: center + radius * out, normal: if self.is_concave() { -out } else { out } }
+            }
+        }
+    }
+
+    /// A piece of the inside of a sphere.
+    pub fn is_concave(&self) -> bool {
+        self.ball.is_some_and(|(center, _)| self.normal.dot(self.centre - center) < 0.0)
+    }
+}
+
+/// All patches of a scene. They are numbered primitive by primitive, front before back.
+#[derive(Clone, Debug)]
+pub struct Patches {
+    list: Vec<Patch>,
+    primitives: Vec<Primitive>,
+    indices: Vec<Index>,
+    surface_area: f64,
+    covered_area: f64,
+}
+
+/// The cells of a primitive and the patch on each side of each.
+#[derive(Clone, Debug)]
+struct Index {
+    shape: Shape,
+    patch: [Vec<Option<u32>>; 2],
+}
+
+impl Patches {
+    /// About `n` patches of nearly equal area; at least one per uncovered side, six per disk, eight per sphere.
+    ///
+    /// ```
+    /// use fredholm::{operator::patches::Patches, scene::description::*};
+    /// use glam::DVec3;
+    /// let camera = CameraDescription { origin: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov: 40.0, size: [8, 8] };
+    /// let grey = Material { name: "grey".into(), reflectance: DVec3::splat(0.5), sides: Sides::Front };
+    /// let geometry = Geometry::Box { min: DVec3::ZERO, max: DVec3::ONE, rotate_y: 0.0, inward: true };
+    /// let room = Shape { name: "room".into(), geometry, material: 0, emission: DVec3::ONE };
+    /// let scene = Description { name: "furnace".into(), camera, materials: vec![grey], shapes: vec![room], expect: None };
+    /// let patches = Patches::new(&scene, 96)?;
+    /// assert_eq!(patches.len(), 96);
+    /// assert_eq!(patches.surface_area(), 6.0);
+    /// # Ok::<(), fredholm::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If `n` is zero, nothing reflects, a surface has no area or a shape names a material that is not there.
+    pub fn new(scene: &Description, n: usize) -> Result<Self, SceneError> {
+        if n == 0 {
+            return Err(SceneError::new("a mesh of 0 patches cannot hold anything").help("ask for at least one patch"));
+        }
+        let listed = scene.primitives();
+        for &(s, p) in &listed {
+            let shape = &scene.shapes[s];
+            if shape.material >= scene.materials.len() {
+                return Err(SceneError::new(format!("material {} does not exist", shape.material)).key(&shape.name));
+            }
+            if !(p.area() > 0.0 && p.area().is_finite()) {
+                let what = format!("a surface of {} has the area {}", shape.name, p.area());
+                return Err(SceneError::new(what).key(&shape.name).help("remove or repair it"));
+            }
+        }
+        let sides = |s: usize| scene.materials[scene.shapes[s].material].sides;
+        let primitives: Vec<(Primitive, Sides)> = listed.iter().map(|&(s, p)| (p, sides(s))).collect();
+        let cover = CoverTest::new(BruteForce::new(scene), primitives.clone());
+
+        // cut, classify, and only then divide: covered regions take no patches
+        let regions = choose::regions(&primitives, &cover);
+        let a = choose::cell_area(&regions, n);
+
+        let mut patches = Self {
+            list: Vec::new(),
+            primitives: primitives.iter().map(|p| p.0).collect(),
+            indices: Vec::new(),
+            surface_area: primitives.iter().map(|(p, s)| p.area() * sides_of(*s).count() as f64).sum(),
+            covered_area: 0.0,
+        };
+        for (number, region) in regions.into_iter().enumerate() {
+            let (s, p) = listed[number];
+            let mut index = Index { shape: region.divide(&p, a), patch: [Vec::new(), Vec::new()] };
+            for side in sides_of(sides(s)) {
+                let front = side == 0;
+                index.patch[side] = vec![None; index.shape.len()];
+                for cell in index.shape.cells() {
+                    let geometry = PatchGeometry::new(&p, cell.polygon, cell.area, front);
+                    let free = match cell.cover[side] {
+                        Cover::Free => 1.0,
+                        Cover::Covered => 0.0,
+                        Cover::Mixed => cover.free_share(number, &geometry.polygon, 8, |x| geometry.lift(x)),
+                    };
+                    patches.covered_area += (1.0 - free) * cell.area;
+                    if free > 0.0 {
+                        index.patch[side][cell.number] = Some(patches.list.len() as u32);
+                        let shape = &scene.shapes[s];
+                        patches.list.push(Patch {
+                            area: free * cell.area,
+                            primitive: number,
+                            reflectance: scene.materials[shape.material].reflectance,
+                            emission: if front { shape.emission } else { DVec3::ZERO },
+                            ..geometry
+                        });
+                    }
+                }
+            }
+            patches.indices.push(index);
+        }
+        if patches.list.is_empty() {
+            return Err(SceneError::new("no surface of the scene can be seen").help("add a shape"));
+        }
+        Ok(patches)
+    }
+
+    /// The patch of a point of the surface, also when rounding has put it slightly outside; `None` where covered.
+    pub fn locate(&self, primitive: usize, front: bool, point: DVec3) -> Option<usize> {
+        let index = self.indices.get(primitive)?;
+        index.patch[usize::from(!front)].get(index.shape.locate(point)).copied().flatten().map(|i| i as usize)
+    }
+
+    /// How many patches there are.
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Never true: [`Patches::new`] refuses such scenes.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Area of all reflecting sides, covered or not, m²: what a sensor that samples all surfaces divides by.
+    pub fn surface_area(&self) -> f64 {
+        self.surface_area
+    }
+
+    /// Area of the reflecting sides that no patch holds because they are covered, m².
+    pub fn covered_area(&self) -> f64 {
+        self.covered_area
+    }
+
+    /// The primitives the patches lie on, in the order of [`Description::primitives`].
+    pub fn primitives(&self) -> &[Primitive] {
+        &self.primitives
+    }
+
+    /// The areas Aᵢ.
+    pub fn areas(&self) -> Vec<f64> {
+        self.list.iter().map(|p| p.area).collect()
+    }
+}
+
+impl std::ops::Deref for Patches {
+    type Target = [Patch];
+    fn deref(&self) -> &[Patch] {
+        &self.list
+    }
+}
+
+/// The reflecting sides: 0 is the front, 1 the back.
+fn sides_of(sides: Sides) -> std::ops::Range<usize> {
+    match sides {
+        Sides::Front => 0..1,
+        Sides::Both => 0..2,
+    }
+}
+
+/// A [`Patch`] of which only the geometry is filled in.
+type PatchGeometry = Patch;
+
+impl PatchGeometry {
+    fn new(primitive: &Primitive, mut polygon: Vec<DVec3>, area: f64, front: bool) -> Self {
+        if !front {
+            polygon.reverse();
+        }
+        let vector = polygon::area_vector(&polygon);
+        let flat_area = vector.length();
+        let ball = match *primitive {
+            Primitive::Sphere { center, radius, .. } => Some((center, radius)),
+            _ => None,
+        };
+        Self {
+            normal: vector / flat_area,
+            centre: polygon::centroid(&polygon),
+            polygon,
+            area,
+            flat_area,
+            stretch: area / flat_area,
+            primitive: 0,
+            front,
+            ball,
+            reflectance: DVec3::ZERO,
+            emission: DVec3::ZERO,
+        }
+    }
+}

