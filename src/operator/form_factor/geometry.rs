@@ -285,11 +285,13 @@ mod tests {
         ] {
             let plain = midpoint(&a, &b, 40);
             assert!((polygon_to_polygon(&a, &b) / plain - 1.0).abs() < 2e-3, "{plain}");
-            assert!((polygon_to_polygon(&a, &b) * area_vector(&a).length()
-                / (polygon_to_polygon(&b, &a) * area_vector(&b).length())
-                - 1.0)
-                .abs()
-                < 1e-6);
+            assert!(
+                (polygon_to_polygon(&a, &b) * area_vector(&a).length()
+                    / (polygon_to_polygon(&b, &a) * area_vector(&b).length())
+                    - 1.0)
+                    .abs()
+                    < 1e-6
+            );
         }
     }
 

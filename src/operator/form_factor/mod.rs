@@ -197,7 +197,11 @@ impl Pairs<'_> {
         }
         let pair = (i as u64) << 32 | j as u64;
         let (share, traced) = visible_share(self.sampling, (a, pa), (b, pb), flat_kernel, pair, |x, y| {
-            if among.len() > MAX_LISTED { self.visibility.visible(x, y) } else { self.visibility.visible_among(x, y, among) }
+            if among.len() > MAX_LISTED {
+                self.visibility.visible(x, y)
+            } else {
+                self.visibility.visible_among(x, y, among)
+            }
         });
         *rays += u64::from(traced);
         share

@@ -61,8 +61,11 @@ impl Tree {
         }
         let axis = normal.cross(along).normalize();
         let offset = axis.dot(a);
-        let crossed: Vec<usize> =
-            self.cells().filter(|(_, p)| crosses(p, normal, a, b, axis, offset, TINY * self.size)).map(|c| c.0).collect();
+        let crossed: Vec<usize> = self
+            .cells()
+            .filter(|(_, p)| crosses(p, normal, a, b, axis, offset, TINY * self.size))
+            .map(|c| c.0)
+            .collect();
         for &cell in &crossed {
             self.split(cell, axis, offset);
         }
