@@ -151,8 +151,8 @@ mod tests {
         let (mean, cov) = two_pass(rows);
         for a in 0..3 {
             assert!((m.mean()[a] - mean[a]).abs() < 1e-13 * (1.0 + mean[a].abs()), "mean {a}");
-            for b in 0..3 {
-                assert!((m.covariance()[(a, b)] - cov[a][b]).abs() < 1e-9 * 900.0, "covariance {a} {b}");
+            for (b, expected) in cov[a].iter().enumerate() {
+                assert!((m.covariance()[(a, b)] - expected).abs() < 1e-9 * 900.0, "covariance {a} {b}");
             }
         }
     }
@@ -166,12 +166,8 @@ mod tests {
     fn parts_merge_in_any_order() {
         let rows = rows();
         for cuts in [[0, 5, 20], [1, 2, 3], [10, 10, 36]] {
-            let mut parts = vec![
-                of(&rows[..cuts[0]]),
-                of(&rows[cuts[0]..cuts[1]]),
-                of(&rows[cuts[1]..cuts[2]]),
-                of(&rows[cuts[2]..]),
-            ];
+            let mut parts =
+                [of(&rows[..cuts[0]]), of(&rows[cuts[0]..cuts[1]]), of(&rows[cuts[1]..cuts[2]]), of(&rows[cuts[2]..])];
             for _ in 0..4 {
                 parts.rotate_left(1);
                 let mut all = Moments::new(3);

@@ -9,7 +9,7 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | effect | first world − second world | [`Verdict::effect`] |
-//! | s, ν | standard error of the effect, its degrees of freedom | [`difference`](super::difference) |
+//! | s, ν | standard error of the effect, its degrees of freedom | [`difference`] |
 //! | a | allowance: an error that is no noise (discretisation) | [`compare`] |
 //! | δ | 2 % of the term + 10⁻⁴ of the whole image, per channel | [`Criterion`] |
 //! | α | chance that two equal worlds are told apart anywhere in the whole family | [`Criterion::alpha`] |
