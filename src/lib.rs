@@ -8,3 +8,4 @@ pub mod scene;
 pub mod solver;
 pub mod stats;
 pub mod terms;
+pub mod worlds;

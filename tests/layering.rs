@@ -6,7 +6,7 @@ use std::{fs, path::Path};
 /// Rank of each folder of `src/`; a module may use modules of lower rank, and itself. Equal ranks are siblings that do
 /// not know each other. `main.rs`, `lib.rs` and `cli/` tie everything together and are exempt as users; nobody may use
 /// `cli`.
-const ORDER: [(&str, u32); 10] = [
+const ORDER: [(&str, u32); 11] = [
     ("math", 0),
     ("scene", 1),
     ("terms", 2),
@@ -15,8 +15,9 @@ const ORDER: [(&str, u32); 10] = [
     ("solver", 4),
     ("zoo", 5),
     ("stats", 6),
-    ("report", 7),
-    ("cli", 8),
+    ("worlds", 7),
+    ("report", 8),
+    ("cli", 9),
 ];
 
 fn rank(module: &str) -> Option<u32> {

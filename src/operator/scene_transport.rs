@@ -13,6 +13,8 @@
 //! | p_ω = p_A r²/cos θ_y | the same in solid angle | `solid_angle` here |
 //! | V | nothing between | [`crate::scene::Scene::blocked`] |
 
+use super::form_factor::Visibility;
+use super::patches::SurfacePoint;
 use super::transport::{self, Samples, Sensor, Step, Transport, Wave};
 use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::scene::bsdf::diffuse::{self, Sampling};
@@ -179,6 +181,14 @@ impl Transport for SceneTransport<'_> {
             }
         });
         rays.cosine = cosine;
+    }
+}
+
+impl Visibility for Scene {
+    fn visible(&self, a: SurfacePoint, b: SurfacePoint) -> bool {
+        let f = |p: SurfacePoint| (p.position.as_vec3(), p.normal.as_vec3());
+        let ((p, n), (q, m)) = (f(a), f(b));
+        !self.blocked(p, n, q, m)
     }
 }
 

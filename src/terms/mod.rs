@@ -13,6 +13,7 @@ pub mod functional;
 pub mod image;
 pub mod norms;
 pub mod series;
+pub mod variance;
 
 pub use film::{Shape, TermFilm};
 pub use image::TermImage;

@@ -1,0 +1,87 @@
+//! The radiosity solution seen through the camera: one sampled application of T at the pixel.
+//!
+//! `(T^k E)(x) ≈ weight · (T_h^{k−1} E)_{j(y)}`, where x is what the pixel sees and y the end of one ray scattered there;
+//! k = 0 is E(x) itself. This is the Sloan iterate `E + T B_h`, 5 to 20 times closer to the limit of fine meshes than reading
+//! the patch under the pixel. One ray serves all k at once. For k = 1 it reads E, so **T¹ tests no matrix**.
+//!
+//! | notation | meaning | place |
+//! |---|---|---|
+//! | `T_h^k E` | terms per patch | [`Gather::terms`] |
+//! | j(y) | the patch of a point | [`Patches::locate`] |
+//! | slot K + 1 | `B_h − Σ_{k≤K} T_h^k E` | [`Gather::tail`] |
+//!
+//! Reference: Sloan, *Improvement by iteration for compact operator equations* (Math. Comp. 30, 1976); in rendering, the
+//! final gather of Reichert (1992).
+
+use super::{Batch, Paths, TermEstimator, TermSink};
+use crate::math::Columns;
+use crate::operator::{SceneTransport, Sensor, patches::Patches};
+use crate::scene::{Vertex, VertexWave};
+use glam::DVec3;
+
+/// Reads the terms of a matrix through a camera.
+#[derive(Clone, Debug)]
+pub struct Gather<'a> {
+    /// The mesh.
+    pub patches: &'a Patches,
+    /// `T_h^k E` per patch, k = 0..=K.
+    pub terms: &'a [Vec<DVec3>],
+    /// `B_h − Σ_{k≤K} T_h^k E` per patch.
+    pub tail: Vec<DVec3>,
+    /// Read the patch under the pixel instead of gathering.
+    pub read_patches: bool,
+}
+
+impl<'a> Gather<'a> {
+    /// From the terms k = 0..=K and the whole solution.
+    pub fn new(patches: &'a Patches, terms: &'a [Vec<DVec3>], solution: &[DVec3], read_patches: bool) -> Self {
+        let rest = |(i, b): (usize, &DVec3)| *b - terms.iter().map(|t| t[i]).sum::<DVec3>();
+        Self { patches, terms, tail: solution.iter().enumerate().map(rest).collect(), read_patches }
+    }
+
+    fn patch(&self, v: &Vertex) -> Option<usize> {
+        self.patches.locate((v.side / 2) as usize, v.side & 1 == 0, v.p.as_dvec3())
+    }
+}
+
+impl<'s> TermEstimator<SceneTransport<'s>> for Gather<'_> {
+    fn slots(&self) -> usize {
+        self.terms.len() + 1
+    }
+
+    fn sample(
+        &self,
+        t: &SceneTransport<'s>,
+        sensor: &impl Sensor<SceneTransport<'s>>,
+        batch: &Batch,
+        paths: &mut Paths<VertexWave>,
+        sink: &mut impl TermSink,
+    ) -> u64 {
+        paths.start(t, sensor, batch);
+        let mut rays = batch.len() as u64;
+        let tail = self.terms.len();
+        // `shift` is how many bounces lie between the pixel and the patch that is read
+        let shift = usize::from(!self.read_patches);
+        if !self.read_patches {
+            paths.emission(t);
+            sink.add(0, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+            rays += paths.n as u64;
+            paths.scatter(t, 0);
+        }
+        let at: Vec<Option<usize>> = (0..paths.n).map(|i| self.patch(&paths.state.get(i))).collect();
+        let mut value = Columns::new(paths.n);
+        for slot in shift..=tail {
+            for (i, patch) in at.iter().enumerate() {
+                // T_h^k E for k < K; the tail takes T_h^K E too when a bounce lies between
+                let radiance = patch.map_or(DVec3::ZERO, |j| match slot {
+                    s if s < tail => self.terms[s - shift][j],
+                    _ if self.read_patches => self.tail[j],
+                    _ => self.tail[j] + self.terms[tail - 1][j],
+                });
+                value.set(i, paths.through.get(i) * radiance.as_vec3());
+            }
+            sink.add(slot, &paths.pixel[..paths.n], &paths.sample[..paths.n], &value);
+        }
+        rays
+    }
+}

@@ -1,0 +1,61 @@
+//! One scene, solved three ways: each function takes a scene through one realisation of T, from paths or patches to a
+//! [`Series`](crate::terms::Series) with images.
+//!
+//! | world | what is computed | place |
+//! |---|---|---|
+//! | terms | every `T^k E` by its own estimator | [`sampled::terms`] |
+//! | path | Σ T^k E by the full path tracer | [`sampled::path`] |
+//! | radiosity | `T_h^k E` and the solve, through the same camera | [`discrete::radiosity`] |
+//! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
+
+pub mod discrete;
+pub mod sampled;
+pub mod surface;
+
+use crate::estimator::{Plan, Roulette, Technique};
+use crate::scene::bsdf::diffuse::Sampling;
+use crate::terms::TermFilm;
+
+/// What a run is made with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Samples per pixel.
+    pub spp: u32,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// K.
+    pub max_bounces: usize,
+    /// How light is found.
+    pub technique: Technique,
+    /// How directions are drawn.
+    pub sampling: Sampling,
+    /// How paths of the terms end; with [`Roulette::after`] K, the terms keep all their samples.
+    pub roulette: Roulette,
+    /// How paths of the path tracer end.
+    pub path_roulette: Roulette,
+    /// About how many patches the matrix has.
+    pub patches: usize,
+    /// Read the patch under the pixel instead of gathering.
+    pub read_patches: bool,
+}
+
+impl Settings {
+    /// The plan of the term estimators.
+    pub fn plan(&self) -> Plan {
+        Plan { max_bounces: self.max_bounces, technique: self.technique, roulette: self.roulette.clone() }
+    }
+}
+
+/// Who watches a long run.
+pub trait Observer: Sync {
+    /// A stretch of work begins, with so many units to do.
+    fn begin(&self, _what: &str, _units: u64) {}
+    /// Some units are done.
+    fn advance(&self, _units: u64) {}
+    /// The film after a complete pass.
+    fn preview(&self, _film: &TermFilm) {}
+}
+
+/// Nobody watches.
+pub struct Unobserved;
+impl Observer for Unobserved {}

@@ -1,0 +1,143 @@
+//! The continuous world: terms and path tracer, from rays to series and images.
+
+use super::{Observer, Settings};
+use crate::estimator::render::{Amount, Watch, render};
+use crate::estimator::{PathTracer, Plan, Prefix, SingleTerm, TermEstimator};
+use crate::math::Key;
+use crate::operator::{SceneTransport, Sensor, Transport};
+use crate::scene::Scene;
+use crate::terms::functional::{Replicates, functionals, image_replicates};
+use crate::terms::norms::{SquaredNorm, squared_norm};
+use crate::terms::variance::{Snapshot, snapshot};
+use crate::terms::{Cost, Series, TermFilm, TermImage, World};
+use std::fmt;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Which estimator of the terms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Estimator {
+    /// Each term from paths of its own.
+    Single,
+    /// All terms from the prefixes of one path.
+    Prefix,
+}
+
+impl fmt::Display for Estimator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if *self == Self::Single { "single" } else { "prefix" })
+    }
+}
+
+/// What rays gave: means with errors, images, and how the errors fell.
+#[derive(Clone, Debug)]
+pub struct Sampled {
+    /// Means and errors.
+    pub series: Series,
+    /// Images of T^k E, k = 0..=K; none for the path tracer.
+    pub terms: Vec<TermImage>,
+    /// Image of everything longer.
+    pub tail: TermImage,
+    /// Image of Σ_{k≤K}.
+    pub sum: TermImage,
+    /// The whole image.
+    pub total: TermImage,
+    /// The image mean by replicate, for covariances between terms.
+    pub replicates: Replicates,
+    /// Variances at 1, 2, 4, … samples per replicate.
+    pub snapshots: Vec<Snapshot>,
+    /// Squared L2 norms of the term images; none with fewer than three replicates.
+    pub norms: Vec<Option<SquaredNorm>>,
+    /// Least samples per pixel: fewer than asked for when interrupted.
+    pub spp: u32,
+}
+
+/// Every term by its own estimator.
+pub fn terms(
+    scene: &Scene,
+    estimator: Estimator,
+    settings: &Settings,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Sampled {
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let amount = Amount::new(settings.spp, Key::new(settings.seed, &estimator.to_string()));
+    let mut run = Run::new(&format!("terms, {estimator}"), scene.camera.size, settings.spp, observer);
+    let plan = settings.plan();
+    let film = match estimator {
+        Estimator::Prefix => render(&t, &scene.camera, &Prefix(plan), amount, &mut run, stop),
+        Estimator::Single => render(&t, &scene.camera, &SingleTerm(plan), amount, &mut run, stop),
+    };
+    run.finish(&film, World::Terms, format!("{estimator}, {}", settings.technique))
+}
+
+/// The full path tracer.
+pub fn path(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &AtomicBool) -> Sampled {
+    let plan = Plan { roulette: settings.path_roulette.clone(), ..settings.plan() };
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let label = format!("path tracer, {}, roulette {}", settings.technique, settings.path_roulette);
+    sample(&t, &scene.camera, &PathTracer(plan), "path", (World::Path, label), settings, observer, stop)
+}
+
+/// Any estimator through any sensor.
+#[allow(clippy::too_many_arguments)] // the list of what a render is; a struct would only rename it
+pub(super) fn sample<T: Transport>(
+    t: &T,
+    sensor: &impl Sensor<T>,
+    estimator: &impl TermEstimator<T>,
+    stream: &str,
+    (world, label): (World, String),
+    settings: &Settings,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Sampled {
+    let amount = Amount::new(settings.spp, Key::new(settings.seed, stream));
+    let mut run = Run::new(stream, sensor.size(), settings.spp, observer);
+    let film = render(t, sensor, estimator, amount, &mut run, stop);
+    run.finish(&film, world, label)
+}
+
+/// A render under way.
+struct Run<'a> {
+    observer: &'a dyn Observer,
+    started: Instant,
+    snapshots: Vec<Snapshot>,
+}
+
+impl<'a> Run<'a> {
+    fn new(what: &str, size: [u32; 2], spp: u32, observer: &'a dyn Observer) -> Self {
+        observer.begin(what, u64::from(size[0]) * u64::from(size[1]) * u64::from(spp));
+        Self { observer, started: Instant::now(), snapshots: vec![] }
+    }
+
+    fn finish(self, film: &TermFilm, world: World, label: String) -> Sampled {
+        let slots = film.shape.slots;
+        let paths = film.samples.iter().map(|&n| u64::from(n)).sum();
+        let cost =
+            Cost { paths, rays: film.rays, non_finite: film.non_finite, seconds: self.started.elapsed().as_secs_f64() };
+        let image = |s: usize| TermImage::of(film, s..s + 1);
+        Sampled {
+            series: Series { world, label, functionals: functionals(film), cost },
+            terms: (0..slots - 1).map(image).collect(),
+            tail: if slots > 1 { image(slots - 1) } else { TermImage::default() },
+            sum: if slots > 1 { TermImage::of(film, 0..slots - 1) } else { TermImage::default() },
+            total: TermImage::of(film, 0..slots),
+            replicates: image_replicates(film),
+            snapshots: self.snapshots,
+            norms: (0..slots - 1).map(|s| squared_norm(film, s)).collect(),
+            spp: film.least_samples(),
+        }
+    }
+}
+
+impl Watch for Run<'_> {
+    fn paths(&self, paths: u64) {
+        self.observer.advance(paths);
+    }
+    fn pass(&mut self, film: &TermFilm) {
+        self.observer.preview(film);
+        if film.shape.replicates > 1 {
+            self.snapshots.push(snapshot(film));
+        }
+    }
+}

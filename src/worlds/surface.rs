@@ -1,0 +1,50 @@
+//! ‖T^k E‖₁ over the whole scene: the terms as the surface sensor sees them.
+//!
+//! `∫∫ (T^k E)(x, ω) cos θ dω dA / (πA)`, the plain mean over uniform surface points and cosine-distributed directions: camera-free,
+//! unbiased, and the same number as `Σ A_i (T_h^k E)_i / A` of the matrix. The bounds of ‖T‖₁ ≤ max albedo hold for it.
+
+use super::{Observer, Settings, sampled::Estimator};
+use crate::estimator::render::{Amount, Watch, render};
+use crate::estimator::{Prefix, SingleTerm};
+use crate::math::Key;
+use crate::operator::{SceneTransport, scene_transport::SurfaceStrip};
+use crate::scene::{Scene, SurfaceSensor};
+use crate::terms::functional::{Replicates, image_replicates};
+use std::sync::atomic::AtomicBool;
+
+/// Replicates behind the errors: enough for a covariance of ten terms.
+const REPLICATES: u32 = 64;
+/// Paths that run side by side.
+const STRIP: u32 = 256;
+
+/// The surface norms of the terms, replicate by replicate, from about `paths` paths.
+pub fn norms(
+    scene: &Scene,
+    estimator: Estimator,
+    paths: u32,
+    settings: &Settings,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Replicates {
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let strip = SurfaceStrip { sensor: SurfaceSensor::new(scene), pixels: STRIP };
+    let spp = (paths / STRIP).next_multiple_of(REPLICATES).max(REPLICATES);
+    let key = Key::new(settings.seed, &format!("surface {estimator}"));
+    let amount = Amount { spp, replicates: REPLICATES as usize, key };
+    observer.begin(&format!("surface norms, {estimator}"), u64::from(spp) * u64::from(STRIP));
+    let mut watch = Advance(observer);
+    let plan = settings.plan();
+    let film = match estimator {
+        Estimator::Prefix => render(&t, &strip, &Prefix(plan), amount, &mut watch, stop),
+        Estimator::Single => render(&t, &strip, &SingleTerm(plan), amount, &mut watch, stop),
+    };
+    image_replicates(&film)
+}
+
+struct Advance<'a>(&'a dyn Observer);
+
+impl Watch for Advance<'_> {
+    fn paths(&self, paths: u64) {
+        self.0.advance(paths);
+    }
+}
