@@ -12,6 +12,7 @@ use proptest::{
     test_runner::{Config, RngAlgorithm, TestRng, TestRunner},
 };
 use std::{
+    cell::Cell,
     f64::consts::PI,
     path::{Path, PathBuf},
 };
@@ -123,16 +124,17 @@ fn the_good_scene_is_read_as_written() {
 }
 
 /// (text of GOOD, its replacement, line, key, what)
+#[rustfmt::skip]
 const REFUSED: &[(&str, &str, usize, &str, &str)] = &[
     // the file
     ("name = \"good\"", "nane = \"good\"", 1, "nane", "unknown key `nane`"),
     ("name = \"good\"", "name = 3", 1, "name", "expected a string, found an integer"),
     ("name = \"good\"", "name = \"../up\"", 1, "name", "`../up` cannot be the name of a folder"),
     ("name = \"good\"", "name = \" \"", 1, "name", "the string is empty"),
-    ("[camera]", "[kamera]", 1, "camera", "missing key `camera`"),
-    ("[expect]", "[[lights]]\ntype = \"point\"\n[expect]", 54, "lights[0]", "point lights are not supported yet"),
-    ("[expect]", "[[lights]]\ntype = \"lamp\"\n[expect]", 54, "lights[0]", "unknown light type `lamp`"),
-    ("[expect]", "[lights]\n[expect]", 54, "lights", "[[lights]] are not supported yet"),
+    ("[camera]", "[kamera]", 3, "kamera", "unknown key `kamera`"),
+    ("[expect]", "[[lights]]\ntype = \"point\"\n[expect]", 55, "lights[0]", "point lights are not supported yet"),
+    ("[expect]", "[[lights]]\ntype = \"lamp\"\n[expect]", 55, "lights[0]", "unknown light type `lamp`"),
+    ("[expect]", "[lights]\n[expect]", 55, "lights", "[[lights]] are not supported yet"),
     // the camera
     ("up = [0, 1, 0]\n", "", 3, "camera.up", "missing key `up`"),
     ("fov = 40", "fovv = 40", 7, "camera.fovv", "unknown key `fovv`"),
@@ -145,13 +147,7 @@ const REFUSED: &[(&str, &str, usize, &str, &str)] = &[
     ("size = [8, 6]", "size = [8, 6, 1]", 8, "camera.size", "expected 2 integers, found 3"),
     ("origin = [0, 0, 4]", "origin = [0, 0]", 4, "camera.origin", "expected 3 numbers, found 2"),
     ("origin = [0, 0, 4]", "origin = [0, inf, 0]", 4, "camera.origin[1]", "inf is not finite"),
-    (
-        "origin = [0, 0, 4]",
-        "origin = [0, 0, 1e13]",
-        4,
-        "camera.origin[2]",
-        "10000000000000 m is too far for single-precision rays",
-    ),
+    ("origin = [0, 0, 4]", "origin = [0, 0, 1e13]", 4, "camera.origin[2]", "1e13 m is too far for single-precision rays"),
     ("origin = [0, 0, 4]", "origin = [0, 0, 0]", 5, "camera.target", "camera origin and target are the same point"),
     ("up = [0, 1, 0]", "up = [0, 0, 2]", 6, "camera.up", "up is parallel to the viewing direction"),
     ("up = [0, 1, 0]", "up = [0, 0, 0]", 6, "camera.up", "up has zero length"),
@@ -165,57 +161,21 @@ const REFUSED: &[(&str, &str, usize, &str, &str)] = &[
     ("sides = \"front\"", "sides = \"fornt\"", 17, "materials.left.sides", "`fornt` is no choice of sides"),
     ("sides = \"front\"", "side = \"front\"", 17, "materials.left.side", "unknown key `side`"),
     ("sides = \"front\"", "texture = \"a.png\"", 17, "materials.left.texture", "textures are not supported yet"),
-    (
-        "type = \"diffuse\"\nreflectance = [0.6",
-        "type = \"mirror\"\nreflectance = [0.6",
-        15,
-        "materials.left.type",
-        "material type `mirror` is not supported yet",
-    ),
-    (
-        "type = \"diffuse\"\nreflectance = [0.6",
-        "type = \"diffus\"\nreflectance = [0.6",
-        15,
-        "materials.left.type",
-        "unknown material type `diffus`",
-    ),
+    ("type = \"diffuse\"\nreflectance = [0.6", "type = \"mirror\"\nreflectance = [0.6", 15, "materials.left.type", "material type `mirror` is not supported yet"),
+    ("type = \"diffuse\"\nreflectance = [0.6", "type = \"diffus\"\nreflectance = [0.6", 15, "materials.left.type", "unknown material type `diffus`"),
     // light
     ("emission = [1, 2, 3]", "emission = [1, -2, 3]", 25, "shapes[0].emission", "emission -2 is negative"),
-    (
-        "emission = [1, 2, 3]",
-        "emission = [1, 1e31, 3]",
-        25,
-        "shapes[0].emission",
-        "emission 10000000000000000000000000000000 is too large",
-    ),
+    ("emission = [1, 2, 3]", "emission = [1, 1e31, 3]", 25, "shapes[0].emission", "emission 1e31 is too large"),
     ("emission = [1, 2, 3]", "power = [1, -2, 3]", 25, "shapes[0].power", "power -2 is negative"),
-    (
-        "emission = [1, 2, 3]",
-        "emission = [1, 2, 3]\npower = [1, 1, 1]",
-        26,
-        "shapes[0].power",
-        "emission and power are both given",
-    ),
+    ("emission = [1, 2, 3]", "emission = [1, 2, 3]\npower = [1, 1, 1]", 26, "shapes[0].power", "emission and power are both given"),
     // shapes
     ("type = \"quad\"", "type = \"quat\"", 20, "shapes[0].type", "`quat` is no type of shape"),
     ("type = \"quad\"\n", "", 19, "shapes[0].type", "missing key `type`"),
-    (
-        "material = \"white\"\nemission",
-        "material = \"whit\"\nemission",
-        24,
-        "shapes[0].material",
-        "unknown material `whit`",
-    ),
+    ("material = \"white\"\nemission", "material = \"whit\"\nemission", 24, "shapes[0].material", "unknown material `whit`"),
     ("material = \"white\"\nemission", "emission", 19, "shapes[0].material", "missing key `material`"),
     ("edge_u = [1, 0, 0]", "edge_u = [0, 0, 0]", 22, "shapes[0].edge_u", "the edge has zero length"),
     ("edge_u = [1, 0, 0]", "edge_w = [1, 0, 0]", 22, "shapes[0].edge_w", "unknown key `edge_w`"),
-    (
-        "edge_v = [0, 1, 0]",
-        "edge_v = [-3, 0, 0]",
-        23,
-        "shapes[0].edge_v",
-        "edge_u and edge_v are parallel, the quad has no area",
-    ),
+    ("edge_v = [0, 1, 0]", "edge_v = [-3, 0, 0]", 23, "shapes[0].edge_v", "edge_u and edge_v are parallel, the quad has no area"),
     ("max = [1, 1, 1]", "max = [1, 0, 1]", 30, "shapes[1].max", "the box has no extent along y: min 0, max 0"),
     ("rotate_y = 10", "rotate_y = inf", 31, "shapes[1].rotate_y", "inf is not finite"),
     ("radius = 2", "radius = 0", 37, "shapes[2].radius", "radius 0 is not positive"),
@@ -228,46 +188,18 @@ const REFUSED: &[(&str, &str, usize, &str, &str)] = &[
     ("normal = [0, 0, 2]", "normal = [0, 0, 0]", 45, "shapes[3].normal", "the normal has zero length"),
     ("radius = 0.5", "radius = 2020-01-01", 46, "shapes[3].radius", "expected a number, found a date"),
     ("[0, 3, 2]]", "[0, 4, 2]]", 52, "shapes[4].faces[1]", "vertex index 4 is out of range, the mesh has 4 vertices"),
-    (
-        "[0, 3, 2]]",
-        "\n[0, -1, 2]]",
-        53,
-        "shapes[4].faces[1]",
-        "vertex index -1 is out of range, the mesh has 4 vertices",
-    ),
+    ("[0, 3, 2]]", "\n[0, -1, 2]]", 53, "shapes[4].faces[1]", "vertex index -1 is out of range, the mesh has 4 vertices"),
     ("[0, 3, 2]]", "[0, 1, 3]]", 52, "shapes[4].faces[1]", "the triangle [0, 1, 3] has no area"),
     ("[0, 3, 2]]", "[0, 1, 1]]", 52, "shapes[4].faces[1]", "the triangle [0, 1, 1] has no area"),
     ("[0, 3, 2]]", "[0, 1, 2, 3]]", 52, "shapes[4].faces[1]", "expected 3 vertex indices, found 4"),
     ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = []", 52, "shapes[4].faces", "the mesh has no faces"),
-    (
-        "faces = [[0, 1, 2], [0, 3, 2]]",
-        "faces = [[0, 1, 2]]\nuvs = [[0, 0]]",
-        53,
-        "shapes[4].uvs",
-        "uvs are not supported yet",
-    ),
-    (
-        "faces = [[0, 1, 2], [0, 3, 2]]",
-        "faces = [[0, 1, 2]]\ntransform = [[1, 0, 0, 0], [0, 1, 0, 0], [1, 1, 0, 0]]",
-        53,
-        "shapes[4].transform",
-        "the transform flattens the shape, its determinant is zero",
-    ),
-    (
-        "faces = [[0, 1, 2], [0, 3, 2]]",
-        "faces = [[0, 1, 2]]\ntransform = [[1, 0, 0], [0, 1, 0], [1, 1, 0]]",
-        53,
-        "shapes[4].transform[0]",
-        "expected 4 numbers, found 3",
-    ),
-    ("type = \"disk\"", "type = \"obj\"\nfile = \"no.obj\"", 44, "shapes[3].center", "unknown key `center`"),
-    (
-        "type = \"disk\"\ncenter = [0, 0, 0]\nnormal = [0, 0, 2]\nradius = 0.5",
-        "type = \"obj\"\nfile = \"no.obj\"",
-        44,
-        "shapes[3].file",
-        "cannot read `no.obj`",
-    ),
+    ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\nuvs = [[0, 0]]", 53, "shapes[4].uvs", "uvs are not supported yet"),
+    ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\ntransform = [[1, 0, 0, 0], [0, 1, 0, 0], [1, 1, 0, 0]]", 53, "shapes[4].transform", "the transform flattens the shape, its determinant is zero"),
+    ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\ntransform = [[1, 0, 0], [0, 1, 0], [1, 1, 0]]", 53, "shapes[4].transform[0]", "expected 4 numbers, found 3"),
+    ("type = \"disk\"", "type = \"obj\"\nfile = \"no.obj\"", 45, "shapes[3].center", "unknown key `center`"),
+    ("type = \"disk\"\ncenter = [0, 0, 0]\nnormal = [0, 0, 2]\nradius = 0.5", "type = \"obj\"\nfile = \"no.obj\"", 44, "shapes[3].file", "cannot read `no.obj`"),
+    ("edge_u = [1, 0, 0]\nedge_v = [0, 1, 0]\nmaterial = \"white\"\nemission = [1, 2, 3]", "edge_u = [1e-6, 0, 0]\nedge_v = [0, 1, 0]\nmaterial = \"white\"\npower = [1e30, 0, 0]", 25, "shapes[0].power", "that power makes the radiance 3.183e35"),
+    ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\ntransform = [[1e12, 0, 0, 1], [0, 1e12, 0, 0], [0, 0, 1e12, 0]]", 53, "shapes[4].transform", "the transform makes the shape too large, or a triangle of it too thin"),
     // closed forms
     ("terms = [1, 0.5]", "terms = []", 56, "expect.terms", "terms is empty"),
     ("terms = [1, 0.5]", "terms = [1, -0.5]", 56, "expect.terms[1]", "-0.5 is negative"),
@@ -320,10 +252,10 @@ fn a_scene_needs_shapes_and_light() {
     assert_eq!(e.what, "nothing in the scene emits light");
     assert!(e.help.unwrap().contains("materials in use: left, white"));
     let (head, _) = GOOD.split_once("[[shapes]]").unwrap();
-    assert_eq!(parse(head).unwrap_err().key.as_deref(), Some("shapes"));
+    assert_eq!(parse(head).unwrap_err().what, "missing key `shapes`");
     let e = parse(&format!("shapes = []\n{head}")).unwrap_err();
     assert_eq!((e.what.as_str(), e.line), ("the scene has no shapes", Some(1)));
-    assert_eq!(parse("").unwrap_err().key.as_deref(), Some("camera"));
+    assert_eq!(parse("").unwrap_err().what, "missing key `camera`");
     let empty_table = GOOD.replace("[[shapes]]\ntype = \"quad\"", "[shapes]\ntype = \"quad\"");
     assert!(parse(&empty_table).is_err());
 }
@@ -403,12 +335,7 @@ fn wrong_overrides_name_themselves() {
     ] {
         let e = with(&[set]).expect_err(set);
         assert!(e.what.starts_with(what), "{set}: {e}");
-        // an element that is read together with its untouched neighbours reports the line of the whole
-        if set.contains("reflectance[1]") {
-            assert_eq!((e.key.as_deref(), e.line), (Some(key), Some(12)));
-        } else {
-            assert_eq!((e.key, e.line, e.file), (Some(format!("--set {key}")), None, None), "{set}");
-        }
+        assert_eq!((e.key, e.line, e.file), (Some(format!("--set {key}")), None, None), "{set}");
         assert!(e.help.as_deref().unwrap_or_default().contains(help), "{set}: {:?}", e.help);
     }
 }
@@ -507,7 +434,7 @@ fn cornell_corners() {
         [0.048859101, 0.21, -0.089039102],
     ];
     let d = scene("cornell", &Options::default()).unwrap().description;
-    let center_of = |i: usize| DVec3::from([[0.335, -0.7, 0.38], [-0.335, -0.4, -0.38]][i - 6]);
+    let center_of = |i: usize| DVec3::from([[0.335, -0.7, 0.38], [-0.33, -0.4, -0.28]][i - 6]);
     for (i, corners) in [(6, small), (7, tall)] {
         let mut found = 0;
         for p in d.shapes[i].geometry.primitives() {
@@ -640,7 +567,7 @@ fn an_imperfect_obj_loads_with_warnings() {
             ":10: material `ligth` is not defined, it is grey 0.5; did you mean `light`?",
             ":13: material `light` has no Kd, it is grey 0.5",
             ":16: material `glossy` has Ks 0.5 0.5 0.5, map_Kd wood.png ignored, only Kd and Ke are read",
-            ": 1 triangles without area are left out",
+            ": triangles without area, left out: 1",
         ]
     );
     // seen from +z, the two metres fill 90 % of the frame
@@ -657,7 +584,7 @@ fn fans_of_concave_polygons_are_reported() {
     for (face, warned) in [("1 2 3 4", false), ("2 3 4 1", true)] {
         std::fs::write(&path, format!("v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf {face}\n")).unwrap();
         let loaded = scene(path.to_str().unwrap(), &options(&[], &["default=1,1,1"])).unwrap();
-        assert_eq!(loaded.warnings.iter().any(|w| w.contains("1 polygons are not convex")), warned, "{face}");
+        assert_eq!(loaded.warnings.iter().any(|w| w.contains("polygons that are not convex: 1")), warned, "{face}");
     }
 }
 
@@ -692,12 +619,25 @@ fn real_obj_files() {
     let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/inputs");
     let Ok(folder) = std::fs::read_dir(inputs.join("obj-edge-cases")) else { return };
     let edge_cases = folder.map(|f| f.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "obj"));
+    let (mut loaded, mut refused) = (0, 0);
     for path in edge_cases {
-        match scene(path.to_str().unwrap(), &Options::default()) {
-            Ok(l) => assert!(!l.description.shapes.is_empty()),
-            Err(e) => assert!(e.file.is_some() && e.help.is_some(), "{e}"),
+        let path = path.to_str().unwrap();
+        match scene(path, &Options::default()) {
+            Ok(l) => sound(&l),
+            // what is only dark is lit and loads
+            Err(e) if e.what == "nothing in the scene emits light" => {
+                let help = e.help.unwrap();
+                let name = help.rsplit_once("in use: ").unwrap().1.rsplit(", ").next().unwrap();
+                sound(&scene(path, &options(&[], &[&format!("{name}=1,1,1")])).unwrap());
+                loaded += 1;
+            }
+            Err(e) => {
+                assert!(e.file.is_some() && e.help.is_some(), "{e}");
+                refused += 1;
+            }
         }
     }
+    assert_eq!((loaded, refused), (37, 9));
     let cornell = scene(inputs.join("akuna/CornellBox-Original.obj").to_str().unwrap(), &Options::default()).unwrap();
     let d = cornell.description;
     assert_eq!(d.primitives().len(), 36);
@@ -719,49 +659,54 @@ fn runner(cases: u32) -> TestRunner {
     TestRunner::new_with_rng(Config { cases, failure_persistence: None, ..Config::default() }, rng)
 }
 
-/// Up to four splices of a text: (where, how much to cut, what to put there).
-fn edits() -> impl Strategy<Value = Vec<(prop::sample::Index, usize, String)>> {
-    let token = prop_oneof![
-        "[ -~\n]{0,6}",
-        prop::sample::select(vec![
-            "nan",
-            "-inf",
-            "1e400",
-            "9223372036854775807",
-            "-9223372036854775808",
-            "[",
-            "]]",
-            "0",
-            "-1",
-            "\"",
-            "'''",
-            "= ",
-            "[[shapes]]\n",
-            "{}",
-            "\n",
-            "#",
-            "é",
-            "\u{feff}",
-            "\0",
-            "/",
-            "//",
-            "1/1",
-            "f 1 1 1\n",
-            "usemtl ",
-            "mtllib .\n",
-            "\\\n",
-        ])
-        .prop_map(str::to_owned),
-    ];
-    prop::collection::vec((any::<prop::sample::Index>(), 0usize..12, token), 1..5)
+/// A change to a text: a splice anywhere, or another value for one of its numbers.
+#[derive(Clone, Debug)]
+enum Edit {
+    Splice { at: prop::sample::Index, cut: usize, put: String },
+    Number { which: prop::sample::Index, put: String },
 }
 
-fn spliced(text: &str, edits: &[(prop::sample::Index, usize, String)]) -> String {
+/// Up to three changes.
+fn edits() -> impl Strategy<Value = Vec<Edit>> {
+    #[rustfmt::skip]
+    let nasty = prop::sample::select(vec![
+        "nan", "-inf", "1e400", "9223372036854775807", "-9223372036854775808", "[", "]]", "0", "-1", "\"", "'''", "= ",
+        "[[shapes]]\n", "{}", "\n", "#", "é", "\u{feff}", "\0", "/", "//", "1/1", "f 1 1 1\n", "usemtl ", "mtllib .\n", "\\\n",
+    ]);
+    let token = prop_oneof!["[ -~\n]{0,6}", nasty.prop_map(str::to_owned)];
+    let number = prop_oneof![
+        (-4i32..5).prop_map(|i| i.to_string()),
+        (-3.0..3.0).prop_map(|x: f64| x.to_string()),
+        any::<f64>().prop_map(|x| x.to_string()),
+    ];
+    let splice = (any::<prop::sample::Index>(), 0usize..12, token);
+    let edit = prop_oneof![
+        splice.prop_map(|(at, cut, put)| Edit::Splice { at, cut, put }),
+        (any::<prop::sample::Index>(), number).prop_map(|(which, put)| Edit::Number { which, put }),
+    ];
+    prop::collection::vec(edit, 1..4)
+}
+
+fn edited(text: &str, edits: &[Edit]) -> String {
     let mut chars: Vec<char> = text.chars().collect();
-    for (at, cut, put) in edits {
-        let at = at.index(chars.len() + 1);
-        let end = (at + cut).min(chars.len());
-        chars.splice(at..end, put.chars());
+    for edit in edits {
+        match edit {
+            Edit::Splice { at, cut, put } => {
+                let at = at.index(chars.len() + 1);
+                let end = (at + cut).min(chars.len());
+                chars.splice(at..end, put.chars());
+            }
+            Edit::Number { which, put } => {
+                let part = |i: usize| chars.get(i).is_some_and(|c| c.is_ascii_digit() || ".-".contains(*c));
+                let starts: Vec<usize> = (0..chars.len()).filter(|&i| part(i) && (i == 0 || !part(i - 1))).collect();
+                if starts.is_empty() {
+                    continue;
+                }
+                let start = *which.get(&starts);
+                let end = (start..).find(|&i| !part(i)).unwrap_or(chars.len());
+                chars.splice(start..end, put.chars());
+            }
+        }
     }
     chars.into_iter().collect()
 }
@@ -777,23 +722,24 @@ fn sound(l: &Loaded) {
 
 #[test]
 fn garbage_in_toml_never_panics() {
-    let (mut good, mut refused) = (0, 0);
+    let (good, refused) = (Cell::new(0), Cell::new(0));
     runner(2000)
         .run(&edits(), |edits| {
-            match parse(&spliced(GOOD, &edits)) {
+            match parse(&edited(GOOD, &edits)) {
                 Ok(l) => {
                     sound(&l);
-                    good += 1;
+                    good.set(good.get() + 1);
                 }
                 Err(e) => {
                     assert!(!e.what.is_empty() && e.help.is_some(), "{e}");
-                    refused += 1;
+                    refused.set(refused.get() + 1);
                 }
             }
             Ok(())
         })
         .unwrap();
-    assert!(good > 20 && refused > 200, "{good} loaded, {refused} refused: the edits test nothing");
+    let (good, refused) = (good.get(), refused.get());
+    assert!(good > 100 && refused > 500, "{good} loaded, {refused} refused: the edits test nothing");
 }
 
 #[test]
@@ -802,21 +748,22 @@ fn garbage_in_obj_mtl_and_overrides_never_panics() {
     let (obj, mtl) = (folder.path().join("imperfect.obj"), folder.path().join("imperfect.mtl"));
     let (obj_text, mtl_text) =
         ["imperfect.obj", "imperfect.mtl"].map(|f| std::fs::read_to_string(bad(f)).unwrap()).into();
-    let mut good = 0;
+    let good = Cell::new(0);
     runner(600)
         .run(&(edits(), edits(), edits(), any::<bool>()), |(a, b, c, both)| {
-            std::fs::write(&obj, spliced(&obj_text, &a)).unwrap();
-            std::fs::write(&mtl, if both { spliced(&mtl_text, &b) } else { mtl_text.clone() }).unwrap();
+            std::fs::write(&obj, edited(&obj_text, &a)).unwrap();
+            std::fs::write(&mtl, if both { edited(&mtl_text, &b) } else { mtl_text.clone() }).unwrap();
             if let Ok(l) = scene(obj.to_str().unwrap(), &Options::default()) {
                 sound(&l);
-                good += 1;
+                good.set(good.get() + 1);
             }
-            let set = spliced("shapes[4].vertices=[[0, 0, 0], [1, 0, 0], [1, 1, 0], [2, 0, 0]]", &c);
+            let set = edited("shapes[4].vertices=[[0, 0, 0], [1, 0, 0], [1, 1, 0], [2, 0, 0]]", &c);
             if let Ok(l) = with(&[&set]) {
                 sound(&l);
             }
             Ok(())
         })
         .unwrap();
+    let good = good.get();
     assert!(good > 50, "only {good} loaded: the edits test nothing");
 }

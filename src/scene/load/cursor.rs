@@ -12,8 +12,10 @@ use std::path::Path;
 
 /// Positions and lengths live in (1e-12, 1e12) metres, so that their squares fit the `f32` of the rays.
 pub(super) const LARGEST_LENGTH: f64 = 1e12;
+/// See [`LARGEST_LENGTH`].
+pub(super) const SMALLEST_LENGTH: f64 = 1e-12;
 /// Radiances and powers up to here fit `f32` with room for a path's weights.
-const LARGEST_LIGHT: f64 = 1e30;
+pub(super) const LARGEST_LIGHT: f64 = 1e30;
 
 /// A value of the scene with its key.
 #[derive(Clone, Debug)]
@@ -26,7 +28,9 @@ pub(super) struct Cursor<'a> {
 impl<'a> Cursor<'a> {
     /// An error at this value.
     pub(super) fn error(&self, what: impl Into<String>) -> SceneError {
+        let overridden = matches!(&self.node.value, Value::List(l) if l.iter().any(|n| n.place == Place::Override));
         match self.node.place {
+            _ if overridden => SceneError::new(what).key(format!("--set {}", self.key)),
             Place::Line(line) if self.key.is_empty() => SceneError::new(what).at(self.file, line),
             Place::Line(line) => SceneError::new(what).at(self.file, line).key(&self.key),
             Place::Override => SceneError::new(what).key(format!("--set {}", self.key)),
@@ -101,7 +105,7 @@ impl<'a> Cursor<'a> {
         if x.abs() <= LARGEST_LENGTH {
             return Ok(x);
         }
-        Err(self.error(format!("{x} m is too far for single-precision rays")).help("stay within 1e12 m"))
+        Err(self.error(format!("{x:e} m is too far for single-precision rays")).help("stay within 1e12 m"))
     }
 
     /// An integer in `[low, high]`.
@@ -198,7 +202,7 @@ impl<'a> Cursor<'a> {
         let rgb = self.colour()?;
         match rgb.to_array().into_iter().find(|x| !(0.0..=LARGEST_LIGHT).contains(x)) {
             Some(x) if x < 0.0 => Err(self.error(format!("{name} {x} is negative")).help("light is at least 0")),
-            Some(x) => Err(self.error(format!("{name} {x} is too large")).help("stay below 1e30")),
+            Some(x) => Err(self.error(format!("{name} {x:e} is too large")).help("stay below 1e30")),
             None => Ok(rgb),
         }
     }

@@ -9,6 +9,7 @@
 
 mod camera;
 mod cursor;
+mod mesh;
 mod mtl;
 mod nearest;
 mod obj;
@@ -108,11 +109,12 @@ fn finish(mut draft: Draft, file: &Path, options: &Options) -> Result<Loaded, Sc
     let scene = &mut draft.description;
     options.emit.iter().try_for_each(|e| emit(scene, e))?;
     if scene.shapes.iter().all(|s| s.emission == DVec3::ZERO) {
-        let hint = match draft.hints.first() {
-            Some(hint) => hint.clone(),
-            None => "give a shape `emission`, or a material of an OBJ light with --emit MATERIAL=r,g,b".to_owned(),
-        };
-        let help = format!("{hint}; materials in use: {}", in_use(scene).join(", "));
+        let names = in_use(scene);
+        let lamp = names.iter().find(|n| n.to_lowercase().contains("light")).or(names.first()).copied();
+        let general =
+            format!("write `emission` on a shape, Ke in an MTL, or pass --emit {}=1,1,1", lamp.unwrap_or("MATERIAL"));
+        let hint = draft.hints.first().unwrap_or(&general);
+        let help = format!("{hint}; materials in use: {}", names.join(", "));
         return Err(SceneError::new("nothing in the scene emits light").file(file).help(help));
     }
     let canonical = format!("{:?}", draft.description);

@@ -10,10 +10,10 @@
 
 use super::{
     cursor::LARGEST_LENGTH,
+    mesh::flat,
     mtl::{self, Entry, Statement, statements},
     nearest::nearest,
     read_lossy,
-    shapes::flat,
 };
 use crate::scene::SceneError;
 use glam::DVec3;
@@ -240,11 +240,11 @@ struct Flaws {
 impl Flaws {
     fn report(&self, path: &Path, warnings: &mut Vec<String>) {
         if self.flat > 0 {
-            warnings.push(format!("{}: {} triangles without area are left out", path.display(), self.flat));
+            warnings.push(format!("{}: triangles without area, left out: {}", path.display(), self.flat));
         }
         if self.concave > 0 {
-            let why = "their fans overlap; triangulate them in the program that made them";
-            warnings.push(format!("{}: {} polygons are not convex, {why}", path.display(), self.concave));
+            let help = "their fans overlap, triangulate them in the program that made them";
+            warnings.push(format!("{}: polygons that are not convex: {} ({help})", path.display(), self.concave));
         }
     }
 }

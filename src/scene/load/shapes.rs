@@ -8,12 +8,19 @@
 //!
 //! A Lambertian emitter sends Φ = L·A·∫cos θ dω = π A L, hence `L = Φ/(π A)`.
 
-use super::{beside, cursor::Cursor, nearest::suggest, obj, tree::Place};
+use super::{
+    beside,
+    cursor::{Cursor, LARGEST_LIGHT, SMALLEST_LENGTH},
+    mesh::{FLAT, mesh, transform},
+    nearest::suggest,
+    obj,
+    tree::Place,
+};
 use crate::scene::{
     SceneError,
     description::{Geometry, Material, Shape, Sides},
 };
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use std::f64::consts::PI;
 
 /// The kinds of shape with the keys of their geometry.
@@ -27,11 +34,6 @@ pub(super) const KINDS: [(&str, &[&str]); 6] = [
 ];
 /// The keys every shape may have.
 pub(super) const LIGHT_KEYS: [&str; 4] = ["type", "material", "emission", "power"];
-
-/// Shorter than this is nothing, metres.
-const SMALLEST: f64 = 1e-12;
-/// A sine this small is parallel, a height this much smaller than the longest edge is flat.
-const FLAT: f64 = 1e-9;
 
 /// What the shapes of a file amount to.
 pub(super) struct Read {
@@ -87,7 +89,15 @@ fn emission(c: &Cursor, area: f64) -> Result<Option<DVec3>, SceneError> {
             Err(power.error("emission and power are both given").help("keep one: emission = power / (pi * area)"))
         }
         (Some(e), None) => e.light("emission").map(Some),
-        (None, Some(p)) => Ok(Some(p.light("power")? / (PI * area))),
+        (None, Some(p)) => {
+            let radiance = p.light("power")? / (PI * area);
+            let large = || p.error(format!("that power makes the radiance {:.3e}", radiance.max_element()));
+            if radiance.max_element() <= LARGEST_LIGHT {
+                Ok(Some(radiance))
+            } else {
+                Err(large().help("stay below 1e30"))
+            }
+        }
         (None, None) => Ok(None),
     }
 }
@@ -102,32 +112,13 @@ fn geometry(c: &Cursor, kind: &str) -> Result<Geometry, SceneError> {
     }
 }
 
-fn mesh(c: &Cursor) -> Result<Geometry, SceneError> {
-    let points = c.require("vertices", "vertices = [[x, y, z], …]")?.items("an array of points")?;
-    let mut vertices = points.iter().map(Cursor::vector).collect::<Result<Vec<_>, _>>()?;
-    let list = c.require("faces", "faces = [[0, 1, 2], …]")?;
-    let rows = list.items("an array of triangles")?;
-    if rows.is_empty() {
-        return Err(list.error("the mesh has no faces").help("add triangles such as [0, 1, 2]"));
-    }
-    let mut faces = rows.iter().map(|f| f.face(vertices.len())).collect::<Result<Vec<_>, _>>()?;
-    if let Some((f, row)) = faces.iter().zip(&rows).find(|(f, _)| flat(f.map(|i| vertices[i as usize]))) {
-        let e = row.error(format!("the triangle {f:?} has no area"));
-        return Err(e.help("its three corners must not lie on one line"));
-    }
-    if let Some(t) = transform(c)? {
-        t.apply(&mut vertices, &mut faces);
-    }
-    Ok(Geometry::Mesh { vertices, faces })
-}
-
 fn quad(c: &Cursor) -> Result<Geometry, SceneError> {
     let origin = c.require("origin", "a corner: origin = [0, 0, 0]")?.vector()?;
     let (at_u, at_v) = (c.require("edge_u", "edge_u = [1, 0, 0]")?, c.require("edge_v", "edge_v = [0, 1, 0]")?);
     let edge = |at: &Cursor| {
         let e = at.vector()?;
         let zero = || at.error("the edge has zero length").help("the quad spans origin + u edge_u + v edge_v");
-        if e.length() < SMALLEST { Err(zero()) } else { Ok(e) }
+        if e.length() < SMALLEST_LENGTH { Err(zero()) } else { Ok(e) }
     };
     let (edge_u, edge_v) = (edge(&at_u)?, edge(&at_v)?);
     if edge_u.normalize().cross(edge_v.normalize()).length() <= FLAT {
@@ -141,7 +132,7 @@ fn cuboid(c: &Cursor) -> Result<Geometry, SceneError> {
     let min = c.require("min", "the smallest corner: min = [-1, -1, -1]")?.vector()?;
     let at = c.require("max", "the largest corner: max = [1, 1, 1]")?;
     let max = at.vector()?;
-    if let Some(i) = (0..3).find(|&i| max[i] - min[i] < SMALLEST) {
+    if let Some(i) = (0..3).find(|&i| max[i] - min[i] < SMALLEST_LENGTH) {
         let axis = ["x", "y", "z"][i];
         let e = at.error(format!("the box has no extent along {axis}: min {}, max {}", min[i], max[i]));
         return Err(e.help("max must exceed min along every axis"));
@@ -174,7 +165,7 @@ fn disk(c: &Cursor) -> Result<Geometry, SceneError> {
     let center = c.require("center", "center = [0, 0, 0]")?.vector()?;
     let at = c.require("normal", "the direction of the front: normal = [0, 1, 0]")?;
     let normal = at.vector()?;
-    if normal.length() < SMALLEST {
+    if normal.length() < SMALLEST_LENGTH {
         return Err(at.error("the normal has zero length").help("write a direction of any length"));
     }
     Ok(Geometry::Disk { center, normal, radius: radius(c)? })
@@ -183,7 +174,7 @@ fn disk(c: &Cursor) -> Result<Geometry, SceneError> {
 fn radius(c: &Cursor) -> Result<f64, SceneError> {
     let at = c.require("radius", "radius = 1")?;
     let radius = at.length()?;
-    if radius >= SMALLEST {
+    if radius >= SMALLEST_LENGTH {
         return Ok(radius);
     }
     Err(at.error(format!("radius {radius} is not positive")).help("write a length in metres above 0"))
@@ -191,41 +182,6 @@ fn radius(c: &Cursor) -> Result<f64, SceneError> {
 
 fn inward(c: &Cursor) -> Result<bool, SceneError> {
     c.get("inward").map_or(Ok(false), |i| i.flag())
-}
-
-/// True if a triangle has no area worth the name.
-pub(super) fn flat([a, b, c]: [DVec3; 3]) -> bool {
-    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
-    longest < SMALLEST || (b - a).cross(c - a).length() <= FLAT * longest * longest
-}
-
-/// x ↦ M x + t
-struct Transform {
-    linear: DMat3,
-    shift: DVec3,
-}
-
-fn transform(c: &Cursor) -> Result<Option<Transform>, SceneError> {
-    let Some(at) = c.get("transform") else { return Ok(None) };
-    let [x, y, z] = at.rows()?;
-    let rows = [x.row()?, y.row()?, z.row()?];
-    let linear = DMat3::from_cols_array_2d(&rows.map(|[a, b, c, _]| [a, b, c])).transpose();
-    let scale = linear.x_axis.length() * linear.y_axis.length() * linear.z_axis.length();
-    if linear.determinant().abs() <= FLAT * scale {
-        let e = at.error("the transform flattens the shape, its determinant is zero");
-        return Err(e.help("three rows [a, b, c, t] with linearly independent [a, b, c]"));
-    }
-    Ok(Some(Transform { linear, shift: DVec3::from(rows.map(|r| r[3])) }))
-}
-
-impl Transform {
-    /// The front stays the image of the front: a mirroring transform reverses the winding of every face.
-    fn apply(&self, vertices: &mut [DVec3], faces: &mut [[u32; 3]]) {
-        vertices.iter_mut().for_each(|v| *v = self.linear * *v + self.shift);
-        if self.linear.determinant() < 0.0 {
-            faces.iter_mut().for_each(|f| f.swap(1, 2));
-        }
-    }
 }
 
 /// One shape per group and material of the file, with the MTL's materials unless the scene names one.
@@ -239,7 +195,7 @@ fn append_obj(c: &Cursor, material: Option<usize>, out: &mut Read) -> Result<(),
         _ => at.error(format!("cannot read `{}`", path.display())).help("paths are relative to the scene file"),
     })?;
     if let Some(t) = transform(c)? {
-        model.pieces.iter_mut().for_each(|p| t.apply(&mut p.vertices, &mut p.faces));
+        model.pieces.iter_mut().try_for_each(|p| t.apply(&mut p.vertices, &mut p.faces))?;
     }
     let mesh = |p: &obj::Piece| Geometry::Mesh { vertices: p.vertices.clone(), faces: p.faces.clone() };
     let total = model.pieces.iter().map(|p| area(&mesh(p))).sum();

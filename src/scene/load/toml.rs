@@ -22,7 +22,7 @@ pub(super) fn read(root: &Node, file: &Path, framed: bool) -> Result<Draft, Scen
     }
     c.only(&ROOT_KEYS)?;
     let name = name(&c, file)?;
-    let at = c.require("camera", "a [camera] table with origin, target, up, fov and size");
+    let camera = c.require("camera", "a [camera] table with origin, target, up, fov and size")?;
     let materials = match c.get("materials") {
         Some(table) => table.entries()?.iter().map(|(k, c)| material(k, c)).collect::<Result<_, _>>()?,
         None => Vec::new(),
@@ -34,7 +34,7 @@ pub(super) fn read(root: &Node, file: &Path, framed: bool) -> Result<Draft, Scen
         return Err(list.error("the scene has no shapes").help(format!("add {example}")));
     }
     let bounds = framed.then(|| bounds(&read.shapes));
-    let camera = camera::read(&at?, bounds)?;
+    let camera = camera::read(&camera, bounds)?;
     let expect = c.get("expect").map(|c| expect(&c)).transpose()?;
     let shapes::Read { shapes, materials, warnings, hints } = read;
     Ok(Draft { description: Description { name, camera, materials, shapes, expect }, warnings, hints })

@@ -1,0 +1,78 @@
+//! Triangles and where a transform takes them.
+//!
+//! ```text
+//! x ↦ M x + t      M u × M v = det(M) M⁻ᵀ (u × v)
+//! ```
+//!
+//! so a mirroring M (det M < 0) turns the winding's normal against the image of the front; reversing the winding
+//! turns it back.
+
+use super::cursor::{Cursor, LARGEST_LENGTH, SMALLEST_LENGTH};
+use crate::scene::{SceneError, description::Geometry};
+use glam::{DMat3, DVec3};
+
+/// A sine this small is parallel, a height this much smaller than the longest edge is flat.
+pub(super) const FLAT: f64 = 1e-9;
+
+/// Reads the geometry of a mesh.
+pub(super) fn mesh(c: &Cursor) -> Result<Geometry, SceneError> {
+    let points = c.require("vertices", "vertices = [[x, y, z], …]")?.items("an array of points")?;
+    let mut vertices = points.iter().map(Cursor::vector).collect::<Result<Vec<_>, _>>()?;
+    let list = c.require("faces", "faces = [[0, 1, 2], …]")?;
+    let rows = list.items("an array of triangles")?;
+    if rows.is_empty() {
+        return Err(list.error("the mesh has no faces").help("add triangles such as [0, 1, 2]"));
+    }
+    let mut faces = rows.iter().map(|f| f.face(vertices.len())).collect::<Result<Vec<_>, _>>()?;
+    if let Some((f, row)) = faces.iter().zip(&rows).find(|(f, _)| flat(f.map(|i| vertices[i as usize]))) {
+        let e = row.error(format!("the triangle {f:?} has no area"));
+        return Err(e.help("its three corners must not lie on one line"));
+    }
+    if let Some(t) = transform(c)? {
+        t.apply(&mut vertices, &mut faces)?;
+    }
+    Ok(Geometry::Mesh { vertices, faces })
+}
+
+/// True if a triangle has no area worth the name.
+pub(super) fn flat([a, b, c]: [DVec3; 3]) -> bool {
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    longest < SMALLEST_LENGTH || (b - a).cross(c - a).length() <= FLAT * longest * longest
+}
+
+/// x ↦ M x + t
+pub(super) struct Transform<'a> {
+    at: Cursor<'a>,
+    linear: DMat3,
+    shift: DVec3,
+}
+
+/// Reads the optional `transform` of a shape.
+pub(super) fn transform<'a>(c: &Cursor<'a>) -> Result<Option<Transform<'a>>, SceneError> {
+    let Some(at) = c.get("transform") else { return Ok(None) };
+    let [x, y, z] = at.rows()?;
+    let rows = [x.row()?, y.row()?, z.row()?];
+    let linear = DMat3::from_cols_array_2d(&rows.map(|[a, b, c, _]| [a, b, c])).transpose();
+    let scale = linear.x_axis.length() * linear.y_axis.length() * linear.z_axis.length();
+    if linear.determinant().abs() <= FLAT * scale {
+        let e = at.error("the transform flattens the shape, its determinant is zero");
+        return Err(e.help("three rows [a, b, c, t] with linearly independent [a, b, c]"));
+    }
+    Ok(Some(Transform { at, linear, shift: DVec3::from(rows.map(|r| r[3])) }))
+}
+
+impl Transform<'_> {
+    /// The front stays the image of the front: a mirroring transform reverses the winding of every face.
+    pub(super) fn apply(&self, vertices: &mut [DVec3], faces: &mut [[u32; 3]]) -> Result<(), SceneError> {
+        vertices.iter_mut().for_each(|v| *v = self.linear * *v + self.shift);
+        if self.linear.determinant() < 0.0 {
+            faces.iter_mut().for_each(|f| f.swap(1, 2));
+        }
+        let far = vertices.iter().any(|v| v.abs().max_element() > LARGEST_LENGTH);
+        if far || faces.iter().any(|f| flat(f.map(|i| vertices[i as usize]))) {
+            let e = self.at.error("the transform makes the shape too large, or a triangle of it too thin");
+            return Err(e.help("stay within 1e12 m, and scale all directions alike"));
+        }
+        Ok(())
+    }
+}
