@@ -34,7 +34,8 @@ impl Axis {
         Self { title: title.into(), lo: -0.5, hi: last as f64 + 0.5, log: false, ticks, minor: Vec::new() }
     }
 
-    /// Logarithmic axis that holds the positive `values`: whole decades, or 1-2-5 steps where they span less than two.
+    /// Logarithmic axis that holds the positive `values`: ticks at the decades, or in steps 1-2-5
+    /// where they span less than two and a half.
     pub(super) fn log(title: &str, values: impl Iterator<Item = f64>) -> Self {
         let (mut lo, mut hi) = (f64::INFINITY, 0.0f64);
         for v in values.filter(|v| v.is_finite() && *v > 0.0) {
@@ -43,14 +44,19 @@ impl Axis {
         if lo > hi {
             (lo, hi) = (0.1, 1.0);
         }
-        // A little air, so that no mark touches the frame.
-        (lo, hi) = (lo / 1.25, hi * 1.25);
+        // A little air, so that no mark touches the frame; more of it on a longer axis.
+        let air = (hi / lo).powf(0.06).max(1.25);
+        (lo, hi) = (lo / air, hi * air);
         let (first, last) = (lo.log10().floor() as i32, hi.log10().ceil() as i32);
         let (ticks, minor);
-        if (hi / lo).log10() >= 2.0 {
-            (lo, hi) = (10f64.powi(first), 10f64.powi(last));
+        let inside = |v: &f64| (lo..=hi).contains(v);
+        if (hi / lo).log10() >= 2.5 {
             let every = ((last - first) as usize).div_ceil(9);
-            ticks = (first..=last).step_by(every).map(|e| (10f64.powi(e), power_of_ten(e))).collect();
+            ticks = (first..=last)
+                .step_by(every)
+                .map(|e| (10f64.powi(e), power_of_ten(e)))
+                .filter(|(v, _)| inside(v))
+                .collect();
             minor = if last - first <= 7 {
                 (first..last).flat_map(|e| (2..10).map(move |m| f64::from(m) * 10f64.powi(e))).collect()
             } else {
@@ -59,7 +65,7 @@ impl Axis {
         } else {
             let steps = |multiples: &[f64]| -> Vec<f64> {
                 let all = (first - 1..=last).flat_map(|e| multiples.iter().map(move |m| m * 10f64.powi(e)));
-                all.filter(|v| (lo..=hi).contains(v)).collect()
+                all.filter(inside).collect()
             };
             let mut labelled = steps(&[1.0, 2.0, 5.0]);
             if labelled.len() < 3 {
@@ -140,7 +146,7 @@ mod tests {
 
     #[test]
     fn log_axes_are_labelled_whatever_they_span() {
-        assert_eq!(labels(&Axis::log("", [3e-3, 2.0].into_iter())), ["10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹"]);
+        assert_eq!(labels(&Axis::log("", [3e-3, 2.0].into_iter())), ["10⁻²", "10⁻¹", "10⁰"]);
         assert_eq!(labels(&Axis::log("", [0.1, 1.0].into_iter())), ["0.1", "0.2", "0.5", "1"]);
         for (lo, hi) in [(0.8, 0.9), (1e-9, 1.02e-9), (1e-30, 1.0), (5.0, 5.0)] {
             let axis = Axis::log("", [lo, hi].into_iter());

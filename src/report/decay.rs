@@ -134,6 +134,13 @@ fn panels(page: &Page, decay: &Decay) -> Drawn {
         entries.push(Entry::new(Sample::Heading, "Rates and bounds"));
         entries.extend(decay.lines.iter().map(|l| Entry::new(Sample::Line(l.kind.stroke()), &l.label)));
     }
+    let only_below: Vec<_> = (decay.image.iter().chain(&decay.ratios))
+        .filter(|c| !c.label.is_empty() && decay.surface.iter().all(|s| s.look != c.look))
+        .collect();
+    if !only_below.is_empty() {
+        entries.push(Entry::new(Sample::Heading, "Below"));
+        entries.extend(only_below.iter().map(|c| Entry::new(Sample::Mark(c.look), &c.label)));
+    }
     let limits = |c: &Curve| c.points.iter().any(|p| panel.is_limit(p));
     if decay.surface.iter().chain(&decay.image).any(limits) {
         entries.push(Entry::new(Sample::Limit(BLACK), "upper limit: the interval reaches zero"));
@@ -159,10 +166,6 @@ fn panels(page: &Page, decay: &Decay) -> Drawn {
             panel.line((line.k0.max(0.5), line.ratio), (end, line.ratio), line.kind.stroke())?;
         }
         curves(&panel, &decay.ratios)?;
-    }
-    if !decay.image.is_empty() && decay.image.iter().any(|c| decay.surface.iter().all(|s| s.look != c.look)) {
-        let entries: Vec<_> = decay.image.iter().map(|c| Entry::new(Sample::Mark(c.look), &c.label)).collect();
-        page.legend((646.0, 330.0), 300.0, &entries)?;
     }
     Ok(())
 }

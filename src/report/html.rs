@@ -146,7 +146,7 @@ fn verdict_section(verdicts: &[Verdict]) -> String {
          and more samples decide. <em>Detectable</em> is the smallest difference the comparison would have found.</p>\n\
          <div class=\"wide\"><table>\n<thead><tr><th scope=\"col\">what</th><th scope=\"col\">difference</th>\
          <th scope=\"col\">interval</th><th scope=\"col\">p</th><th scope=\"col\">detectable</th>\
-         <th scope=\"col\">verdict</th></tr></thead>\n<tbody>\n"
+         <th scope=\"col\" class=\"word\">verdict</th></tr></thead>\n<tbody>\n"
     );
     for v in verdicts {
         let word = outcome(v.outcome);
@@ -314,7 +314,7 @@ th, td { padding: .28rem .8rem; border-bottom: 1px solid var(--line); text-align
 thead th { color: var(--soft); font-weight: 600; font-size: .88rem; }
 tbody th { font-weight: 400; text-align: left; }
 thead th:first-child { text-align: left; }
-.word { text-align: left; font-weight: 600; }
+.word, thead th.word { text-align: left; font-weight: 600; }
 .agrees { color: var(--good); } .differs { color: var(--bad); } .inconclusive { color: var(--open); }
 .bar { display: block; } .bar line { stroke: var(--blue); stroke-width: 2; } .dot { fill: var(--blue); }
 a { color: var(--blue); }

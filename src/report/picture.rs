@@ -89,7 +89,29 @@ pub fn develop(width: usize, height: usize, pixels: &[[f32; 3]], gain: f64) -> D
 /// assert_eq!(auto_gain(&[[0.0; 3]; 100]), 1.0);
 /// ```
 pub fn auto_gain(pixels: &[[f32; 3]]) -> f64 {
-    let mut luminance: Vec<f64> = pixels.iter().map(|&p| self::luminance(p)).filter(|y| y.is_finite()).collect();
+    gain_for(pixels.iter().map(|&p| luminance(p)))
+}
+
+/// The gain for what is not a lamp: [`auto_gain`] of the pixels where `emitted` (the term k = 0) is black. A lamp in
+/// view may be hundreds of times brighter than the walls; exposed for it, they would be black.
+///
+/// ```
+/// use fredholm::report::picture::{auto_gain, auto_gain_beside_lamps};
+/// let (lamp, wall) = ([17.0; 3], [0.1; 3]);
+/// let image = [[lamp; 5], [wall; 5]].concat();
+/// let emitted = [[lamp; 5], [[0.0; 3]; 5]].concat();
+/// assert_eq!(auto_gain_beside_lamps(&image, &emitted), 8.0);
+/// assert!(auto_gain(&image) < 0.1);
+/// ```
+pub fn auto_gain_beside_lamps(pixels: &[[f32; 3]], emitted: &[[f32; 3]]) -> f64 {
+    if emitted.iter().all(|&e| luminance(e) != 0.0) {
+        return auto_gain(pixels);
+    }
+    gain_for(pixels.iter().zip(emitted).filter(|&(_, &e)| luminance(e) == 0.0).map(|(&p, _)| luminance(p)))
+}
+
+fn gain_for(luminance: impl Iterator<Item = f64>) -> f64 {
+    let mut luminance: Vec<f64> = luminance.filter(|y| y.is_finite()).collect();
     luminance.sort_unstable_by(f64::total_cmp);
     let percentile = |sorted: &[f64]| sorted.get((sorted.len() * 99).div_ceil(100).max(1) - 1).copied().unwrap_or(0.0);
     let mut bright = percentile(&luminance);

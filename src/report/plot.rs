@@ -296,8 +296,8 @@ impl Page<'_> {
                 Sample::Line(stroke) => self.line((x, y), (x + 26.0, y), stroke)?,
                 Sample::Limit(color) => self.limit((x + 13.0, y - 8.0), 16.0, color)?,
             }
-            let mean_letter = typeset::text_width("abcdefghijklmnopqrstuvwxyz", SANS, SIZE) / 26.0;
-            for line in typeset::wrap(&entry.label, ((width - indent) / mean_letter) as usize) {
+            let fits = |line: &str| typeset::text_width(line, SANS, SIZE) <= width - indent;
+            for line in typeset::wrap(&entry.label, fits) {
                 self.text(&line, (x + indent, y), Words { size: SIZE, bold, ..Words::default() })?;
                 y += SIZE * 1.3;
             }

@@ -6,7 +6,7 @@
 
 use super::{
     ReportError,
-    picture::{Developed, Picture, auto_gain, develop, gain_label, mean, shrink},
+    picture::{Developed, Picture, auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shrink},
     typeset::{Caption, LINE, SANS, caption_elements, page, text_element, text_width},
 };
 
@@ -129,18 +129,21 @@ pub fn grid(title: &str, width: usize, height: usize, cells: &[Cell], caption: &
     Ok(Sheet { picture, clipped })
 }
 
-/// Direct light beside direct plus indirect light, at one common exposure: that of the brighter.
+/// Direct light (k ≤ 1) beside direct plus indirect light, at one common exposure: that of the right image where no
+/// lamp is seen. `emitted` is the term k = 0.
 ///
 /// # Errors
 /// As for [`grid`].
 pub fn direct_and_indirect(
     width: usize,
     height: usize,
+    emitted: &[[f32; 3]],
     direct: &[[f32; 3]],
     full: &[[f32; 3]],
     caption: &Caption,
 ) -> Result<Sheet, ReportError> {
-    let gain = Some(auto_gain(full));
+    check_size("emission", width, height, emitted)?;
+    let gain = Some(auto_gain_beside_lamps(full, emitted));
     let cells = [
         Cell { label: "direct: k ≤ 1".into(), pixels: direct, gain },
         Cell { label: "direct + indirect: all k".into(), pixels: full, gain },

@@ -57,7 +57,7 @@ pub fn verdicts(verdicts: &[Verdict]) -> String {
         let words = format!("{} {}", mark(v.outcome), outcome(v.outcome));
         vec![shortened(&v.name, 34), signed(v.effect), interval, p_value(v.p), known(v.min_detectable), words]
     }));
-    aligned(&rows, &[Side::Left, Side::Right, Side::Left, Side::Right, Side::Right, Side::Left])
+    aligned(&rows, &[Side::Left, Side::Right, Side::Right, Side::Right, Side::Right, Side::Left])
 }
 
 /// The word of an outcome.

@@ -39,29 +39,36 @@ impl Caption {
     /// The caption broken into lines that fit `width` in the monospaced font.
     pub fn lines(&self, width: f64, font_size: f64) -> Vec<String> {
         let columns = (width / text_width("0", MONO, font_size)).floor().max(8.0) as usize;
+        let fits = |line: &str| line.chars().count() <= columns;
         let origin = format!("scene {} · seed {}", self.scene, self.seed);
-        [&self.command, &origin].into_iter().flat_map(|text| wrap(text, columns)).collect()
+        [&self.command, &origin].into_iter().flat_map(|text| wrap(text, fits)).collect()
     }
 }
 
-/// Breaks at blanks so that no line is longer than `columns` characters; a longer word is cut.
-pub(super) fn wrap(text: &str, columns: usize) -> Vec<String> {
+/// Breaks at blanks so that every line `fits`; a word that does not fit by itself is cut.
+pub(super) fn wrap(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
     let mut lines = vec![String::new()];
-    let mut used = 0;
     for word in text.split_whitespace() {
-        let letters: Vec<char> = word.chars().collect();
-        for (i, piece) in letters.chunks(columns.max(1)).enumerate() {
-            let gap = usize::from(used > 0 && i == 0);
-            if used + gap + piece.len() > columns && used > 0 {
-                lines.push(String::new());
-                used = 0;
-            }
-            if let Some(line) = lines.last_mut() {
-                line.extend((used > 0 && i == 0).then_some(' '));
-                line.extend(piece);
-                used = line.chars().count();
+        let line = &lines[lines.len() - 1];
+        let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
+        if fits(&longer) {
+            lines.pop();
+            lines.push(longer);
+            continue;
+        }
+        // A new line, unless the last one is still empty; then letter by letter if the word alone is too long.
+        let mut piece = String::new();
+        if line.is_empty() {
+            lines.pop();
+        }
+        for letter in word.chars() {
+            piece.push(letter);
+            if piece.chars().count() > 1 && !fits(&piece) {
+                piece.pop();
+                lines.push(std::mem::replace(&mut piece, letter.to_string()));
             }
         }
+        lines.push(piece);
     }
     lines
 }
@@ -121,7 +128,10 @@ pub fn escape(text: &str) -> String {
 /// A line of text as an SVG element; `(x, y)` is the left end of its baseline.
 pub(super) fn text_element(x: f64, y: f64, font_size: f64, family: &str, attributes: &str, text: &str) -> String {
     let text = escape(text);
-    format!("<text x=\"{x}\" y=\"{y}\" font-family=\"{family}\" font-size=\"{font_size}\" {attributes}>{text}</text>\n")
+    format!(
+        "<text x=\"{x}\" y=\"{y}\" font-family=\"{family}\" font-size=\"{font_size}\" \
+             xml:space=\"preserve\" {attributes}>{text}</text>\n"
+    )
 }
 
 /// The caption as SVG elements, its first baseline at `y`.
@@ -172,4 +182,32 @@ pub(super) fn page(width: usize, height: usize, elements: &str) -> Result<Pictur
          viewBox=\"0 0 {width} {height}\">\n{elements}</svg>\n"
     );
     rasterise(&svg, 1.0)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_wrapped_and_nothing_is_lost() {
+        let fits = |line: &str| line.chars().count() <= 7;
+        assert_eq!(wrap("a bc def ghijklmnop q", fits), ["a bc", "def", "ghijklm", "nop q"]);
+        assert_eq!(wrap("ghijklmnop", fits), ["ghijklm", "nop"]);
+        assert_eq!(wrap("", fits), [""]);
+    }
+
+    /// The monospaced font advances 1233/2048 em per letter.
+    #[test]
+    fn text_is_measured_as_it_is_drawn() {
+        for n in [1, 20] {
+            let width = text_width(&"M".repeat(n), MONO, 100.0) / n as f64;
+            assert!((width - 100.0 * 1233.0 / 2048.0).abs() < 1.5, "{n} letters: {width}");
+        }
+        let drawn = page(400, 40, &text_element(10.0, 30.0, 20.0, SANS, "", "×192 · mean 0.00227")).unwrap();
+        let inked = |x: usize| (0..40).any(|y| drawn.pixels[y * 400 + x] != [255; 3]);
+        let last = (0..400).rev().find(|&x| inked(x)).unwrap() as f64;
+        let width = text_width("×192 · mean 0.00227", SANS, 20.0);
+        assert!((last - 10.0 - width).abs() < 3.0, "drawn {}, measured {width}", last - 10.0);
+    }
 }

@@ -9,7 +9,7 @@
 use super::{
     ReportError,
     picture::Picture,
-    typeset::{Caption, LINE, SANS, caption_elements, page, text_element, text_width, wrap},
+    typeset::{Caption, LINE, SANS, caption_elements, page, text_element, text_width},
 };
 
 const RANGE: f64 = 4.0;
@@ -75,7 +75,7 @@ pub fn draw(title: &str, width: usize, height: usize, z: &[f64], caption: &Capti
         format!("|z| > 3: {} of the pixels (0.27 % if equal)", percent(beyond_3)),
     ];
     if undefined > 0 {
-        facts.extend(wrap(&format!("black: {undefined} pixels without a z value (no noise known, or none)"), 64));
+        facts.push(format!("black: {undefined} pixels without a z value (no noise known, or none)"));
     }
     let lines = caption.lines(inner, SMALL);
 
