@@ -56,16 +56,16 @@ impl<'s> TermEstimator<SceneTransport<'s>> for Gather<'_> {
         batch: &Batch,
         paths: &mut Paths<VertexWave>,
         sink: &mut impl TermSink,
-    ) -> u64 {
+    ) {
         paths.start(t, sensor, batch);
-        let mut rays = batch.len() as u64;
+        sink.rays(0, batch.len());
         let tail = self.terms.len();
         // `shift` is how many bounces lie between the pixel and the patch that is read
         let shift = usize::from(!self.read_patches);
         if !self.read_patches {
             paths.emission(t);
             sink.add(0, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
-            rays += paths.n as u64;
+            sink.rays(1, paths.n);
             paths.scatter(t, 0);
         }
         let at: Vec<Option<usize>> = (0..paths.n).map(|i| self.patch(&paths.state.get(i))).collect();
@@ -82,6 +82,5 @@ impl<'s> TermEstimator<SceneTransport<'s>> for Gather<'_> {
             }
             sink.add(slot, &paths.pixel[..paths.n], &paths.sample[..paths.n], &value);
         }
-        rays
     }
 }

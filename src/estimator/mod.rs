@@ -36,6 +36,8 @@ use crate::operator::{Sensor, Transport};
 pub trait TermSink {
     /// Adds `value[i]` to `slot` of path (`pixel[i]`, `sample[i]`). A path may add to a slot more than once.
     fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns);
+    /// Counts rays asked for on behalf of `slot`.
+    fn rays(&mut self, _slot: usize, _rays: usize) {}
 }
 
 /// How far terms are kept, how light is found, how paths end.
@@ -53,7 +55,7 @@ pub struct Plan {
 pub trait TermEstimator<T: Transport>: Sync {
     /// Number of slots a sample has.
     fn slots(&self) -> usize;
-    /// One sample per path of the batch into the sink; returns the number of rays asked for.
+    /// One sample per path of the batch into the sink.
     fn sample(
         &self,
         t: &T,
@@ -61,5 +63,5 @@ pub trait TermEstimator<T: Transport>: Sync {
         batch: &Batch,
         paths: &mut Paths<T::Wave>,
         sink: &mut impl TermSink,
-    ) -> u64;
+    );
 }

@@ -74,14 +74,7 @@ impl<T: Transport> TermEstimator<T> for PathTracer {
         1
     }
 
-    fn sample(
-        &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
-        _: &mut Paths<T::Wave>,
-        sink: &mut impl TermSink,
-    ) -> u64 {
+    fn sample(&self, t: &T, sensor: &impl Sensor<T>, batch: &Batch, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
         let mut rays = 0;
         let mut value = Columns::new(1);
         for sample in batch.samples.clone() {
@@ -96,6 +89,6 @@ impl<T: Transport> TermEstimator<T> for PathTracer {
                 }
             }
         }
-        rays
+        sink.rays(0, rays as usize);
     }
 }

@@ -30,11 +30,12 @@ impl<T: Transport> TermEstimator<T> for Prefix {
         batch: &Batch,
         paths: &mut Paths<T::Wave>,
         sink: &mut impl TermSink,
-    ) -> u64 {
+    ) {
         paths.start(t, sensor, batch);
         paths.emission(t);
         sink.add(0, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
-        batch.len() as u64 + follow(t, &self.0, 0, paths, sink)
+        sink.rays(0, batch.len());
+        follow(t, &self.0, 0, paths, sink);
     }
 }
 
@@ -45,10 +46,9 @@ pub(super) fn follow<T: Transport>(
     first: usize,
     paths: &mut Paths<T::Wave>,
     sink: &mut impl TermSink,
-) -> u64 {
+) {
     let technique = plan.technique;
     let tail = plan.max_bounces + 1;
-    let mut rays = 0;
     for v in first.. {
         // the next term, or the tail; without roulette the tail would never end, and is left out
         let slot = (v + 1).min(tail);
@@ -58,7 +58,7 @@ pub(super) fn follow<T: Transport>(
 
         // next-event estimation of term v + 1
         if technique.connects() {
-            rays += paths.n as u64;
+            sink.rays(slot, paths.n);
             paths.connect(t, v);
             technique.weigh(&mut paths.samples, paths.n);
             paths.samples.value.multiply(&paths.through, paths.n);
@@ -72,7 +72,7 @@ pub(super) fn follow<T: Transport>(
         paths.roulette(t, v, &plan.roulette);
 
         // x_v → x_{v+1}, and its emission if hits count
-        rays += paths.n as u64;
+        sink.rays(slot, paths.n);
         paths.scatter(t, v);
         if technique.scatters() {
             paths.emission(t);
@@ -81,5 +81,4 @@ pub(super) fn follow<T: Transport>(
             sink.add(slot, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
         }
     }
-    rays
 }

@@ -50,6 +50,9 @@ impl TermSink for FilmBlock<'_> {
     fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
         FilmBlock::add(self, slot, pixel, sample, value);
     }
+    fn rays(&mut self, slot: usize, rays: usize) {
+        self.rays[slot] += rays as u64;
+    }
 }
 
 /// Renders into a new film. When `stop` is set, what has been done so far comes back: every pixel then holds some number of
@@ -94,23 +97,25 @@ fn pass<T: Transport>(
     let may_stop = samples.start > 0;
     let job = |paths: &mut Paths<T::Wave>, (i, (sums, counts)): (usize, (&mut [f64], &mut [u32]))| {
         if may_stop && stop.load(Ordering::Relaxed) {
-            return (0, 0);
+            return (vec![0; shape.slots], 0);
         }
         let first = i as u32 * BLOCK;
         let pixels = first..first + counts.len() as u32;
-        let mut block = FilmBlock { shape, first, sums, non_finite: 0 };
-        let mut rays = 0;
+        let mut block = FilmBlock { shape, first, sums, non_finite: 0, rays: vec![0; shape.slots] };
         let at_once = WAVE / BLOCK * (BLOCK / pixels.len() as u32);
         for s in samples.clone().step_by(at_once as usize) {
             let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + at_once).min(samples.end) };
-            rays += estimator.sample(t, sensor, &batch, paths, &mut block);
+            estimator.sample(t, sensor, &batch, paths, &mut block);
         }
         counts.iter_mut().for_each(|n| *n += samples.len() as u32);
         watch.paths(samples.len() as u64 * u64::from(pixels.end - pixels.start));
-        (rays, block.non_finite)
+        (block.rays, block.non_finite)
     };
-    let totals =
-        sums.zip(counts).enumerate().map_init(Paths::default, job).reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-    film.rays += totals.0;
+    let totals = sums
+        .zip(counts)
+        .enumerate()
+        .map_init(Paths::default, job)
+        .reduce(|| (vec![0; shape.slots], 0), |a, b| (a.0.iter().zip(&b.0).map(|(a, b)| a + b).collect(), a.1 + b.1));
+    film.rays.iter_mut().zip(totals.0).for_each(|(all, more): (&mut u64, u64)| *all += more);
     film.non_finite += totals.1;
 }

@@ -22,15 +22,15 @@ impl SingleTerm {
         k: usize,
         steps: usize,
         paths: &mut Paths<T::Wave>,
-    ) -> u64 {
+        sink: &mut impl TermSink,
+    ) {
         paths.start(t, sensor, &Batch { key: batch.key.branch(k as u32), ..batch.clone() });
-        let mut rays = batch.len() as u64;
+        sink.rays(k, batch.len());
         for v in 0..steps {
             paths.roulette(t, v, &self.0.roulette);
-            rays += paths.n as u64;
+            sink.rays(k, paths.n);
             paths.scatter(t, v);
         }
-        rays
     }
 }
 
@@ -46,11 +46,10 @@ impl<T: Transport> TermEstimator<T> for SingleTerm {
         batch: &Batch,
         paths: &mut Paths<T::Wave>,
         sink: &mut impl TermSink,
-    ) -> u64 {
+    ) {
         let Plan { max_bounces, technique, ref roulette } = self.0;
-        let mut rays = 0;
         for k in 0..=max_bounces {
-            rays += self.walk(t, sensor, batch, k, k.saturating_sub(1), paths);
+            self.walk(t, sensor, batch, k, k.saturating_sub(1), paths, sink);
             if k == 0 {
                 paths.emission(t);
                 sink.add(0, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
@@ -58,7 +57,7 @@ impl<T: Transport> TermEstimator<T> for SingleTerm {
             }
             let v = k - 1;
             if technique.connects() {
-                rays += paths.n as u64;
+                sink.rays(k, paths.n);
                 paths.connect(t, v);
                 technique.weigh(&mut paths.samples, paths.n);
                 paths.samples.value.multiply(&paths.through, paths.n);
@@ -66,7 +65,7 @@ impl<T: Transport> TermEstimator<T> for SingleTerm {
             }
             if technique.scatters() {
                 paths.roulette(t, v, roulette);
-                rays += paths.n as u64;
+                sink.rays(k, paths.n);
                 paths.scatter(t, v);
                 paths.emission(t);
                 technique.weigh(&mut paths.samples, paths.n);
@@ -75,9 +74,8 @@ impl<T: Transport> TermEstimator<T> for SingleTerm {
             }
         }
         if roulette.ends() {
-            rays += self.walk(t, sensor, batch, max_bounces + 1, max_bounces, paths);
-            rays += prefix::follow(t, &self.0, max_bounces, paths, sink);
+            self.walk(t, sensor, batch, max_bounces + 1, max_bounces, paths, sink);
+            prefix::follow(t, &self.0, max_bounces, paths, sink);
         }
-        rays
     }
 }

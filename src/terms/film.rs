@@ -48,8 +48,8 @@ pub struct TermFilm {
     pub shape: Shape,
     /// Samples of each pixel so far.
     pub samples: Vec<u32>,
-    /// Rays asked for.
-    pub rays: u64,
+    /// Rays asked for, by slot.
+    pub rays: Vec<u64>,
     /// Samples that were not finite.
     pub non_finite: u64,
     pub(crate) sums: Vec<f64>,
@@ -61,6 +61,7 @@ pub(crate) struct FilmBlock<'a> {
     pub(crate) first: u32,
     pub(crate) sums: &'a mut [f64],
     pub(crate) non_finite: u64,
+    pub(crate) rays: Vec<u64>,
 }
 
 impl FilmBlock<'_> {
@@ -85,7 +86,7 @@ impl TermFilm {
     /// An empty film.
     pub fn new(shape: Shape) -> Self {
         let sums = vec![0.0; shape.pixels() * shape.per_pixel()];
-        Self { shape, samples: vec![0; shape.pixels()], rays: 0, non_finite: 0, sums }
+        Self { shape, samples: vec![0; shape.pixels()], rays: vec![0; shape.slots], non_finite: 0, sums }
     }
 
     /// Sum of the samples of one pixel, replicate and slot.

@@ -44,6 +44,8 @@ pub struct Sampled {
     pub total: TermImage,
     /// The image mean by replicate, for covariances between terms.
     pub replicates: Replicates,
+    /// Rays asked for, by slot.
+    pub rays: Vec<u64>,
     /// Variances at 1, 2, 4, … samples per replicate.
     pub snapshots: Vec<Snapshot>,
     /// Squared L2 norms of the term images; none with fewer than three replicates.
@@ -113,8 +115,12 @@ impl<'a> Run<'a> {
     fn finish(self, film: &TermFilm, world: World, label: String) -> Sampled {
         let slots = film.shape.slots;
         let paths = film.samples.iter().map(|&n| u64::from(n)).sum();
-        let cost =
-            Cost { paths, rays: film.rays, non_finite: film.non_finite, seconds: self.started.elapsed().as_secs_f64() };
+        let cost = Cost {
+            paths,
+            rays: film.rays.iter().sum(),
+            non_finite: film.non_finite,
+            seconds: self.started.elapsed().as_secs_f64(),
+        };
         let image = |s: usize| TermImage::of(film, s..s + 1);
         Sampled {
             series: Series { world, label, functionals: functionals(film), cost },
@@ -123,6 +129,7 @@ impl<'a> Run<'a> {
             sum: if slots > 1 { TermImage::of(film, 0..slots - 1) } else { TermImage::default() },
             total: TermImage::of(film, 0..slots),
             replicates: image_replicates(film),
+            rays: film.rays.clone(),
             snapshots: self.snapshots,
             norms: (0..slots - 1).map(|s| squared_norm(film, s)).collect(),
             spp: film.least_samples(),
