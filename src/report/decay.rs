@@ -17,10 +17,9 @@
 use super::{
     ReportError,
     axis::Axis,
-    plot::{
-        BLACK, Curve, Drawn, Entry, Figure, GREEN, ORANGE, PURPLE, Page, Panel, Point, SKY, Sample, Stroke, Words,
-        figure,
-    },
+    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    panel::Panel,
+    plot::{BLACK, Curve, Figure, GREEN, ORANGE, PURPLE, Point, SKY, figure},
     typeset::Caption,
 };
 

@@ -15,6 +15,7 @@
 
 mod axis;
 mod base64;
+mod canvas;
 pub mod decay;
 mod error;
 pub mod exr;
@@ -22,6 +23,7 @@ mod files;
 pub mod html;
 mod interval;
 mod null_as_nan;
+mod panel;
 pub mod picture;
 pub mod plot;
 pub mod sheet;
