@@ -1,0 +1,29 @@
+//! `fredholm chapter [N]`: runs a chapter's own program, compiled in.
+
+use super::{Ending, Failure, args};
+
+#[path = "../../chapters/01_one_box_three_answers.rs"]
+#[allow(dead_code)] // its `main` is for `cargo run --example`
+mod one_box_three_answers;
+
+type Run = fn(&std::path::Path) -> Result<bool, Box<dyn std::error::Error>>;
+
+const CHAPTERS: [(u32, &str, Run); 1] = [(1, "One box, three answers", one_box_three_answers::run)];
+
+/// Runs a chapter or lists them all.
+pub fn run(args: &args::Chapter) -> Result<Ending, Failure> {
+    let Some(number) = args.number else {
+        for (n, title, _) in CHAPTERS {
+            println!("{n:>2}  {title}");
+        }
+        return Ok(Ending::Ok);
+    };
+    let Some((_, _, run)) = CHAPTERS.iter().find(|c| c.0 == number) else {
+        return Err(Failure::Usage(format!("error: there is no chapter {number}\nhelp: `fredholm chapter` lists those there are")));
+    };
+    match run(&args.out) {
+        Ok(true) => Ok(Ending::Ok),
+        Ok(false) => Ok(Ending::Failed),
+        Err(e) => Err(Failure::Input(format!("error: {e}"))),
+    }
+}

@@ -1,0 +1,71 @@
+//! One file per subcommand; arguments are plain structs.
+//!
+//! Results go to stdout, progress and errors to stderr. Exit codes: 0 ok, 1 a comparison failed, 2 usage, 3 scene or file,
+//! 130 interrupted with what exists saved.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+#![allow(unreachable_pub)] // in a binary `pub` reaches no further than `pub(crate)` and reads better
+
+pub mod args;
+mod chapter;
+mod compare;
+mod info;
+mod output;
+mod progress;
+mod solve;
+mod write;
+
+use args::{Cli, Command};
+use std::process::ExitCode;
+
+/// How a command ends when it does not end well.
+pub enum Failure {
+    /// Something is wrong with the scene or a file: exit code 3.
+    Input(String),
+    /// The arguments do not make sense together: exit code 2.
+    Usage(String),
+}
+
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(e: E) -> Self {
+        let text = e.to_string();
+        Self::Input(if text.starts_with("error: ") { text } else { format!("error: {text}") })
+    }
+}
+
+/// How a command ends well, or nearly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// All is well.
+    Ok,
+    /// A comparison failed.
+    Failed,
+    /// Interrupted; what exists is saved.
+    Interrupted,
+}
+
+/// Runs a command to its exit code.
+pub fn run(cli: Cli) -> ExitCode {
+    let result = match &cli.command {
+        None => solve::tour(&cli.tour),
+        Some(Command::Tour(run)) => solve::tour(run),
+        Some(Command::Series(run)) => solve::series(run),
+        Some(Command::Render(run)) => solve::render(run),
+        Some(Command::Radiosity(run)) => solve::radiosity(run),
+        Some(Command::Compare(args)) => compare::run(args),
+        Some(Command::Info(args)) => info::run(args),
+        Some(Command::Chapter(args)) => chapter::run(args),
+    };
+    match result {
+        Ok(Ending::Ok) => ExitCode::SUCCESS,
+        Ok(Ending::Failed) => ExitCode::from(1),
+        Ok(Ending::Interrupted) => ExitCode::from(130),
+        Err(Failure::Usage(text)) => {
+            eprintln!("{text}");
+            ExitCode::from(2)
+        }
+        Err(Failure::Input(text)) => {
+            eprintln!("{text}");
+            ExitCode::from(3)
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! `tour`, `series`, `render`, `radiosity`: load, solve in the worlds asked for, compare, write, print.
+
+use super::args::{EstimatorName, Run, WorldName};
+use super::progress::{Progress, stop_flag};
+use super::{Ending, Failure, output, write};
+use fredholm::estimator::Roulette;
+use fredholm::report::{summary, table};
+use fredholm::scene::load::{self, Options};
+use fredholm::scene::{Description, Scene};
+use fredholm::stats::{Criterion, compare, discretisation};
+use fredholm::terms::functional::Replicates;
+use fredholm::terms::Series;
+use fredholm::worlds::discrete::{self, Discrete, MatrixError};
+use fredholm::worlds::sampled::{self, Estimator, Sampled};
+use fredholm::worlds::{Settings, surface};
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// Everything a run found.
+pub struct Found {
+    pub command: String,
+    pub folder: PathBuf,
+    pub description: Description,
+    pub hash: String,
+    pub scene: Scene,
+    pub settings: Settings,
+    pub threads: usize,
+    pub started: Instant,
+    /// The first is the one whose images are shown.
+    pub terms: Vec<Sampled>,
+    pub path: Option<Sampled>,
+    pub radiosity: Option<Discrete>,
+    /// Three meshes, coarse to fine, for the order of convergence: patches and image means.
+    pub orders: Vec<Series>,
+    /// Surface norms by estimator.
+    pub surface: Vec<(Estimator, Replicates)>,
+    pub verdicts: Vec<summary::Verdict>,
+}
+
+/// What a command computes unless told otherwise.
+struct Default {
+    worlds: &'static [WorldName],
+    both_estimators: bool,
+    size: Option<[u32; 2]>,
+    roulette: Option<Roulette>,
+}
+
+const ALL: &[WorldName] = &[WorldName::Terms, WorldName::Path, WorldName::Radiosity];
+
+/// The tour: all worlds, both estimators.
+pub fn tour(run: &Run) -> Result<Ending, Failure> {
+    solve(run, Default { worlds: ALL, both_estimators: true, size: Some([160, 160]), roulette: None })
+}
+
+/// Each T^k E and the sum.
+pub fn series(run: &Run) -> Result<Ending, Failure> {
+    solve(run, Default { worlds: ALL, both_estimators: false, size: None, roulette: None })
+}
+
+/// The full path tracer, with the lecture's roulette.
+pub fn render(run: &Run) -> Result<Ending, Failure> {
+    solve(run, Default { worlds: &[WorldName::Path], both_estimators: false, size: None, roulette: Some(Roulette::LECTURE) })
+}
+
+/// The matrix.
+pub fn radiosity(run: &Run) -> Result<Ending, Failure> {
+    solve(run, Default { worlds: &[WorldName::Radiosity], both_estimators: false, size: None, roulette: None })
+}
+
+fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
+    let started = Instant::now();
+    if let Some(n) = run.threads {
+        if n == 0 {
+            return Err(Failure::Usage("error: 0 threads cannot do anything\nhelp: give -t 1 or more, or leave it out".into()));
+        }
+        rayon::ThreadPoolBuilder::new().num_threads(n).build_global()?;
+    }
+    let command = output::canonical_command();
+
+    // the scene
+    let mut set = run.set.clone();
+    let built_in_size = if run.scene == "cornell" { default.size } else { None };
+    if let Some([w, h]) = run.size.or(built_in_size) {
+        set.push(format!("camera.size=[{w},{h}]"));
+    }
+    let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
+    for warning in &loaded.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let description = loaded.description;
+    let scene = Scene::new(&description);
+
+    // what to do with it
+    let max_bounces = usize::from(run.max_bounces);
+    let fallback = default.roulette.unwrap_or(Roulette::Albedo { from: 2 });
+    let roulette = run.roulette.clone();
+    let settings = Settings {
+        spp: run.spp,
+        seed: run.seed,
+        max_bounces,
+        technique: run.technique,
+        sampling: run.sampling,
+        roulette: roulette.clone().unwrap_or(fallback.clone().after(max_bounces)),
+        path_roulette: roulette.unwrap_or(fallback),
+        patches: run.patches as usize,
+        read_patches: run.read_patches,
+    };
+    let worlds: Vec<WorldName> = if run.worlds.is_empty() { default.worlds.to_vec() } else { run.worlds.clone() };
+    let estimators = match (worlds.contains(&WorldName::Terms), default.both_estimators, run.estimator) {
+        (false, ..) => vec![],
+        (_, true, _) => vec![Estimator::Single, Estimator::Prefix],
+        (_, _, EstimatorName::Single) => vec![Estimator::Single],
+        (_, _, EstimatorName::Prefix) => vec![Estimator::Prefix],
+    };
+    let folder = output::folder(run.out.as_deref(), &description.name, &command, run.force)?;
+    let stop = stop_flag();
+    let preview = write::preview(&folder, &description, &command, run.seed);
+    let progress = Progress::new(run.quiet, preview);
+    let stopped = || stop.load(Ordering::Relaxed);
+
+    let mut found = Found {
+        hash: scene_hash(&loaded.canonical),
+        threads: rayon::current_num_threads(),
+        command,
+        folder,
+        description,
+        scene,
+        settings,
+        started,
+        terms: vec![],
+        path: None,
+        radiosity: None,
+        orders: vec![],
+        surface: vec![],
+        verdicts: vec![],
+    };
+
+    // the quick estimator first, so that there is something to see
+    for &estimator in estimators.iter().rev() {
+        if !stopped() {
+            let result = sampled::terms(&found.scene, estimator, &found.settings, &progress, stop);
+            found.terms.insert(0, result);
+        }
+    }
+    if worlds.contains(&WorldName::Path) && !stopped() {
+        found.path = Some(sampled::path(&found.scene, &found.settings, &progress, stop));
+    }
+    if worlds.contains(&WorldName::Radiosity) && !stopped() {
+        match discrete::radiosity(&found.description, &found.scene, &found.settings, &progress, stop) {
+            Ok(result) => found.radiosity = Some(result),
+            Err(MatrixError::Stopped) => {}
+            Err(e) => return Err(e.into()),
+        }
+        if run.orders && !stopped() {
+            found.orders = orders(&found, &progress)?;
+        }
+    }
+    if !estimators.is_empty() {
+        let paths = found.settings.spp.saturating_mul(1024).min(1 << 22);
+        for estimator in [Estimator::Single, Estimator::Prefix] {
+            if !stopped() {
+                let norms = surface::norms(&found.scene, estimator, paths, &found.settings, &progress, stop);
+                found.surface.push((estimator, norms));
+            }
+        }
+    }
+    progress.finish();
+
+    found.verdicts = verdicts(&found);
+    let summary = write::all(&found)?;
+    if run.json {
+        println!("{}", serde_json::to_string_pretty(&summary)?);
+    } else {
+        print(&found, &summary, run.verbose);
+    }
+    if stopped() {
+        return Ok(Ending::Interrupted);
+    }
+    let differs = found.verdicts.iter().any(|v| v.outcome == summary::Outcome::Differs);
+    Ok(if differs { Ending::Failed } else { Ending::Ok })
+}
+
+/// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.
+fn orders(found: &Found, progress: &Progress) -> Result<Vec<Series>, Failure> {
+    let coarsest = (found.settings.patches / 16).max(1);
+    let matrix = discrete::matrix(&found.description, &found.scene, coarsest, found.settings.max_bounces, progress, stop_flag());
+    let picture = match matrix {
+        Ok(m) => m.through_camera(&found.scene, &found.settings, progress, stop_flag()),
+        Err(MatrixError::Stopped) => return Ok(vec![]),
+        Err(e) => return Err(e.into()),
+    };
+    let Some(discrete) = &found.radiosity else { return Ok(vec![]) };
+    Ok(vec![picture.series, discrete.coarse.series.clone(), discrete.fine.series.clone()])
+}
+
+/// FNV-1a of the scene as loaded.
+fn scene_hash(canonical: &str) -> String {
+    let hash = canonical.bytes().fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
+    format!("{hash:016x}")
+}
+
+fn verdicts(found: &Found) -> Vec<summary::Verdict> {
+    let criterion = Criterion::default();
+    let mut all = vec![];
+    let mut judge = |name: &str, a: &Series, b: &Series, allowance: &[fredholm::terms::Functional]| {
+        all.extend(write::verdicts(name, &compare(a, b, &criterion, allowance)));
+    };
+    let Some(terms) = found.terms.first().map(|t| &t.series) else { return all };
+    if let Some(other) = found.terms.get(1) {
+        judge("single − prefix", terms, &other.series, &[]);
+    }
+    if let Some(path) = &found.path {
+        judge("terms − path", terms, &path.series, &[]);
+    }
+    if let Some(r) = &found.radiosity {
+        judge("terms − radiosity", terms, &r.fine.series, &discretisation(&r.fine.series, &r.coarse.series));
+    }
+    all
+}
+
+fn print(found: &Found, summary: &summary::Summary, verbose: bool) {
+    let s = &found.settings;
+    println!("{}   seed {}, {} spp, {}×{}", found.command, s.seed, s.spp, summary.width, summary.height);
+    if !found.terms.is_empty() {
+        let q = |r: &Roulette| format!("{r} (q = termination; survivors weigh 1/(1−q))");
+        println!("technique {}; roulette of the terms {}; of the path tracer {}", s.technique, q(&s.roulette), s.path_roulette);
+    }
+    for t in &found.terms {
+        println!("\n{}", table::series(&t.series.label, t.series.image(), &t.rays));
+    }
+    if let Some(p) = &found.path {
+        println!("\n{}", table::series(&p.series.label, p.series.image(), &[]));
+    }
+    if let Some(r) = &found.radiosity {
+        println!("\n{}", table::series(&r.fine.series.label, r.fine.series.image(), &[]));
+        println!("{}", write::matrix_facts(r, verbose));
+    }
+    for line in write::decay_facts(found) {
+        println!("{line}");
+    }
+    for line in write::orders(&found.orders) {
+        println!("{line}");
+    }
+    if !found.verdicts.is_empty() {
+        println!("\n{}", table::verdicts(&found.verdicts));
+    }
+    for line in write::warnings(found) {
+        println!("warning: {line}");
+    }
+    println!("\n{} files in {} after {:.1} s; open {}", summary.files.len(), found.folder.display(), summary.seconds, found.folder.join("index.html").display());
+}
