@@ -50,14 +50,18 @@ k counts applications of T: k = 0 is emission seen directly, k = 1 direct light,
     #[command(after_help = "Example:\n  fredholm radiosity cornell --patches 2400 --orders")]
     Radiosity(Run),
     /// Two results: verdict per term, z map
-    #[command(after_help = "Agrees: the difference is proved smaller than δ = 2 % of the term + 1e-4 of the whole image.
+    #[command(
+        after_help = "Agrees: the difference is proved smaller than δ = 2 % of the term + 1e-4 of the whole image.
 Differs: it is proved not to be zero. Inconclusive: more samples are needed (how many is printed); exit code 1, as for Differs.
 
 Example:
-  fredholm series cornell --seed 1 -o a; fredholm series cornell --seed 2 -o b; fredholm compare a b")]
+  fredholm series cornell --seed 1 -o a; fredholm series cornell --seed 2 -o b; fredholm compare a b"
+    )]
     Compare(Compare),
     /// Scenes, materials, lights, bounds on the norm of T
-    #[command(after_help = "Examples:\n  fredholm info            the built-in scenes\n  fredholm info cornell\n  fredholm info box.toml   also a check of the file")]
+    #[command(
+        after_help = "Examples:\n  fredholm info            the built-in scenes\n  fredholm info cornell\n  fredholm info box.toml   also a check of the file"
+    )]
     Info(Info),
     /// Runs a chapter of the book
     Chapter(Chapter),

@@ -19,7 +19,9 @@ pub fn run(args: &args::Chapter) -> Result<Ending, Failure> {
         return Ok(Ending::Ok);
     };
     let Some((_, _, run)) = CHAPTERS.iter().find(|c| c.0 == number) else {
-        return Err(Failure::Usage(format!("error: there is no chapter {number}\nhelp: `fredholm chapter` lists those there are")));
+        return Err(Failure::Usage(format!(
+            "error: there is no chapter {number}\nhelp: `fredholm chapter` lists those there are"
+        )));
     };
     match run(&args.out) {
         Ok(true) => Ok(Ending::Ok),

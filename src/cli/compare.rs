@@ -15,7 +15,8 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
             a.1.width, a.1.height, b.1.width, b.1.height
         )));
     }
-    let criterion = Criterion { of_term: args.of_term, of_total: args.of_total, alpha: args.alpha, ..Criterion::default() };
+    let criterion =
+        Criterion { of_term: args.of_term, of_total: args.of_total, alpha: args.alpha, ..Criterion::default() };
     let Some((x, y)) = pair(&a.1, &b.1) else {
         return Err(Failure::Input("error: one of the results holds no world\nhelp: render it again".into()));
     };
@@ -47,7 +48,8 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
     if args.json {
         println!("{}", serde_json::to_string_pretty(&comparison)?);
     } else {
-        let hash = |s: &summary::Summary| format!("scene {} ({}), seed {}, {} spp", s.scene, s.scene_hash, s.seed, s.spp);
+        let hash =
+            |s: &summary::Summary| format!("scene {} ({}), seed {}, {} spp", s.scene, s.scene_hash, s.seed, s.spp);
         println!("A  {}: {}; {}", args.a.display(), x.label, hash(&a.1));
         println!("B  {}: {}; {}", args.b.display(), y.label, hash(&b.1));
         if a.1.command == b.1.command {
@@ -56,7 +58,12 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
         println!("\n{}", table::verdicts(&verdicts));
         println!("{}", write::judgement(&comparison));
         if let Some((two, three)) = map {
-            println!("z map: {:.1} % of the pixels beyond 2 (4.6 % if equal), {:.2} % beyond 3 (0.27 %): {}", 100.0 * two, 100.0 * three, folder.join("z.png").display());
+            println!(
+                "z map: {:.1} % of the pixels beyond 2 (4.6 % if equal), {:.2} % beyond 3 (0.27 %): {}",
+                100.0 * two,
+                100.0 * three,
+                folder.join("z.png").display()
+            );
         }
     }
     Ok(if comparison.outcome == fredholm::stats::Outcome::Agrees { Ending::Ok } else { Ending::Failed })
@@ -93,7 +100,8 @@ fn z_map(a: &Result2, b: &Result2, folder: &Path, command: &str) -> Result<Optio
         if file.exists() { exr::read(&file).map(Some) } else { Ok(None) }
     };
     let (Some(x), Some(y)) = (open(a)?, open(b)?) else { return Ok(None) };
-    let whole = |image: &exr::Image| Some((image.layer("")?.to_vec(), image.layer(write::beauty_error(image))?.to_vec()));
+    let whole =
+        |image: &exr::Image| Some((image.layer("")?.to_vec(), image.layer(write::beauty_error(image))?.to_vec()));
     let (Some((m, s)), Some((n, t))) = (whole(&x), whole(&y)) else { return Ok(None) };
     let z = write::z_values((&m, &s), (&n, &t));
     let caption = Caption { command: command.to_string(), seed: a.1.seed, scene: a.1.scene.clone() };

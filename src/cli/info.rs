@@ -45,7 +45,14 @@ fn machine(d: &Description, scene: &Scene) -> serde_json::Value {
 
 fn people(d: &Description, scene: &Scene) -> String {
     let rgb = |v: glam::DVec3| format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z);
-    let mut out = format!("{}: {} shapes, {} primitives, {}×{} pixels\n", d.name, d.shapes.len(), scene.sides() / 2, d.camera.size[0], d.camera.size[1]);
+    let mut out = format!(
+        "{}: {} shapes, {} primitives, {}×{} pixels\n",
+        d.name,
+        d.shapes.len(),
+        scene.sides() / 2,
+        d.camera.size[0],
+        d.camera.size[1]
+    );
     out += "\nmaterials\n";
     for m in &d.materials {
         let sides = if m.sides == Sides::Both { "both sides" } else { "front only" };
@@ -55,15 +62,28 @@ fn people(d: &Description, scene: &Scene) -> String {
     for s in d.shapes.iter().filter(|s| s.emission.max_element() > 0.0) {
         let area: f64 = s.geometry.primitives().iter().map(fredholm::scene::Primitive::area).sum();
         let power = s.emission * area * std::f64::consts::PI;
-        out += &format!("  {:16} {}, radiance {}, area {area:.4} m², power {} W\n", s.name, kind(&s.geometry), rgb(s.emission), rgb(power));
+        out += &format!(
+            "  {:16} {}, radiance {}, area {area:.4} m², power {} W\n",
+            s.name,
+            kind(&s.geometry),
+            rgb(s.emission),
+            rgb(power)
+        );
     }
     let rho = scene.max_albedo();
     out += &format!("\noperator\n  surfaces that reflect or emit: {:.4} m²\n", SurfaceSensor::new(scene).area);
-    out += &format!("  ‖T‖ ≤ max albedo = ({:.4}, {:.4}, {:.4}), in every Lp norm of the throughput measure\n", rho.x, rho.y, rho.z);
+    out += &format!(
+        "  ‖T‖ ≤ max albedo = ({:.4}, {:.4}, {:.4}), in every Lp norm of the throughput measure\n",
+        rho.x, rho.y, rho.z
+    );
     let g = f64::from(rho.max_element());
     if g < 1.0 {
         let bounces = (0.01f64 * (1.0 - g)).ln() / g.ln() - 1.0;
-        out += &format!("  guaranteed: ‖L − S_K‖₁ ≤ {g:.4}^(K+1)/{:.4} · ‖E‖₁; below 1 % of ‖E‖₁ from K = {:.0}\n", 1.0 - g, bounces.max(0.0).ceil());
+        out += &format!(
+            "  guaranteed: ‖L − S_K‖₁ ≤ {g:.4}^(K+1)/{:.4} · ‖E‖₁; below 1 % of ‖E‖₁ from K = {:.0}\n",
+            1.0 - g,
+            bounces.max(0.0).ceil()
+        );
     } else {
         out += "  no guaranteed bound: a surface reflects everything\n";
     }

@@ -24,7 +24,10 @@ pub fn folder(asked: Option<&Path>, name: &str, command: &str, force: bool) -> R
         }
     };
     std::fs::create_dir_all(&folder).map_err(|e| {
-        Failure::Input(format!("error: cannot make the output folder: {e}\n  --> {}\nhelp: choose another with -o", folder.display()))
+        Failure::Input(format!(
+            "error: cannot make the output folder: {e}\n  --> {}\nhelp: choose another with -o",
+            folder.display()
+        ))
     })?;
     Ok(folder)
 }

@@ -8,8 +8,8 @@ use fredholm::report::{summary, table};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
 use fredholm::stats::{Criterion, compare, discretisation};
-use fredholm::terms::functional::Replicates;
 use fredholm::terms::Series;
+use fredholm::terms::functional::Replicates;
 use fredholm::worlds::discrete::{self, Discrete, MatrixError};
 use fredholm::worlds::sampled::{self, Estimator, Sampled};
 use fredholm::worlds::{Settings, surface};
@@ -60,7 +60,10 @@ pub fn series(run: &Run) -> Result<Ending, Failure> {
 
 /// The full path tracer, with the lecture's roulette.
 pub fn render(run: &Run) -> Result<Ending, Failure> {
-    solve(run, Default { worlds: &[WorldName::Path], both_estimators: false, size: None, roulette: Some(Roulette::LECTURE) })
+    solve(
+        run,
+        Default { worlds: &[WorldName::Path], both_estimators: false, size: None, roulette: Some(Roulette::LECTURE) },
+    )
 }
 
 /// The matrix.
@@ -72,7 +75,9 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let started = Instant::now();
     if let Some(n) = run.threads {
         if n == 0 {
-            return Err(Failure::Usage("error: 0 threads cannot do anything\nhelp: give -t 1 or more, or leave it out".into()));
+            return Err(Failure::Usage(
+                "error: 0 threads cannot do anything\nhelp: give -t 1 or more, or leave it out".into(),
+            ));
         }
         rayon::ThreadPoolBuilder::new().num_threads(n).build_global()?;
     }
@@ -184,7 +189,8 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
 /// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.
 fn orders(found: &Found, progress: &Progress) -> Result<Vec<Series>, Failure> {
     let coarsest = (found.settings.patches / 16).max(1);
-    let matrix = discrete::matrix(&found.description, &found.scene, coarsest, found.settings.max_bounces, progress, stop_flag());
+    let matrix =
+        discrete::matrix(&found.description, &found.scene, coarsest, found.settings.max_bounces, progress, stop_flag());
     let picture = match matrix {
         Ok(m) => m.through_camera(&found.scene, &found.settings, progress, stop_flag()),
         Err(MatrixError::Stopped) => return Ok(vec![]),
@@ -196,7 +202,8 @@ fn orders(found: &Found, progress: &Progress) -> Result<Vec<Series>, Failure> {
 
 /// FNV-1a of the scene as loaded.
 fn scene_hash(canonical: &str) -> String {
-    let hash = canonical.bytes().fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
+    let hash =
+        canonical.bytes().fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
     format!("{hash:016x}")
 }
 
@@ -224,7 +231,12 @@ fn print(found: &Found, summary: &summary::Summary, verbose: bool) {
     println!("{}   seed {}, {} spp, {}×{}", found.command, s.seed, s.spp, summary.width, summary.height);
     if !found.terms.is_empty() {
         let q = |r: &Roulette| format!("{r} (q = termination; survivors weigh 1/(1−q))");
-        println!("technique {}; roulette of the terms {}; of the path tracer {}", s.technique, q(&s.roulette), s.path_roulette);
+        println!(
+            "technique {}; roulette of the terms {}; of the path tracer {}",
+            s.technique,
+            q(&s.roulette),
+            s.path_roulette
+        );
     }
     for t in &found.terms {
         println!("\n{}", table::series(&t.series.label, t.series.image(), &t.rays));
@@ -248,5 +260,11 @@ fn print(found: &Found, summary: &summary::Summary, verbose: bool) {
     for line in write::warnings(found) {
         println!("warning: {line}");
     }
-    println!("\n{} files in {} after {:.1} s; open {}", summary.files.len(), found.folder.display(), summary.seconds, found.folder.join("index.html").display());
+    println!(
+        "\n{} files in {} after {:.1} s; open {}",
+        summary.files.len(),
+        found.folder.display(),
+        summary.seconds,
+        found.folder.join("index.html").display()
+    );
 }

@@ -30,19 +30,27 @@ pub fn preview(folder: &Path, d: &Description, command: &str, seed: u64) -> impl
         if slots > 1 && film.least_samples() <= 64 {
             let images: Vec<Pixels> = (0..slots - 1).map(|s| TermImage::of(film, s..s + 1).mean).collect();
             // a preview that cannot be written is no reason to stop; the final files will say what is wrong
-            let _ = terms_sheet(film.shape.size, &images, None, &caption, &format!("{} spp so far", film.least_samples()))
-                .and_then(|s| s.picture.write(&folder.join("terms.png")).map_err(Failure::from));
+            let _ =
+                terms_sheet(film.shape.size, &images, None, &caption, &format!("{} spp so far", film.least_samples()))
+                    .and_then(|s| s.picture.write(&folder.join("terms.png")).map_err(Failure::from));
         }
     }
 }
 
-fn terms_sheet(size: [u32; 2], terms: &[Pixels], total: Option<&Pixels>, caption: &Caption, note: &str) -> Result<Sheet, Failure> {
+fn terms_sheet(
+    size: [u32; 2],
+    terms: &[Pixels],
+    total: Option<&Pixels>,
+    caption: &Caption,
+    note: &str,
+) -> Result<Sheet, Failure> {
     let name = |k: usize| match k {
         0 => "T⁰E: emission".to_string(),
         1 => "T¹E: direct light".to_string(),
         k => format!("T{}E", superscript(k)),
     };
-    let mut cells: Vec<Cell> = terms.iter().enumerate().map(|(k, p)| Cell { label: name(k), pixels: p, gain: None }).collect();
+    let mut cells: Vec<Cell> =
+        terms.iter().enumerate().map(|(k, p)| Cell { label: name(k), pixels: p, gain: None }).collect();
     cells.extend(total.map(|p| Cell { label: "Σ, all k".into(), pixels: p, gain: None }));
     let title = format!("The terms of L = Σ TᵏE, {note}");
     Ok(grid(&title, size[0] as usize, size[1] as usize, &cells, caption)?)
@@ -56,7 +64,8 @@ fn superscript(k: usize) -> String {
 /// Writes everything and returns the summary that was written.
 pub fn all(found: &Found) -> Result<summary::Summary, Failure> {
     let mut out = Files { folder: found.folder.clone(), names: vec![] };
-    let caption = Caption { command: found.command.clone(), seed: found.settings.seed, scene: found.description.name.clone() };
+    let caption =
+        Caption { command: found.command.clone(), seed: found.settings.seed, scene: found.description.name.clone() };
     let size = found.description.camera.size;
     write_exr(found, &mut out, size)?;
     write_pictures(found, &mut out, size, &caption)?;
@@ -165,7 +174,9 @@ fn write_pictures(found: &Found, out: &mut Files, size: [u32; 2], caption: &Capt
         for (k, image) in s.terms.iter().enumerate() {
             add(&mut partial, &image.mean);
             if k == 1 {
-                direct_and_indirect(w, h, &s.terms[0].mean, &partial, &s.total.mean, caption)?.picture.write(&out.add("direct.png"))?;
+                direct_and_indirect(w, h, &s.terms[0].mean, &partial, &s.total.mean, caption)?
+                    .picture
+                    .write(&out.add("direct.png"))?;
             }
             let (picture, _) = single(&format!("S{}", subscript(k)), w, h, &partial, gain)?;
             picture.picture.write(&out.add(&format!("partial_{k:02}.png")))?;
@@ -221,7 +232,8 @@ fn surface_means(r: &Replicates) -> stats::TermMeans {
     let grey = |v: DVec3| v.element_sum() / 3.0;
     let deviation = |i: usize| r.deviation.iter().map(move |d| grey(d[i]));
     let n = r.deviation.len() as f64;
-    let covariance = |a: usize, b: usize| deviation(a).zip(deviation(b)).map(|(x, y)| x * y).sum::<f64>() * n / (n - 1.0);
+    let covariance =
+        |a: usize, b: usize| deviation(a).zip(deviation(b)).map(|(x, y)| x * y).sum::<f64>() * n / (n - 1.0);
     stats::TermMeans {
         mean: r.mean[..terms].iter().map(|&m| grey(m)).collect(),
         covariance: DMatrix::from_fn(terms, terms, covariance),
@@ -230,7 +242,12 @@ fn surface_means(r: &Replicates) -> stats::TermMeans {
 }
 
 fn norm_points(t: &stats::TermMeans) -> Vec<Point> {
-    let point = |k: usize| Point { x: k as f64, value: t.mean[k], std_error: t.covariance[(k, k)].sqrt(), replicates: t.replicates };
+    let point = |k: usize| Point {
+        x: k as f64,
+        value: t.mean[k],
+        std_error: t.covariance[(k, k)].sqrt(),
+        replicates: t.replicates,
+    };
     (0..t.mean.len()).map(point).collect()
 }
 
@@ -243,18 +260,31 @@ fn write_plots(found: &Found, out: &mut Files, caption: &Caption) -> Result<(), 
         let look = if *estimator == Estimator::Single { Look::SINGLE } else { Look::PREFIX };
         let means = surface_means(r);
         let points = norm_points(&means);
-        let ratio = |k: usize| stats::ratio(&means, k).map(|(value, std_error)| Point { x: k as f64, value, std_error, replicates: means.replicates });
+        // ratio(k) is that of term k + 1 to term k; it is drawn at k + 1, as in the tables
+        let ratio = |k: usize| {
+            stats::ratio(&means, k).map(|(value, std_error)| Point {
+                x: k as f64 + 1.0,
+                value,
+                std_error,
+                replicates: means.replicates,
+            })
+        };
         let ratios = match estimator {
             Estimator::Single => independent_ratios(&points),
-            Estimator::Prefix => (1..points.len()).filter_map(ratio).collect(),
+            Estimator::Prefix => (0..points.len() - 1).filter_map(ratio).collect(),
         };
         figure.ratios.push(Curve { label: estimator.to_string(), points: ratios, look });
         figure.surface.push(Curve { label: format!("Monte Carlo, {estimator}"), points, look });
     }
     if let Some(r) = &found.radiosity {
-        let points: Vec<Point> = r.matrix.surface.iter().enumerate().map(|(k, v)| Point::exact(k as f64, v.element_sum() / 3.0)).collect();
+        let points: Vec<Point> =
+            r.matrix.surface.iter().enumerate().map(|(k, v)| Point::exact(k as f64, v.element_sum() / 3.0)).collect();
         figure.ratios.push(Curve { label: "matrix".into(), points: independent_ratios(&points), look: Look::MATRIX });
-        figure.surface.push(Curve { label: format!("matrix, {} patches", r.matrix.radiosity.patches.len()), points, look: Look::MATRIX });
+        figure.surface.push(Curve {
+            label: format!("matrix, {} patches", r.matrix.radiosity.patches.len()),
+            points,
+            look: Look::MATRIX,
+        });
     }
     figure.lines = lines(found);
     for s in found.terms.iter() {
@@ -294,11 +324,23 @@ fn lines(found: &Found) -> Vec<Rate> {
                 kind: RateKind::Observed,
             });
         }
-        lines.push(Rate { label: format!("guaranteed: ‖T‖₁ ≤ max albedo = {g:.3}"), k0: 0.0, value: means.mean[0], ratio: g, kind: RateKind::Guaranteed });
+        lines.push(Rate {
+            label: format!("guaranteed: ‖T‖₁ ≤ max albedo = {g:.3}"),
+            k0: 0.0,
+            value: means.mean[0],
+            ratio: g,
+            kind: RateKind::Guaranteed,
+        });
         let k = means.mean.len() - 1;
         if g < 1.0 && means.mean[k] > 0.0 {
             let bound = g / (1.0 - g) * means.mean[k];
-            lines.push(Rate { label: format!("‖Σ k>{k}‖₁ ≤ {}", table::significant(bound, 3)), k0: k as f64, value: bound, ratio: g, kind: RateKind::TailBound });
+            lines.push(Rate {
+                label: format!("‖Σ k>{k}‖₁ ≤ {}", table::significant(bound, 3)),
+                k0: k as f64,
+                value: bound,
+                ratio: g,
+                kind: RateKind::TailBound,
+            });
         }
     }
     if let Some(r) = &found.radiosity {
@@ -319,21 +361,26 @@ fn lines(found: &Found) -> Vec<Rate> {
 
 fn write_variance(found: &Found, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
     let mut figure = Variance { title: "How the noise falls".into(), curves: vec![] };
-    let mut curve = |label: String, s: &Sampled, of: &dyn Fn(&fredholm::terms::variance::Snapshot) -> fredholm::terms::variance::Variance| {
-        let point = |snap: &fredholm::terms::variance::Snapshot| {
-            let v = of(snap);
-            let replicates = s.series.image().total.replicates;
-            Point { x: f64::from(snap.spp), value: v.value, std_error: v.std_error, replicates }
+    let mut curve =
+        |label: String,
+         s: &Sampled,
+         of: &dyn Fn(&fredholm::terms::variance::Snapshot) -> fredholm::terms::variance::Variance| {
+            let point = |snap: &fredholm::terms::variance::Snapshot| {
+                let v = of(snap);
+                let replicates = s.series.image().total.replicates;
+                Point { x: f64::from(snap.spp), value: v.value, std_error: v.std_error, replicates }
+            };
+            let points: Vec<Point> =
+                s.snapshots.iter().map(point).filter(|p| p.value > 0.0 && p.value.is_finite()).collect();
+            // the variance of many pixels is known better than from R − 1 degrees of freedom: those that give its error
+            let dof = points.last().map_or(15.0, |p| 2.0 * (p.value / p.std_error).powi(2));
+            let slope = variance_slope(&points.iter().map(|p| (p.x, p.value)).collect::<Vec<_>>(), dof)
+                .map(|s| (s.slope, s.std_error));
+            if !points.is_empty() {
+                let look = Look::nth(figure.curves.len());
+                figure.curves.push(Falling { curve: Curve { label, points, look }, slope });
+            }
         };
-        let points: Vec<Point> = s.snapshots.iter().map(point).filter(|p| p.value > 0.0 && p.value.is_finite()).collect();
-        // the variance of many pixels is known better than from R − 1 degrees of freedom: those that give its error
-        let dof = points.last().map_or(15.0, |p| 2.0 * (p.value / p.std_error).powi(2));
-        let slope = variance_slope(&points.iter().map(|p| (p.x, p.value)).collect::<Vec<_>>(), dof).map(|s| (s.slope, s.std_error));
-        if !points.is_empty() {
-            let look = Look::nth(figure.curves.len());
-            figure.curves.push(Falling { curve: Curve { label, points, look }, slope });
-        }
-    };
     if let Some(s) = found.terms.first() {
         curve(format!("Σ, {}", s.series.label), s, &|snap| snap.total);
         for k in 0..s.terms.len() {
@@ -408,7 +455,8 @@ fn radiosity_summary(r: &Discrete) -> summary::Radiosity {
 
 fn write_page(found: &Found, out: &Files, summary: &summary::Summary) -> Result<(), Failure> {
     let path = |name: &str| out.path(name);
-    let [sheet, direct, decay, variance, z] = ["terms.png", "direct.png", "decay.svg", "variance.svg", "z.png"].map(path);
+    let [sheet, direct, decay, variance, z] =
+        ["terms.png", "direct.png", "decay.svg", "variance.svg", "z.png"].map(path);
     let mut plates = vec![];
     let candidates = [
         ("terms.png", Plate::terms(&sheet)),
@@ -489,14 +537,18 @@ pub fn verdicts(name: &str, comparison: &Comparison) -> Vec<summary::Verdict> {
 /// One line: the outcome, and what would decide.
 pub fn judgement(c: &Comparison) -> String {
     match c.outcome {
-        stats::Outcome::Agrees => format!("Agrees: every difference is proved smaller than δ ({} comparisons share α).", c.family),
+        stats::Outcome::Agrees => {
+            format!("Agrees: every difference is proved smaller than δ ({} comparisons share α).", c.family)
+        }
         stats::Outcome::Differs => format!("Differs: at least one of {} comparisons is rejected.", c.family),
         stats::Outcome::Inconclusive => {
             let reason = c.rows.iter().find_map(|r| r.reason);
             let factor = c.rows.iter().filter_map(|r| r.needed_factor).fold(0.0, f64::max);
             match reason {
                 Some(reason) => format!("Inconclusive: {reason}."),
-                None if factor > 0.0 => format!("Inconclusive: the noise hides differences of the size of δ; {factor:.1} times the samples will decide."),
+                None if factor > 0.0 => format!(
+                    "Inconclusive: the noise hides differences of the size of δ; {factor:.1} times the samples will decide."
+                ),
                 None => "Inconclusive: the results have nothing in common to compare.".into(),
             }
         }
@@ -511,16 +563,24 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
     let d = (r.fine.series.image().total.mean - r.coarse.series.image().total.mean).abs();
     let mut out = format!(
         "F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4}, reciprocity {:.1e}; residual of the solve {:.1e}\nspectral radius ({rho}); |R_h − R_2h| of the image mean {:.2e}",
-        i.row_sum_min, i.row_sum_max, i.smallest, i.largest, i.reciprocity, m.solution.residual.max_element(), d.element_sum() / 3.0
+        i.row_sum_min,
+        i.row_sum_max,
+        i.smallest,
+        i.largest,
+        i.reciprocity,
+        m.solution.residual.max_element(),
+        d.element_sum() / 3.0
     );
     if verbose {
         let norms = m.norms.each_ref().map(|(one, inf)| format!("{one:.4}/{inf:.4}")).join(", ");
         let p = &m.radiosity.patches;
         out += &format!(
             "\n‖T_h‖₁/‖T_h‖∞ per channel {norms}; surface {:.4} m², covered {:.4} m²; visibility rays {}",
-            p.surface_area(), p.covered_area(), m.radiosity.factors.rays
+            p.surface_area(),
+            p.covered_area(),
+            m.radiosity.factors.rays
         );
-        out += "\nT¹ through the camera reads E along one ray: it tests no matrix";
+        out += "\nT¹ through the camera reads E itself: it tests no matrix";
     }
     out
 }
@@ -533,7 +593,12 @@ pub fn decay_facts(found: &Found) -> Vec<String> {
         out.push(match observed_rate(&means) {
             Ok(f) => format!(
                 "observed rate of the surface norm {:.4} ± {:.4} (k = {} to {}, p = {:.2}); guaranteed: ‖T‖₁ ≤ {:.4}",
-                f.rate, f.std_error, f.window.start, f.window.end - 1, f.p, found.scene.max_albedo().max_element()
+                f.rate,
+                f.std_error,
+                f.window.start,
+                f.window.end - 1,
+                f.p,
+                found.scene.max_albedo().max_element()
             ),
             Err(why) => format!("no rate fitted: {why}"),
         });
@@ -554,8 +619,12 @@ pub fn orders(meshes: &[Series]) -> Vec<String> {
     };
     let terms = fine.image().terms.len();
     let per_term: Vec<String> = (2..terms).map(|k| format!("T{k} {:.1}", order(Some(k)))).collect();
-    vec![format!("order of convergence in h, from {}: whole image {:.1}; {}",
-        meshes.iter().map(|m| m.label.split(' ').nth(1).unwrap_or("?")).collect::<Vec<_>>().join(", "), order(None), per_term.join(", "))]
+    vec![format!(
+        "order of convergence in h, from {}: whole image {:.1}; {}",
+        meshes.iter().map(|m| m.label.split(' ').nth(1).unwrap_or("?")).collect::<Vec<_>>().join(", "),
+        order(None),
+        per_term.join(", ")
+    )]
 }
 
 /// What the reader must know before trusting an error bar.
@@ -563,9 +632,14 @@ pub fn warnings(found: &Found) -> Vec<String> {
     let mut out = vec![];
     let all = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
     for s in all.filter(|s| s.series.cost.non_finite > 0) {
-        out.push(format!("{}: {} samples were not finite; they are left in the sums", s.series.label, s.series.cost.non_finite));
+        out.push(format!(
+            "{}: {} samples were not finite; they are left in the sums",
+            s.series.label, s.series.cost.non_finite
+        ));
     }
-    if let (Some(r), fredholm::estimator::Roulette::Constant { q, .. }) = (&found.radiosity, &found.settings.path_roulette) {
+    if let (Some(r), fredholm::estimator::Roulette::Constant { q, .. }) =
+        (&found.radiosity, &found.settings.path_roulette)
+    {
         let radius = r.matrix.radiosity.second_moment_radius(1.0 - q).into_iter().fold(0.0, f64::max);
         if radius >= 1.0 {
             out.push(format!(
