@@ -133,7 +133,12 @@ fn patches_of_a_cube_give_the_galerkin_solution() {
             p[face / 2] = (face % 2) as f64;
             b[r.patches.locate(face, true, p).unwrap()]
         };
-        close(id, &(0..6).map(corner).collect::<Vec<_>>(), &numbers(&expected["B_first_patch_each_face"]), 2.0 * SINGLE);
+        close(
+            id,
+            &(0..6).map(corner).collect::<Vec<_>>(),
+            &numbers(&expected["B_first_patch_each_face"]),
+            2.0 * SINGLE,
+        );
         let norm = |x: &Vec<DVec3>| grey(x).iter().map(|x| share * x * x).sum::<f64>().sqrt();
         let norms: Vec<f64> = r.terms(6).iter().map(norm).collect();
         close(id, &norms, &numbers(&expected["L2_terms"]), SINGLE);
@@ -161,7 +166,8 @@ fn sphere_bands_are_exact_on_any_mesh() {
             let values = grey(x);
             (0..rho.len())
                 .map(|i| {
-                    let of: Vec<f64> = (0..x.len()).filter(|j| r.patches[*j].primitive == i).map(|j| values[j]).collect();
+                    let of: Vec<f64> =
+                        (0..x.len()).filter(|j| r.patches[*j].primitive == i).map(|j| values[j]).collect();
                     assert!(of.iter().all(|x| (x - of[0]).abs() < 2e-6));
                     of[0]
                 })
@@ -185,10 +191,8 @@ fn sphere_bands_are_exact_on_any_mesh() {
 fn concentric_spheres_converge_to_their_two_by_two_matrix() {
     let case = &truth()["concentric_spheres_r0.25"]["expected"];
     let sphere = |radius, inward| Geometry::Sphere { center: DVec3::ZERO, radius, z: [-1.0, 1.0], inward };
-    let shapes = vec![
-        (sphere(0.25, false), DVec3::splat(0.9), DVec3::ZERO),
-        (sphere(1.0, true), DVec3::splat(0.6), DVec3::ONE),
-    ];
+    let shapes =
+        vec![(sphere(0.25, false), DVec3::splat(0.9), DVec3::ZERO), (sphere(1.0, true), DVec3::splat(0.6), DVec3::ONE)];
     let scene = scene(shapes);
     let error = |n: usize| {
         let (patches, factors) = discretise(&scene, n);
@@ -203,7 +207,8 @@ fn concentric_spheres_converge_to_their_two_by_two_matrix() {
         let expected = rows(&case["terms"])[1].clone();
         radius.max((mean(0) - expected[0]).abs()).max((mean(1) - expected[1]).abs())
     };
-    let (coarse, fine) = (error(100), error(800));
+    // O(1/n) once the inner sphere has some 20 facets
+    let (coarse, fine) = (error(300), error(1200));
     assert!(fine < 5e-3 && fine < 0.3 * coarse, "{coarse:e} {fine:e}");
 }
 
@@ -217,7 +222,12 @@ fn a_furnace_decays_by_its_albedo_in_every_norm() {
     let [(one, infinity), ..] = r.norms();
     close("norms and radius", &[one, infinity, r.spectral_radius()[0].radius], &[0.7; 3], 1e-6);
     // finite variance iff ρ²/s < 1: s = 0.5 gives 0.98, s = 0.48 gives 1.02
-    close("second moments", &[r.second_moment_radius(0.5)[0], r.second_moment_radius(0.48)[0]], &[0.98, 0.49 / 0.48], 2e-6);
+    close(
+        "second moments",
+        &[r.second_moment_radius(0.5)[0], r.second_moment_radius(0.48)[0]],
+        &[0.98, 0.49 / 0.48],
+        2e-6,
+    );
 }
 
 fn cornell_box(n: usize) -> Radiosity {
@@ -319,7 +329,7 @@ fn weighted_ratios_rise_to_the_spectral_radius() {
 
 #[test]
 fn the_spectral_radius_of_the_cornell_box_settles_with_the_mesh() {
-    let radii: Vec<f64> = [75, 300, 1200].iter().map(|n| cornell_box(*n).spectral_radius()[0].radius).collect();
+    let radii: Vec<f64> = [60, 240, 960].iter().map(|n| cornell_box(*n).spectral_radius()[0].radius).collect();
     let steps = [radii[1] - radii[0], radii[2] - radii[1]];
     assert!(steps[1].abs() < 0.6 * steps[0].abs() && steps[1].abs() < 0.01, "{radii:?}");
 }

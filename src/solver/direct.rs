@@ -74,5 +74,10 @@ pub fn residual<T: LinearOperator + ?Sized>(t: &T, emission: &[f64], x: &[f64]) 
     let mut y = vec![0.0; x.len()];
     t.apply(x, &mut y);
     // f64::max would hide a NaN
-    emission.iter().zip(x).zip(&y).map(|((e, x), y)| (e - x + y).abs()).fold(0.0, |a, r| if r > a || r.is_nan() { r } else { a })
+    emission
+        .iter()
+        .zip(x)
+        .zip(&y)
+        .map(|((e, x), y)| (e - x + y).abs())
+        .fold(0.0, |a, r| if r > a || r.is_nan() { r } else { a })
 }

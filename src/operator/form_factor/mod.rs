@@ -86,8 +86,8 @@ impl FormFactors {
                 return;
             }
             let mut work = Scratch::default();
-            for j in i..n {
-                row[j] = (pairs.exchange(i, j, &mut work) / area[i]) as f32;
+            for (j, entry) in row.iter_mut().enumerate().skip(i) {
+                *entry = (pairs.exchange(i, j, &mut work) / area[i]) as f32;
             }
             rays.fetch_add(work.rays, Relaxed);
             let done = done.fetch_add(1, Relaxed) + 1;
@@ -197,7 +197,11 @@ impl Pairs<'_> {
         }
         let pair = (i as u64) << 32 | j as u64;
         let (share, traced) = visible_share(self.sampling, (a, pa), (b, pb), flat_kernel, pair, |x, y| {
-            if among.len() > MAX_LISTED { self.visibility.visible(x, y) } else { self.visibility.visible_among(x, y, among) }
+            if among.len() > MAX_LISTED {
+                self.visibility.visible(x, y)
+            } else {
+                self.visibility.visible_among(x, y, among)
+            }
         });
         *rays += u64::from(traced);
         share
@@ -205,6 +209,7 @@ impl Pairs<'_> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::operator::patches::BruteForce;
@@ -215,20 +220,19 @@ mod tests {
     fn clutter() -> Description {
         let geometries = [
             Geometry::Box { min: DVec3::NEG_ONE, max: DVec3::ONE, rotate_y: 0.0, inward: true },
-            Geometry::Box { min: DVec3::new(-0.6, -1.0, -0.6), max: DVec3::new(0.0, 0.1, 0.0), rotate_y: 20.0, inward: false },
+            Geometry::Box {
+                min: DVec3::new(-0.6, -1.0, -0.6),
+                max: DVec3::new(0.0, 0.1, 0.0),
+                rotate_y: 20.0,
+                inward: false,
+            },
             Geometry::Sphere { center: DVec3::new(0.4, -0.3, 0.3), radius: 0.3, z: [-1.0, 1.0], inward: false },
             Geometry::Disk { center: DVec3::new(0.1, 0.7, 0.0), normal: DVec3::new(0.2, -1.0, 0.1), radius: 0.3 },
         ];
         let shape = |geometry| Shape { name: "s".into(), geometry, material: 0, emission: DVec3::ZERO };
         Description {
             name: "clutter".into(),
-            camera: CameraDescription {
-                origin: DVec3::Z,
-                target: DVec3::ZERO,
-                up: DVec3::Y,
-                fov: 40.0,
-                size: [8, 8],
-            },
+            camera: CameraDescription { origin: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov: 40.0, size: [8, 8] },
             materials: vec![Material { name: "m".into(), reflectance: DVec3::splat(0.5), sides: Sides::Front }],
             shapes: geometries.map(shape).to_vec(),
             expect: None,

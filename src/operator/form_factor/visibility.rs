@@ -62,7 +62,8 @@ pub(super) fn visible_share(
     visible: impl Fn(SurfacePoint, SurfacePoint) -> bool,
 ) -> (f64, u32) {
     // 1/φ, 1/φ², 1/φ³, 1/φ⁴ with φ⁵ = φ + 1
-    const STEP: [f64; 4] = [0.856_674_883_854_502_9, 0.733_891_856_627_125_9, 0.628_706_721_037_806_6, 0.538_597_257_223_612_5];
+    const STEP: [f64; 4] =
+        [0.856_674_883_854_502_9, 0.733_891_856_627_125_9, 0.628_706_721_037_806_6, 0.538_597_257_223_612_5];
     let shift = [0, 1, 2, 3].map(|d| uniform(pair.wrapping_mul(4).wrapping_add(d)));
     let (mut seen, mut all) = (0.0, 0.0);
     let (mut hits, mut misses) = (0u32, 0u32);
@@ -71,7 +72,8 @@ pub(super) fn visible_share(
             let u = [0, 1, 2, 3].map(|d| (shift[d] + f64::from(s) * STEP[d]).fract());
             let ((x, jx), (y, jy)) = (at(pa, u[0], u[1]), at(pb, u[2], u[3]));
             let r = y - x;
-            let kernel = if flat_kernel { a.normal.dot(r) * -b.normal.dot(r) / r.length_squared().powi(2) } else { 1.0 };
+            let kernel =
+                if flat_kernel { a.normal.dot(r) * -b.normal.dot(r) / r.length_squared().powi(2) } else { 1.0 };
             let weight = jx * jy * kernel;
             // the horizon of a clipped part may be missed by rounding, and touching parts may share a point
             if weight > 0.0 && weight.is_finite() {

@@ -184,7 +184,9 @@ impl Patches {
             patches.indices.push(index);
         }
         if patches.list.is_empty() {
-            return Err(SceneError::new("every surface of the scene is covered").help("check which sides face the light"));
+            return Err(
+                SceneError::new("every surface of the scene is covered").help("check which sides face the light")
+            );
         }
         Ok(patches)
     }

@@ -16,8 +16,7 @@ pub fn area_vector(p: &[DVec3]) -> DVec3 {
 pub fn centroid(p: &[DVec3]) -> DVec3 {
     let n = area_vector(p);
     let o = p[0];
-    let moment: DVec3 =
-        p.windows(2).map(|w| (w[0] - o).cross(w[1] - o).dot(n) * ((w[0] - o) + (w[1] - o))).sum();
+    let moment: DVec3 = p.windows(2).map(|w| (w[0] - o).cross(w[1] - o).dot(n) * ((w[0] - o) + (w[1] - o))).sum();
     o + moment / (6.0 * n.length_squared())
 }
 
@@ -105,10 +104,13 @@ pub fn equal_area_line(p: &[DVec3], share: f64) -> (DVec3, f64) {
         if excess.abs() <= 1e-15 * whole {
             break;
         }
-        if excess > 0.0 { hi = s } else { lo = s }
+        if excess > 0.0 {
+            hi = s
+        } else {
+            lo = s
+        }
         let chord = {
-            let on: Vec<DVec3> =
-                part.iter().copied().filter(|q| (axis.dot(*q) - s).abs() <= 1e-12 * width).collect();
+            let on: Vec<DVec3> = part.iter().copied().filter(|q| (axis.dot(*q) - s).abs() <= 1e-12 * width).collect();
             on.first().zip(on.last()).map_or(0.0, |(a, b)| a.distance(*b))
         };
         let newton = s - excess / chord;

@@ -61,8 +61,11 @@ impl Tree {
         }
         let axis = normal.cross(along).normalize();
         let offset = axis.dot(a);
-        let crossed: Vec<usize> =
-            self.cells().filter(|(_, p)| crosses(p, normal, a, b, axis, offset, TINY * self.size)).map(|c| c.0).collect();
+        let crossed: Vec<usize> = self
+            .cells()
+            .filter(|(_, p)| crosses(p, normal, a, b, axis, offset, TINY * self.size))
+            .map(|c| c.0)
+            .collect();
         for &cell in &crossed {
             self.split(cell, axis, offset);
         }
@@ -150,6 +153,7 @@ pub(super) fn share(polygon: &[DVec3], a: f64) -> usize {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::operator::patches::polygon::centroid;
