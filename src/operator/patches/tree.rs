@@ -153,6 +153,7 @@ pub(super) fn share(polygon: &[DVec3], a: f64) -> usize {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::operator::patches::polygon::centroid;
