@@ -162,6 +162,11 @@ impl Scene {
     /// The light points of a wave: positions in `rays.o`, normals in `rays.d`, densities in `rays.t`, primitives in `rays.prim`.
     #[inline(always)]
     pub(crate) fn light_points(&self, rays: &mut Rays, n: usize) {
+        if let Some(prim) = self.lights.only() {
+            packets::points_on(&self.accel.shapes[prim as usize], self.lights.density[prim as usize], rays, n);
+            rays.prim[..n].fill(prim);
+            return;
+        }
         for i in 0..n {
             let light = self.light_point(rays.u.each_ref().map(|u| u[i]));
             rays.o.set(i, light.p);
