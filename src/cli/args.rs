@@ -99,7 +99,7 @@ pub struct Run {
     /// Seed: same seed, same bits, for any number of threads
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-    /// Image size in pixels [default: the scene's; 160x160 for the tour]
+    /// Image size in pixels [default: the scene's; 192x192 for the tour]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// K: keep the terms k = 0..=K; k counts applications of T

@@ -50,7 +50,7 @@ const ALL: &[WorldName] = &[WorldName::Terms, WorldName::Path, WorldName::Radios
 
 /// The tour: all worlds, both estimators.
 pub fn tour(run: &Run) -> Result<Ending, Failure> {
-    solve(run, Default { worlds: ALL, both_estimators: true, size: Some([160, 160]), roulette: None })
+    solve(run, Default { worlds: ALL, both_estimators: true, size: Some([192, 192]), roulette: None })
 }
 
 /// Each T^k E and the sum.
