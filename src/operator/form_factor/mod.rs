@@ -86,8 +86,8 @@ impl FormFactors {
                 return;
             }
             let mut work = Scratch::default();
-            for j in i..n {
-                row[j] = (pairs.exchange(i, j, &mut work) / area[i]) as f32;
+            for (j, f) in row.iter_mut().enumerate().skip(i) {
+                *f = (pairs.exchange(i, j, &mut work) / area[i]) as f32;
             }
             rays.fetch_add(work.rays, Relaxed);
             let done = done.fetch_add(1, Relaxed) + 1;

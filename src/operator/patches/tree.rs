@@ -154,6 +154,7 @@ pub(super) fn share(polygon: &[DVec3], a: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::operator::patches::polygon::centroid;
 
