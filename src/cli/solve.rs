@@ -211,7 +211,7 @@ fn verdicts(found: &Found) -> Vec<summary::Verdict> {
     let criterion = Criterion::default();
     let mut all = vec![];
     let mut judge = |name: &str, a: &Series, b: &Series, allowance: &[fredholm::terms::Functional]| {
-        all.extend(write::verdicts(name, &compare(a, b, &criterion, allowance)));
+        all.extend(summary::verdicts(name, &compare(a, b, &criterion, allowance)));
     };
     let Some(terms) = found.terms.first().map(|t| &t.series) else { return all };
     if let Some(other) = found.terms.get(1) {

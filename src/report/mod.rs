@@ -26,6 +26,7 @@ mod null_as_nan;
 mod panel;
 pub mod picture;
 pub mod plot;
+mod rate;
 pub mod sheet;
 pub mod summary;
 pub mod table;
