@@ -66,6 +66,15 @@ pub const ENTRIES: &[Entry] = &[
     entry("the_planned_power_is_reached", 2, 1e-8),
     entry("rates_have_the_error_they_claim", 4, 1e-8),
     entry("variance_slopes_have_the_error_they_claim", 2, 1e-8),
+    // tests/matrix_walk.rs
+    entry("estimators_match_a_random_substochastic_matrix", 12_000, 2e-8),
+    entry("estimators_match_two_plates", 4_000, 1e-8),
+    entry("estimators_match_concentric_spheres", 4_000, 1e-8),
+    entry("estimators_match_a_matrix_with_absorbing_rows", 7_000, 1e-8),
+    entry("estimators_match_a_matrix_with_a_single_emitter", 7_000, 1e-8),
+    entry("estimators_match_matrices_at_length", 12_000, 2e-8),
+    entry("variances_follow_the_recursion_of_second_moments", 144, 1e-8),
+    entry("a_small_error_in_the_operator_is_seen", 9, 1e-9),
 ];
 
 impl Entry {
