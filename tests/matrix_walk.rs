@@ -172,24 +172,15 @@ fn two_surfaces(ids: [&str; 3]) -> Matrix {
 
 /// One row reflects nothing, one row lets everything escape, one shines without reflecting.
 fn absorbing() -> Matrix {
-    let rows = [
-        vec![0.5, 0.3, 0.05, 0.15],
-        vec![0.6, 0.2, 0.1, 0.1],
-        vec![0.0, 0.0, 0.0, 0.0],
-        vec![0.4, 0.2, 0.2, 0.2],
-    ];
+    let rows =
+        [vec![0.5, 0.3, 0.05, 0.15], vec![0.6, 0.2, 0.1, 0.1], vec![0.0, 0.0, 0.0, 0.0], vec![0.4, 0.2, 0.2, 0.2]];
     let rho = vec![Rgb::new(0.55, 0.5, 0.3), Rgb::new(0.4, 0.58, 0.5), Rgb::splat(0.5), Rgb::ZERO];
     Matrix::new(&rows, rho, vec![Rgb::ZERO, Rgb::new(0.5, 1.0, 0.2), Rgb::splat(0.3), Rgb::new(2.0, 1.0, 1.5)])
 }
 
 /// Only row 0 emits, and it does not see itself.
 fn single_emitter() -> Matrix {
-    let rows = [
-        vec![0.0, 0.3, 0.3, 0.4],
-        vec![0.4, 0.1, 0.2, 0.3],
-        vec![0.3, 0.3, 0.1, 0.2],
-        vec![0.5, 0.0, 0.4, 0.1],
-    ];
+    let rows = [vec![0.0, 0.3, 0.3, 0.4], vec![0.4, 0.1, 0.2, 0.3], vec![0.3, 0.3, 0.1, 0.2], vec![0.5, 0.0, 0.4, 0.1]];
     let rho =
         vec![Rgb::new(0.5, 0.3, 0.58), Rgb::new(0.55, 0.5, 0.4), Rgb::new(0.3, 0.58, 0.5), Rgb::new(0.58, 0.4, 0.45)];
     Matrix::new(&rows, rho, vec![Rgb::new(1.0, 2.0, 3.0), Rgb::ZERO, Rgb::ZERO, Rgb::ZERO])

@@ -17,13 +17,7 @@ pub fn description(surfaces: &[Surface]) -> Description {
     };
     Description {
         name: "test".into(),
-        camera: CameraDescription {
-            origin: DVec3::ZERO,
-            target: DVec3::NEG_Z,
-            up: DVec3::Y,
-            fov: 90.0,
-            size: [8, 8],
-        },
+        camera: CameraDescription { origin: DVec3::ZERO, target: DVec3::NEG_Z, up: DVec3::Y, fov: 90.0, size: [8, 8] },
         materials: surfaces.iter().enumerate().map(material).collect(),
         shapes: surfaces.iter().enumerate().map(shape).collect(),
         expect: None,
