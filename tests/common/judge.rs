@@ -46,7 +46,8 @@ impl Jury {
     }
 
     fn reach(&mut self, e: &Estimate) -> DVec3 {
-        let dof = e.replicates as f64 - 1.0;
+        // no replicates: the error is known
+        let dof = if e.replicates == 0 { f64::INFINITY } else { e.replicates as f64 - 1.0 };
         if self.threshold.0 != dof {
             self.threshold = (dof, fredholm::stats::critical(self.level, dof));
         }

@@ -105,29 +105,31 @@ pub fn mean_of(values: impl ExactSizeIterator<Item = DVec3>) -> Estimate {
     fredholm::stats::estimate(&groups)
 }
 
-/// Pixel i starts at vertex i, always.
-pub struct Points(pub Vec<Vertex>);
-
-impl Sensor<SceneTransport<'_>> for Points {
-    fn size(&self) -> [u32; 2] {
-        [self.0.len() as u32, 1]
-    }
-    fn start(&self, _: &SceneTransport<'_>, pixel: u32, _: &mut Rng) -> Option<Vertex> {
-        Some(self.0[pixel as usize])
-    }
+/// Where the paths of a pixel start.
+#[derive(Clone, Copy, Debug)]
+pub enum Start {
+    /// Always here.
+    At(Vertex),
+    /// At a uniform point of a side.
+    On(Side),
 }
 
-/// Pixel i starts at a uniform point of side i.
-pub struct Areas(pub Vec<Side>);
+/// Pixel i starts as the i-th says.
+pub struct Starts(pub Vec<Start>);
 
-impl Sensor<SceneTransport<'_>> for Areas {
+impl Sensor<SceneTransport<'_>> for Starts {
     fn size(&self) -> [u32; 2] {
         [self.0.len() as u32, 1]
     }
     fn start(&self, t: &SceneTransport<'_>, pixel: u32, rng: &mut Rng) -> Option<Vertex> {
-        let (u, side) = (rng.four(), self.0[pixel as usize]);
-        let (p, n) = t.scene.point(side, [u[0], u[1]]);
-        Some(Vertex { p, n, omega: n, side })
+        match self.0[pixel as usize] {
+            Start::At(vertex) => Some(vertex),
+            Start::On(side) => {
+                let u = rng.four();
+                let (p, n) = t.scene.point(side, [u[0], u[1]]);
+                Some(Vertex { p, n, omega: n, side })
+            }
+        }
     }
 }
 
