@@ -43,6 +43,24 @@ pub enum Ending {
     Interrupted,
 }
 
+/// Prints to stdout, with a final newline. A reader that has seen enough (`| head`) is no error.
+pub fn say(text: &str) -> Result<(), Failure> {
+    use std::io::{ErrorKind, Write};
+    let mut out = std::io::stdout().lock();
+    match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Input(format!("error: cannot print the result: {e}\nhelp: check where stdout goes")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Blocks of text with one blank line between them; empty ones leave nothing.
+pub fn paragraphs<S: AsRef<str>>(blocks: &[S]) -> String {
+    let blocks = blocks.iter().map(|b| b.as_ref().trim_end()).filter(|b| !b.is_empty());
+    blocks.collect::<Vec<_>>().join("\n\n")
+}
+
 /// Runs a command to its exit code.
 pub fn run(cli: Cli) -> ExitCode {
     let result = match &cli.command {
