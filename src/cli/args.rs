@@ -26,7 +26,7 @@ Exit codes: 0 ok, 1 a comparison failed, 2 usage, 3 scene or file,
 
 /// The operator view of global illumination: L = E + T L = Σ T^k E, measured
 #[derive(Debug, Parser)]
-#[command(name = "fredholm", version, about, long_about = TOUR, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+#[command(name = "fredholm", version, about = TOUR, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Cli {
     /// What to do; nothing is the tour
     #[command(subcommand)]
@@ -126,16 +126,23 @@ pub struct Run {
     /// K: keep the terms k = 0..=K; k counts applications of T
     #[arg(long, value_name = "K", default_value_t = 8, value_parser = clap::value_parser!(u16).range(0..=1000))]
     pub max_bounces: u16,
-    /// How the terms are estimated [the tour runs both]
-    #[arg(long, value_enum, default_value_t = EstimatorName::Prefix, value_name = "NAME")]
+    /// How the terms are estimated: single, prefix
+    ///
+    /// single: each term from paths of its own; prefix: all terms from the prefixes of one path.
+    /// The tour runs both.
+    #[arg(long, value_enum, default_value_t = EstimatorName::Prefix, value_name = "NAME", hide_possible_values = true)]
     pub estimator: EstimatorName,
-    /// How light is found: scatter, connect (next-event estimation), or mis
+    /// How light is found: scatter, connect, mis
+    ///
+    /// scatter: paths must hit it; connect: next-event estimation; mis: both, weighed.
     #[arg(long, default_value = "mis", value_parser = technique, value_name = "NAME")]
     pub technique: Technique,
     /// How directions are drawn: uniform, cosine, bsdf
     #[arg(long, default_value = "bsdf", value_parser = sampling, value_name = "NAME")]
     pub sampling: Sampling,
-    /// Russian roulette [default: render: lecture; else none for k ≤ K, then albedo]
+    /// Russian roulette: none, lecture, constant:Q@V, …; `--help` lists all
+    ///
+    /// [default: render: lecture; else none for k ≤ K, then albedo]
     ///
     /// q is the probability of TERMINATION, tested at vertex v = 0, 1, … after it is scored:
     ///   none                 never; nothing longer than K is estimated
@@ -146,25 +153,33 @@ pub struct Run {
     ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
     #[arg(long, value_name = "SCHEDULE", verbatim_doc_comment)]
     pub roulette: Option<Roulette>,
-    /// Which worlds to solve, with commas [default: all; render and radiosity: their own]
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "WORLD,…")]
+    /// Which worlds to solve, with commas: terms, path, radiosity
+    ///
+    /// terms: each term by its own estimator; path: the full path tracer; radiosity: the matrix over
+    /// patches. [default: all; render and radiosity: their own]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "WORLD,…", hide_possible_values = true)]
     pub worlds: Vec<WorldName>,
     /// About how many patches the matrix has
     #[arg(long, value_name = "N", default_value_t = 600, value_parser = clap::value_parser!(u32).range(1..=20_000))]
     pub patches: u32,
-    /// Radiosity: show the value of the patch under the pixel, without gathering a bounce from it
+    /// Show patches as they are, without gathering a last bounce from them
     #[arg(long)]
     pub read_patches: bool,
     /// Fit the order of convergence of the radiosity from three meshes
     #[arg(long)]
     pub orders: bool,
-    /// Override a key of the scene: materials.white.reflectance=[0.6,0.6,0.6]
+    /// Override a key of the scene
+    ///
+    /// For example materials.white.reflectance=[0.6,0.6,0.6]
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Let a material emit: lamp=17,12,4
     #[arg(long, value_name = "MATERIAL=R,G,B")]
     pub emit: Vec<String>,
-    /// Output folder [default: fredholm-out/<scene>, or <scene>-2, … if another run's is there]
+    /// Output folder [default: fredholm-out/<scene>]
+    ///
+    /// The same command replaces its own output. Where another run's stands, the default becomes
+    /// <scene>-2, and a folder given here is refused without --force.
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Replace what another run left in the output folder
@@ -197,7 +212,7 @@ pub struct Compare {
     /// δ as a fraction of the whole image, added
     #[arg(long, default_value_t = 1e-4, value_name = "FRACTION", value_parser = fraction)]
     pub of_total: f64,
-    /// Chance that equal results are told apart anywhere (Holm)
+    /// Chance that equal results are told apart anywhere
     #[arg(long, default_value_t = 1e-3, value_name = "P", value_parser = probability)]
     pub alpha: f64,
     /// Where the z map goes [default: fredholm-out/compare]

@@ -14,7 +14,7 @@ pub fn run(args: &args::Info) -> Result<Ending, Failure> {
     };
     let loaded = load::scene(name, &load::Options { set: args.set.clone(), emit: args.emit.clone() })?;
     for warning in &loaded.warnings {
-        eprintln!("warning: {warning}");
+        super::note(&format!("warning: {warning}"));
     }
     let d = &loaded.description;
     let scene = Scene::new(d);

@@ -8,6 +8,7 @@
 pub mod args;
 mod chapter;
 mod compare;
+mod guard;
 mod info;
 mod output;
 mod progress;
@@ -55,6 +56,12 @@ pub fn say(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// Prints a note to stderr; if nobody listens there, so be it.
+pub fn note(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
 /// Blocks of text with one blank line between them; empty ones leave nothing.
 pub fn paragraphs<S: AsRef<str>>(blocks: &[S]) -> String {
     let blocks = blocks.iter().map(|b| b.as_ref().trim_end()).filter(|b| !b.is_empty());
@@ -78,11 +85,11 @@ pub fn run(cli: Cli) -> ExitCode {
         Ok(Ending::Failed) => ExitCode::from(1),
         Ok(Ending::Interrupted) => ExitCode::from(130),
         Err(Failure::Usage(text)) => {
-            eprintln!("{text}");
+            note(&text);
             ExitCode::from(2)
         }
         Err(Failure::Input(text)) => {
-            eprintln!("{text}");
+            note(&text);
             ExitCode::from(3)
         }
     }

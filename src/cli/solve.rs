@@ -2,7 +2,7 @@
 
 use super::args::{EstimatorName, Run, WorldName};
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, output, write};
+use super::{Ending, Failure, guard, output, write};
 use fredholm::estimator::Roulette;
 use fredholm::report::{summary, table};
 use fredholm::scene::load::{self, Options};
@@ -86,7 +86,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     }
     let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
     for warning in &loaded.warnings {
-        eprintln!("warning: {warning}");
+        super::note(&format!("warning: {warning}"));
     }
     let description = loaded.description;
     let scene = Scene::new(&description);
@@ -113,8 +113,8 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         (_, _, EstimatorName::Single) => vec![Estimator::Single],
         (_, _, EstimatorName::Prefix) => vec![Estimator::Prefix],
     };
-    fits_in_memory(&settings, description.camera.size)?;
-    light_is_lost(&description, &scene, &settings, &worlds)?;
+    guard::fits_in_memory(&settings, description.camera.size)?;
+    guard::light_is_lost(&scene, &settings, &worlds)?;
     let folder = output::folder(run.out.as_deref(), &description.name, &command, run.force)?;
     let stop = stop_flag();
     let preview = write::preview(&folder, &description, &command, run.seed);
@@ -170,14 +170,14 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     progress.finish();
 
     if found.terms.is_empty() && found.path.is_none() && found.radiosity.is_none() {
-        eprintln!("nothing to save yet");
+        super::note("nothing to save yet");
         let _ = std::fs::remove_dir(&found.folder); // only if it is empty
         return Ok(Ending::Interrupted);
     }
     found.verdicts = verdicts(&found);
     let summary = write::all(&found)?;
     if run.json {
-        write::warnings(&found).iter().for_each(|w| eprintln!("warning: {w}"));
+        write::warnings(&found).iter().for_each(|w| super::note(&format!("warning: {w}")));
         super::say(&serde_json::to_string_pretty(&summary)?)?;
     } else {
         super::say(&people(&found, &summary, run.verbose))?;
@@ -187,54 +187,6 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     }
     let differs = found.verdicts.iter().any(|v| v.outcome == summary::Outcome::Differs);
     Ok(if differs { Ending::Failed } else { Ending::Ok })
-}
-
-/// The sums of all terms, pixels and replicates are held at once: better refused now than killed later.
-fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
-    let replicates = u64::from(settings.spp.min(16));
-    let bytes = u64::from(w) * u64::from(h) * (settings.max_bounces as u64 + 2) * (replicates + 2) * 24;
-    // where the system does not say what is free, the allocator has the last word
-    let Some(free) = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| available(&text)) else {
-        return Ok(());
-    };
-    if bytes <= free {
-        return Ok(());
-    }
-    let gib = |b: u64| b as f64 / f64::from(1 << 30);
-    let (need, have) = (gib(bytes), gib(free));
-    Err(Failure::Usage(format!(
-        "error: {w}×{h} pixels with terms up to k = {} need {need:.1} GiB of memory; {have:.1} GiB are free\n\
-         help: choose a smaller --size or --max-bounces",
-        settings.max_bounces
-    )))
-}
-
-/// Bytes that Linux says are available.
-fn available(meminfo: &str) -> Option<u64> {
-    let line = meminfo.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|k| 1024 * k)
-}
-
-/// Refuses a scene in which a channel keeps all its light, if anything longer than K is asked for: `L = E + T L` has no
-/// solution, and paths that only absorption ends would never end.
-fn light_is_lost(
-    description: &Description,
-    scene: &Scene,
-    settings: &Settings,
-    worlds: &[WorldName],
-) -> Result<(), Failure> {
-    let has = |world| worlds.contains(&world);
-    let asked = has(WorldName::Radiosity)
-        || has(WorldName::Terms) && settings.roulette.ends()
-        || has(WorldName::Path) && settings.path_roulette.ends();
-    if !asked || scene.max_albedo().max_element() < 1.0 {
-        return Ok(());
-    }
-    // a small matrix knows whether the scene is closed; one that cannot be meshed is judged later
-    match discrete::matrix(description, scene, 60, 0, &fredholm::worlds::Unobserved, stop_flag()) {
-        Err(MatrixError::Singular) => Err(MatrixError::Singular.into()),
-        _ => Ok(()),
-    }
 }
 
 /// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.

@@ -34,8 +34,8 @@ pub struct Matrix {
     pub surface: Vec<DVec3>,
 }
 
-/// From this spectral radius on a channel keeps all its light, as far as form factors in `f64` can tell.
-const KEEPS_ALL: f64 = 1.0 - 1e-9;
+/// From this spectral radius on a channel keeps all its light, as far as form factors can tell.
+const KEEPS_ALL: f64 = 1.0 - 1e-6;
 
 /// Why there is no matrix.
 #[derive(Debug, thiserror::Error)]
