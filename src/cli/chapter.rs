@@ -13,9 +13,8 @@ const CHAPTERS: [(u32, &str, Run); 1] = [(1, "One box, three answers", one_box_t
 /// Runs a chapter or lists them all.
 pub fn run(args: &args::Chapter) -> Result<Ending, Failure> {
     let Some(number) = args.number else {
-        for (n, title, _) in CHAPTERS {
-            println!("{n:>2}  {title}");
-        }
+        let lines: Vec<String> = CHAPTERS.iter().map(|(n, title, _)| format!("{n:>2}  {title}")).collect();
+        super::say(&lines.join("\n"))?;
         return Ok(Ending::Ok);
     };
     let Some((_, _, run)) = CHAPTERS.iter().find(|c| c.0 == number) else {

@@ -43,28 +43,33 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
         files: map.iter().map(|_| "z.png".to_string()).chain(["summary.json".to_string()]).collect(),
         ..summary::Summary::default()
     };
+    let old = output::left_by_the_last_run(&folder);
     summary::write(&folder.join("summary.json"), &record)?;
+    output::remove_stale(&folder, &old, &record.files);
 
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&comparison)?);
+        super::say(&serde_json::to_string_pretty(&comparison)?)?;
     } else {
-        let hash =
-            |s: &summary::Summary| format!("scene {} ({}), seed {}, {} spp", s.scene, s.scene_hash, s.seed, s.spp);
-        println!("A  {}: {}; {}", args.a.display(), x.label, hash(&a.1));
-        println!("B  {}: {}; {}", args.b.display(), y.label, hash(&b.1));
+        let line = |name: char, path: &Path, world: &Series, s: &summary::Summary| {
+            let (path, world) = (path.display(), &world.label);
+            format!("{name}  {path}: {world}\n   scene {} ({}), seed {}, {} spp", s.scene, s.scene_hash, s.seed, s.spp)
+        };
+        let mut head = format!("{}\n{}", line('A', &args.a, x, &a.1), line('B', &args.b, y, &b.1));
         if a.1.command == b.1.command {
-            println!("warning: both were made by the same command with the same seed: equal bits prove nothing");
+            head += "\nwarning: both were made by the same command with the same seed: equal bits prove nothing";
         }
-        println!("\n{}", table::verdicts(&verdicts));
-        println!("{}", write::judgement(&comparison));
+        let mut foot = write::judgement(&comparison);
         if let Some((two, three)) = map {
-            println!(
-                "z map: {:.1} % of the pixels beyond 2 (4.6 % if equal), {:.2} % beyond 3 (0.27 %): {}",
-                100.0 * two,
-                100.0 * three,
-                folder.join("z.png").display()
-            );
+            foot += "\nz map: ";
+            foot += &if two.is_finite() {
+                let (two, three) = (100.0 * two, 100.0 * three);
+                format!("{two:.1} % of the pixels beyond 2 (4.6 % if equal), {three:.2} % beyond 3 (0.27 %)")
+            } else {
+                "no pixel has a known error".into()
+            };
+            foot += &format!("\n       {}", folder.join("z.png").display());
         }
+        super::say(&super::paragraphs(&[head, table::verdicts(&verdicts), foot]))?;
     }
     Ok(if comparison.outcome == fredholm::stats::Outcome::Agrees { Ending::Ok } else { Ending::Failed })
 }

@@ -8,21 +8,20 @@ use serde_json::json;
 /// Prints what is known, or lists the built-in scenes.
 pub fn run(args: &args::Info) -> Result<Ending, Failure> {
     let Some(name) = &args.scene else {
-        for scene in &builtin::ALL {
-            println!("{:10} {}", scene.name, scene.summary);
-        }
+        let lines: Vec<String> = builtin::ALL.iter().map(|s| format!("{:10} {}", s.name, s.summary)).collect();
+        super::say(&lines.join("\n"))?;
         return Ok(Ending::Ok);
     };
     let loaded = load::scene(name, &load::Options { set: args.set.clone(), emit: args.emit.clone() })?;
     for warning in &loaded.warnings {
-        eprintln!("warning: {warning}");
+        super::note(&format!("warning: {warning}"));
     }
     let d = &loaded.description;
     let scene = Scene::new(d);
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&machine(d, &scene))?);
+        super::say(&serde_json::to_string_pretty(&machine(d, &scene))?)?;
     } else {
-        println!("{}", people(d, &scene));
+        super::say(&people(d, &scene))?;
     }
     Ok(Ending::Ok)
 }

@@ -8,6 +8,7 @@
 pub mod args;
 mod chapter;
 mod compare;
+mod guard;
 mod info;
 mod output;
 mod progress;
@@ -43,6 +44,30 @@ pub enum Ending {
     Interrupted,
 }
 
+/// Prints to stdout, with a final newline. A reader that has seen enough (`| head`) is no error.
+pub fn say(text: &str) -> Result<(), Failure> {
+    use std::io::{ErrorKind, Write};
+    let mut out = std::io::stdout().lock();
+    match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Input(format!("error: cannot print the result: {e}\nhelp: check where stdout goes")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints a note to stderr; if nobody listens there, so be it.
+pub fn note(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Blocks of text with one blank line between them; empty ones leave nothing.
+pub fn paragraphs<S: AsRef<str>>(blocks: &[S]) -> String {
+    let blocks = blocks.iter().map(|b| b.as_ref().trim_end()).filter(|b| !b.is_empty());
+    blocks.collect::<Vec<_>>().join("\n\n")
+}
+
 /// Runs a command to its exit code.
 pub fn run(cli: Cli) -> ExitCode {
     let result = match &cli.command {
@@ -60,11 +85,11 @@ pub fn run(cli: Cli) -> ExitCode {
         Ok(Ending::Failed) => ExitCode::from(1),
         Ok(Ending::Interrupted) => ExitCode::from(130),
         Err(Failure::Usage(text)) => {
-            eprintln!("{text}");
+            note(&text);
             ExitCode::from(2)
         }
         Err(Failure::Input(text)) => {
-            eprintln!("{text}");
+            note(&text);
             ExitCode::from(3)
         }
     }

@@ -18,7 +18,7 @@ pub fn stop_flag() -> &'static AtomicBool {
             if set.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
-            eprintln!("\ninterrupted: saving what exists (again: stop at once)");
+            super::note("\ninterrupted: saving what exists (again: stop at once)");
         });
         flag
     })
@@ -90,7 +90,7 @@ impl Observer for Progress {
         let tenth = 10 * done / all;
         if elapsed > 2.0 && tenth < 10 && self.tenths.fetch_max(tenth, Ordering::Relaxed) < tenth {
             let eta = elapsed * (*all as f64 / done as f64 - 1.0);
-            eprintln!("{what}: {} %, ETA {eta:.0} s", 10 * tenth);
+            super::note(&format!("{what}: {} %, ETA {eta:.0} s", 10 * tenth));
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::args::{EstimatorName, Run, WorldName};
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, output, write};
+use super::{Ending, Failure, guard, output, write};
 use fredholm::estimator::Roulette;
 use fredholm::report::{summary, table};
 use fredholm::scene::load::{self, Options};
@@ -74,12 +74,7 @@ pub fn radiosity(run: &Run) -> Result<Ending, Failure> {
 fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let started = Instant::now();
     if let Some(n) = run.threads {
-        if n == 0 {
-            return Err(Failure::Usage(
-                "error: 0 threads cannot do anything\nhelp: give -t 1 or more, or leave it out".into(),
-            ));
-        }
-        rayon::ThreadPoolBuilder::new().num_threads(n).build_global()?;
+        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
     }
     let command = output::canonical_command();
 
@@ -91,7 +86,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     }
     let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
     for warning in &loaded.warnings {
-        eprintln!("warning: {warning}");
+        super::note(&format!("warning: {warning}"));
     }
     let description = loaded.description;
     let scene = Scene::new(&description);
@@ -118,6 +113,8 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         (_, _, EstimatorName::Single) => vec![Estimator::Single],
         (_, _, EstimatorName::Prefix) => vec![Estimator::Prefix],
     };
+    guard::fits_in_memory(&settings, description.camera.size)?;
+    guard::light_is_lost(&scene, &settings, &worlds)?;
     let folder = output::folder(run.out.as_deref(), &description.name, &command, run.force)?;
     let stop = stop_flag();
     let preview = write::preview(&folder, &description, &command, run.seed);
@@ -172,12 +169,18 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     }
     progress.finish();
 
+    if found.terms.is_empty() && found.path.is_none() && found.radiosity.is_none() {
+        super::note("nothing to save yet");
+        let _ = std::fs::remove_dir(&found.folder); // only if it is empty
+        return Ok(Ending::Interrupted);
+    }
     found.verdicts = verdicts(&found);
     let summary = write::all(&found)?;
     if run.json {
-        println!("{}", serde_json::to_string_pretty(&summary)?);
+        write::warnings(&found).iter().for_each(|w| super::note(&format!("warning: {w}")));
+        super::say(&serde_json::to_string_pretty(&summary)?)?;
     } else {
-        print(&found, &summary, run.verbose);
+        super::say(&people(&found, &summary, run.verbose))?;
     }
     if stopped() {
         return Ok(Ending::Interrupted);
@@ -226,45 +229,37 @@ fn verdicts(found: &Found) -> Vec<summary::Verdict> {
     all
 }
 
-fn print(found: &Found, summary: &summary::Summary, verbose: bool) {
+/// What a run prints: the settings, a table per world, what is known about the decay, the verdicts, the folder.
+fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     let s = &found.settings;
-    println!("{}   seed {}, {} spp, {}×{}", found.command, s.seed, s.spp, summary.width, summary.height);
-    if !found.terms.is_empty() {
-        let q = |r: &Roulette| format!("{r} (q = termination; survivors weigh 1/(1−q))");
-        println!(
-            "technique {}; roulette of the terms {}; of the path tracer {}",
-            s.technique,
-            q(&s.roulette),
-            s.path_roulette
-        );
+    let spp = if summary.spp < s.spp.into() { format!("{} of {}", summary.spp, s.spp) } else { s.spp.to_string() };
+    let mut head = format!("{}\nseed {}, {spp} spp, {}×{} pixels", found.command, s.seed, summary.width, summary.height);
+    if !found.terms.is_empty() || found.path.is_some() {
+        head += &format!("; technique {}", s.technique);
     }
-    for t in &found.terms {
-        println!("\n{}", table::series(&t.series.label, t.series.image(), &t.rays));
+    let used = [(!found.terms.is_empty(), "terms", &s.roulette), (found.path.is_some(), "path tracer", &s.path_roulette)];
+    let roulette: Vec<_> = used.iter().filter(|r| r.0).map(|(_, who, r)| format!("{who} {r}")).collect();
+    if !roulette.is_empty() {
+        head += &format!("\nroulette: {} (q ends a path, survivors weigh 1/(1−q))", roulette.join(", "));
     }
-    if let Some(p) = &found.path {
-        println!("\n{}", table::series(&p.series.label, p.series.image(), &[]));
-    }
-    if let Some(r) = &found.radiosity {
-        println!("\n{}", table::series(&r.fine.series.label, r.fine.series.image(), &[]));
-        println!("{}", write::matrix_facts(r, verbose));
-    }
-    for line in write::decay_facts(found) {
-        println!("{line}");
-    }
-    for line in write::orders(&found.orders) {
-        println!("{line}");
-    }
+    let mut blocks = vec![head];
+    let world = |s: &Sampled, rays: &[u64]| table::series(&s.series.label, s.series.image(), rays);
+    blocks.extend(found.terms.iter().map(|t| world(t, &t.rays)));
+    blocks.extend(found.path.iter().map(|p| world(p, &[])));
+    blocks.extend(found.radiosity.iter().map(|r| world(&r.fine, &[])));
+    let mut facts: Vec<String> = found.radiosity.iter().map(|r| write::matrix_facts(r, verbose)).collect();
+    facts.extend(write::decay_facts(found));
+    facts.extend(write::orders(&found.orders));
+    blocks.push(facts.join("\n"));
     if !found.verdicts.is_empty() {
-        println!("\n{}", table::verdicts(&found.verdicts));
+        blocks.push(table::verdicts(&found.verdicts));
     }
-    for line in write::warnings(found) {
-        println!("warning: {line}");
-    }
-    println!(
-        "\n{} files in {} after {:.1} s; open {}",
+    blocks.push(write::warnings(found).iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n"));
+    blocks.push(format!(
+        "{} files after {:.1} s; open {}",
         summary.files.len(),
-        found.folder.display(),
         summary.seconds,
         found.folder.join("index.html").display()
-    );
+    ));
+    super::paragraphs(&blocks)
 }

@@ -1,7 +1,7 @@
 //! What a run leaves behind: `terms.exr`, pictures, plots, `summary.json`, `index.html`.
 
-use super::Failure;
 use super::solve::Found;
+use super::{Failure, output};
 use fredholm::report::decay::{Decay, Rate, independent_ratios};
 use fredholm::report::html::{Page, Plate};
 use fredholm::report::plot::{Curve, Look, Point};
@@ -59,7 +59,9 @@ pub fn all(found: &Found) -> Result<summary::Summary, Failure> {
     out.names.push("summary.json".into());
     let summary = summarise(found, &out.names);
     write_page(found, &out, &summary)?;
+    let old = output::left_by_the_last_run(&found.folder);
     summary::write(&out.path("summary.json"), &summary)?;
+    output::remove_stale(&found.folder, &old, &out.names);
     Ok(summary)
 }
 
@@ -84,13 +86,7 @@ impl Files {
 /// The layer that holds the error of the unnamed layer: the path tracer's, else that of the whole series or matrix.
 pub fn beauty_error(image: &exr::Image) -> &'static str {
     let has = |name: &str| image.layer(name).is_some();
-    if has("path_se") {
-        "path_se"
-    } else if has("Tall_se") {
-        "Tall_se"
-    } else {
-        "Rfull_se"
-    }
+    ["path_se", "Tall_se", "Tsum_se"].into_iter().find(|name| has(name)).unwrap_or("Rfull_se")
 }
 
 fn write_exr(found: &Found, out: &mut Files, size: [u32; 2]) -> Result<(), Failure> {
@@ -107,9 +103,11 @@ fn write_exr(found: &Found, out: &mut Files, size: [u32; 2]) -> Result<(), Failu
         for (k, image) in t.terms.iter().enumerate() {
             push(&mut layers, &format!("T{k:02}"), image);
         }
-        push(&mut layers, "tail", &t.tail);
         push(&mut layers, "Tsum", &t.sum);
-        push(&mut layers, "Tall", &t.total);
+        if !t.series.image().tail.is_none() {
+            push(&mut layers, "tail", &t.tail);
+            push(&mut layers, "Tall", &t.total);
+        }
     }
     if let Some(p) = &found.path {
         push(&mut layers, "path", &p.total);
@@ -343,8 +341,8 @@ fn summarise(found: &Found, files: &[String]) -> summary::Summary {
         width: size[0] as usize,
         height: size[1] as usize,
         terms: image.map_or(vec![], |f| summary::terms(&f.terms, &variance, first.map_or(&[], |t| &t.rays))),
-        tail: image.map_or_else(Estimate::default, |f| f.tail),
-        sum: image.map_or_else(Estimate::default, |f| f.sum),
+        tail: image.map_or(Estimate::NONE, |f| f.tail),
+        sum: image.map_or(Estimate::NONE, |f| f.sum),
         path: found.path.as_ref().map(|p| p.series.image().total),
         radiosity: found.radiosity.as_ref().map(radiosity_summary),
         bounds: summary::Bounds {
@@ -468,7 +466,8 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
     let rho = m.spectral.each_ref().map(|s| format!("{:.5}", s.radius)).join(", ");
     let d = (r.fine.series.image().total.mean - r.coarse.series.image().total.mean).abs();
     let mut out = format!(
-        "F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4}, reciprocity {:.1e}; residual of the solve {:.1e}\nspectral radius ({rho}); |R_h − R_2h| of the image mean {:.2e}",
+        "F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4}, reciprocity {:.1e}\n\
+         residual of the solve {:.1e}; spectral radius ({rho}); |R_h − R_2h| of the image mean {:.1e}",
         i.row_sum_min,
         i.row_sum_max,
         i.smallest,
@@ -481,7 +480,7 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
         let norms = m.norms.each_ref().map(|(one, inf)| format!("{one:.4}/{inf:.4}")).join(", ");
         let p = &m.radiosity.patches;
         out += &format!(
-            "\n‖T_h‖₁/‖T_h‖∞ per channel {norms}; surface {:.4} m², covered {:.4} m²; visibility rays {}",
+            "\n‖T_h‖₁/‖T_h‖∞ per channel {norms}\nsurface {:.4} m², covered {:.4} m²; visibility rays {}",
             p.surface_area(),
             p.covered_area(),
             m.radiosity.factors.rays
@@ -498,7 +497,7 @@ pub fn decay_facts(found: &Found) -> Vec<String> {
         let means = TermMeans::from(r);
         out.push(match observed_rate(&means) {
             Ok(f) => format!(
-                "observed rate of the surface norm {:.4} ± {:.4} (k = {} to {}, p = {:.2}); guaranteed: ‖T‖₁ ≤ {:.4}",
+                "observed rate of the surface norm {:.4} ± {:.4} (k = {} to {}, p = {:.2})\nguaranteed: ‖T‖₁ ≤ {:.4}",
                 f.rate,
                 f.std_error,
                 f.window.start,
@@ -549,8 +548,8 @@ pub fn warnings(found: &Found) -> Vec<String> {
         let radius = r.matrix.radiosity.second_moment_radius(1.0 - q).into_iter().fold(0.0, f64::max);
         if radius >= 1.0 {
             out.push(format!(
-                "with q = {q} the second moment of the path tracer diverges (spectral radius of ρ²F/(1−q) is {radius:.3} ≥ 1): \
-                 its error bars cannot be trusted; use --roulette albedo"
+                "with q = {q} the second moment of the path tracer diverges\n\
+                 (spectral radius of ρ²F/(1−q) is {radius:.3} ≥ 1): its error bars cannot be trusted; use --roulette albedo"
             ));
         }
     }

@@ -64,6 +64,7 @@ impl<'s> TermEstimator<SceneTransport<'s>> for Gather<'_> {
         // `shift` is how many bounces lie between the pixel and the patch that is read; `read` the first slot read there
         let shift = usize::from(!self.read_patches);
         let read = if self.read_patches { 0 } else { tail.min(2) };
+        // K = 0: slot 1 is the tail; its direct light is found like everybody's all the same
         if !self.read_patches {
             paths.emission(t);
             sink.add(0, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
@@ -72,26 +73,22 @@ impl<'s> TermEstimator<SceneTransport<'s>> for Gather<'_> {
                 paths.samples.value.multiply(&paths.through, paths.n);
                 TermSink::add(sink, 1, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
             };
-            if read == 2 {
-                sink.rays(1, paths.n);
-                paths.connect(t, 0);
-                direct(paths, sink);
-            }
+            sink.rays(1, paths.n);
+            paths.connect(t, 0);
+            direct(paths, sink);
             sink.rays(read, paths.n);
             paths.scatter(t, 0);
-            if read == 2 {
-                paths.emission(t);
-                direct(paths, sink);
-            }
+            paths.emission(t);
+            direct(paths, sink);
         }
         let at: Vec<Option<usize>> = (0..paths.n).map(|i| self.patch(&paths.state.get(i))).collect();
         let mut value = Columns::new(paths.n);
         for slot in read..=tail {
             for (i, patch) in at.iter().enumerate() {
-                // T_h^k E for k < K; the tail takes T_h^K E too when a bounce lies between
+                // T_h^k E for k < K; the tail takes T_h^K E too when a bounce lies between, unless that is E, taken above
                 let radiance = patch.map_or(DVec3::ZERO, |j| match slot {
                     s if s < tail => self.terms[s - shift][j],
-                    _ if self.read_patches => self.tail[j],
+                    _ if self.read_patches || tail == 1 => self.tail[j],
                     _ => self.tail[j] + self.terms[tail - 1][j],
                 });
                 value.set(i, paths.through.get(i) * radiance.as_vec3());

@@ -13,7 +13,7 @@
 //! | `threads`, `seconds` | worker threads and wall-clock seconds; no result depends on them |
 //! | `width`, `height` | pixels |
 //! | `terms` | per k: `k`, `mean`, `std_error`, `variance` (of one sample, averaged over the pixels), `ratio` (`mean` over that of k − 1; `null` for k = 0), `rays` (traced for this k) |
-//! | `tail` | estimate: everything longer than K |
+//! | `tail` | estimate: everything longer than K; all `null` with `replicates` 0 where paths are cut at K (`--roulette none`) |
 //! | `sum` | estimate: Σ_{k≤K} of the terms |
 //! | `path` | estimate by the full path tracer, or `null` |
 //! | `radiosity` | the matrix world, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solve), `spectral_radius` per channel, `discretisation` (abs. difference to half as many patches) |

@@ -106,6 +106,7 @@ const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 ///
 /// K may differ: the common terms are compared, but then `tail` and `sum` mean different things and are left out. The
 /// path tracer has no terms: against it only `total` is compared. With nothing in common the outcome is Inconclusive.
+/// A series cut at K has no tail: `tail` is left out, and `total` too unless both are cut.
 ///
 /// Values without error on both sides agree if they are equal to [`ROUNDING`] of the whole image and differ otherwise,
 /// whatever δ: there is no noise to excuse them.
@@ -186,10 +187,12 @@ impl Quantity {
 
 fn shared_quantities(a: &Functional, b: &Functional) -> Vec<Quantity> {
     let mut all: Vec<_> = (0..a.terms.len().min(b.terms.len())).map(Quantity::Term).collect();
+    let cut = [a.tail.is_none(), b.tail.is_none()];
     if !all.is_empty() && a.terms.len() == b.terms.len() {
-        all.extend([Quantity::Tail, Quantity::Sum]);
+        all.extend((cut == [false; 2]).then_some(Quantity::Tail));
+        all.push(Quantity::Sum);
     }
-    all.push(Quantity::Total);
+    all.extend((cut[0] == cut[1]).then_some(Quantity::Total));
     all
 }
 
