@@ -77,12 +77,10 @@ Example:
     )]
     Compare(Compare),
     /// Scenes, materials, lights, bounds on the norm of T
-    #[command(
-        after_help = "Examples:
+    #[command(after_help = "Examples:
   fredholm info            the built-in scenes
   fredholm info cornell
-  fredholm info box.toml   also a check of the file"
-    )]
+  fredholm info box.toml   also a check of the file")]
     Info(Info),
     /// Runs a chapter of the book
     Chapter(Chapter),
@@ -159,9 +157,9 @@ pub struct Run {
     /// patches. [default: all; render and radiosity: their own]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "WORLD,…", hide_possible_values = true)]
     pub worlds: Vec<WorldName>,
-    /// About how many patches the matrix has
-    #[arg(long, value_name = "N", default_value_t = 600, value_parser = clap::value_parser!(u32).range(1..=20_000))]
-    pub patches: u32,
+    /// About how many patches the matrix has [default: 600; 2400 for the tour]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20_000))]
+    pub patches: Option<u32>,
     /// Show patches as they are, without gathering a last bounce from them
     #[arg(long)]
     pub read_patches: bool,

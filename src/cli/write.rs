@@ -542,16 +542,12 @@ pub fn warnings(found: &Found) -> Vec<String> {
             s.series.label, s.series.cost.non_finite
         ));
     }
-    if let (Some(r), fredholm::estimator::Roulette::Constant { q, .. }) =
-        (&found.radiosity, &found.settings.path_roulette)
-    {
-        let radius = r.matrix.radiosity.second_moment_radius(1.0 - q).into_iter().fold(0.0, f64::max);
-        if radius >= 1.0 {
-            out.push(format!(
-                "with q = {q} the second moment of the path tracer diverges\n\
-                 (spectral radius of ρ²F/(1−q) is {radius:.3} ≥ 1): its error bars cannot be trusted; use --roulette albedo"
-            ));
-        }
+    if let Some(radius) = found.second_moment.filter(|&r| r >= 1.0) {
+        out.push(format!(
+            "the second moment of the path tracer diverges under roulette {} (spectral radius of\n\
+             ρ²F/(1−q) is {radius:.3} ≥ 1): its error bars cannot be trusted; use --roulette albedo",
+            found.settings.path_roulette
+        ));
     }
     out
 }
