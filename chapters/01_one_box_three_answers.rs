@@ -67,7 +67,7 @@ fn claims(scene: &Scene, a: &Answers, [(_, path), (_, matrix)]: &[(&str, Compari
     let k = a.norms.mean.len() - 2; // K: the tail has a place of its own
     let proved = |c: &Comparison| {
         let rows = c.rows.iter().filter(|row| row.outcome == Outcome::Agrees);
-        rows.map(|row| row.name.clone()).collect::<Vec<_>>().join(", ")
+        format!("agree: {}", rows.map(|row| row.name.as_str()).collect::<Vec<_>>().join(", "))
     };
     let (same_as_path, same_as_matrix) = (proved(path), proved(matrix));
 
