@@ -245,9 +245,9 @@ pub struct Info {
 pub struct Chapter {
     /// Number of the chapter; nothing lists them
     pub number: Option<u32>,
-    /// Folder for its figures
-    #[arg(short, long, value_name = "DIR", default_value = "fredholm-out/chapter")]
-    pub out: PathBuf,
+    /// Folder for its figures [default: fredholm-out/chapter-<number>]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 fn size(s: &str) -> Result<[u32; 2], String> {
