@@ -77,12 +77,10 @@ Example:
     )]
     Compare(Compare),
     /// Scenes, materials, lights, bounds on the norm of T
-    #[command(
-        after_help = "Examples:
+    #[command(after_help = "Examples:
   fredholm info            the built-in scenes
   fredholm info cornell
-  fredholm info box.toml   also a check of the file"
-    )]
+  fredholm info box.toml   also a check of the file")]
     Info(Info),
     /// Runs a chapter of the book
     Chapter(Chapter),
@@ -155,9 +153,16 @@ pub struct Run {
     pub roulette: Option<Roulette>,
     /// Which worlds to solve, with commas: terms, path, radiosity
     ///
-    /// terms: each term by its own estimator; path: the full path tracer; radiosity: the matrix over
-    /// patches. [default: all; render and radiosity: their own]
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "WORLD,…", hide_possible_values = true, verbatim_doc_comment)]
+    /// terms: each term by its own estimator; path: the full path tracer;
+    /// radiosity: the matrix over patches. [default: all; render and radiosity: their own]
+    #[arg(
+        long,
+        value_enum,
+        value_delimiter = ',',
+        value_name = "WORLD,…",
+        hide_possible_values = true,
+        verbatim_doc_comment
+    )]
     pub worlds: Vec<WorldName>,
     /// About how many patches the matrix has
     #[arg(long, value_name = "N", default_value_t = 600, value_parser = clap::value_parser!(u32).range(1..=20_000))]

@@ -26,7 +26,9 @@ pub fn folder(asked: Option<&Path>, name: &str, command: &str, force: bool) -> R
     let probe = folder.join(format!(".fredholm.{}.tmp", std::process::id()));
     std::fs::create_dir_all(&folder)
         .and_then(|()| std::fs::write(&probe, "").and_then(|()| std::fs::remove_file(&probe)))
-        .map_err(|e| refused(&format!("cannot write into the output folder: {e}"), &folder, "choose another with -o"))?;
+        .map_err(|e| {
+            refused(&format!("cannot write into the output folder: {e}"), &folder, "choose another with -o")
+        })?;
     Ok(folder)
 }
 
@@ -86,7 +88,11 @@ fn canonical(args: &[String]) -> String {
 
 fn quoted(arg: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_=.,:@/+".contains(c);
-    if !arg.is_empty() && arg.chars().all(plain) { arg.to_string() } else { format!("'{}'", arg.replace('\'', "'\\''")) }
+    if !arg.is_empty() && arg.chars().all(plain) {
+        arg.to_string()
+    } else {
+        format!("'{}'", arg.replace('\'', "'\\''"))
+    }
 }
 
 #[cfg(test)]

@@ -233,11 +233,13 @@ fn verdicts(found: &Found) -> Vec<summary::Verdict> {
 fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     let s = &found.settings;
     let spp = if summary.spp < s.spp.into() { format!("{} of {}", summary.spp, s.spp) } else { s.spp.to_string() };
-    let mut head = format!("{}\nseed {}, {spp} spp, {}×{} pixels", found.command, s.seed, summary.width, summary.height);
+    let mut head =
+        format!("{}\nseed {}, {spp} spp, {}×{} pixels", found.command, s.seed, summary.width, summary.height);
     if !found.terms.is_empty() || found.path.is_some() {
         head += &format!("; technique {}", s.technique);
     }
-    let used = [(!found.terms.is_empty(), "terms", &s.roulette), (found.path.is_some(), "path tracer", &s.path_roulette)];
+    let used =
+        [(!found.terms.is_empty(), "terms", &s.roulette), (found.path.is_some(), "path tracer", &s.path_roulette)];
     let roulette: Vec<_> = used.iter().filter(|r| r.0).map(|(_, who, r)| format!("{who} {r}")).collect();
     if !roulette.is_empty() {
         head += &format!("\nroulette: {} (q ends a path, survivors weigh 1/(1−q))", roulette.join(", "));

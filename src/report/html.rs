@@ -207,7 +207,8 @@ fn series_section(series: &[(String, &Functional)]) -> String {
         );
         let mut row = |name: &str, estimate: &Estimate, ratio: String| {
             let (mean, half) = average(estimate);
-            let share = if total == 0.0 || mean.is_nan() { "–".into() } else { format!("{:.1} %", 100.0 * mean / total) };
+            let share =
+                if total == 0.0 || mean.is_nan() { "–".into() } else { format!("{:.1} %", 100.0 * mean / total) };
             let _ = writeln!(
                 out,
                 "<tr><th scope=\"row\">{name}</th><td>{}</td><td>{}</td><td>{ratio}</td><td>{share}</td><td>{}</td></tr>",

@@ -87,15 +87,7 @@ pub fn matrix(
     let terms = radiosity.terms(max_bounces);
     let solution = radiosity.solve().map_err(|_| MatrixError::Singular)?;
     let surface = terms.iter().map(|t| radiosity.surface_mean(t)).collect();
-    Ok(Matrix {
-        spectral,
-        norms: radiosity.norms(),
-        radiosity,
-        terms,
-        solution,
-        invariants,
-        surface,
-    })
+    Ok(Matrix { spectral, norms: radiosity.norms(), radiosity, terms, solution, invariants, surface })
 }
 
 impl Matrix {
