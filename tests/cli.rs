@@ -279,20 +279,23 @@ fn commands_end_as_they_say() {
     "#);
     let said = desk.ok("info furnace");
     insta::assert_snapshot!(said.out, @r#"
-    furnace: 1 shapes, 6 primitives, 64×64 pixels
+    furnace: 1 shape, 6 primitives, 64×64 pixels
 
     materials
       wall             diffuse, reflectance (0.5000, 0.5000, 0.5000), front only
 
     lights
-      shapes[0]        box, radiance (1.0000, 1.0000, 1.0000), area 24.0000 m², power (75.3982, 75.3982, 75.3982) W
+      shapes[0]        box, radiance (1.0000, 1.0000, 1.0000)
+                       area 24.0000 m², power (75.3982, 75.3982, 75.3982) W
 
     operator
       surfaces that reflect or emit: 24.0000 m²
       ‖T‖ ≤ max albedo = (0.5000, 0.5000, 0.5000), in every Lp norm of the throughput measure
       guaranteed: ‖L − S_K‖₁ ≤ 0.5000^(K+1)/0.5000 · ‖E‖₁; below 1 % of ‖E‖₁ from K = 7
 
-    expected image means (T 1 = rho 1 in a closed scene of uniform albedo, so T^k E = rho^k E): [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625, 0.0078125, 0.00390625]
+    expected image means, k = 0 to 8
+      1.0000, 0.50000, 0.25000, 0.12500, 0.062500, 0.031250, 0.015625, 0.0078125, 0.0039062
+      source: T 1 = rho 1 in a closed scene of uniform albedo, so T^k E = rho^k E
     "#);
     let said = desk.ok("info cornell --json");
     assert_eq!(serde_json::from_str::<serde_json::Value>(&said.out).unwrap()["name"], "cornell");
