@@ -128,7 +128,7 @@ pub struct Run {
     ///
     /// single: each term from paths of its own; prefix: all terms from the prefixes of one path.
     /// The tour runs both.
-    #[arg(long, value_enum, default_value_t = EstimatorName::Prefix, value_name = "NAME", hide_possible_values = true)]
+    #[arg(long, value_enum, default_value_t = EstimatorName::Prefix, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
     pub estimator: EstimatorName,
     /// How light is found: scatter, connect, mis
     ///
@@ -138,7 +138,7 @@ pub struct Run {
     /// How directions are drawn: uniform, cosine, bsdf
     #[arg(long, default_value = "bsdf", value_parser = sampling, value_name = "NAME")]
     pub sampling: Sampling,
-    /// Russian roulette: none, lecture, constant:Q@V, …; `--help` lists all
+    /// Russian roulette: none, lecture, constant:Q@V, … (all: --help)
     ///
     /// [default: render: lecture; else none for k ≤ K, then albedo]
     ///
@@ -153,9 +153,16 @@ pub struct Run {
     pub roulette: Option<Roulette>,
     /// Which worlds to solve, with commas: terms, path, radiosity
     ///
-    /// terms: each term by its own estimator; path: the full path tracer; radiosity: the matrix over
-    /// patches. [default: all; render and radiosity: their own]
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "WORLD,…", hide_possible_values = true)]
+    /// terms: each term by its own estimator; path: the full path tracer;
+    /// radiosity: the matrix over patches. [default: all; render and radiosity: their own]
+    #[arg(
+        long,
+        value_enum,
+        value_delimiter = ',',
+        value_name = "WORLD,…",
+        hide_possible_values = true,
+        verbatim_doc_comment
+    )]
     pub worlds: Vec<WorldName>,
     /// About how many patches the matrix has [default: 600; 2400 for the tour]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20_000))]
@@ -178,7 +185,7 @@ pub struct Run {
     ///
     /// The same command replaces its own output. Where another run's stands, the default becomes
     /// <scene>-2, and a folder given here is refused without --force.
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", verbatim_doc_comment)]
     pub out: Option<PathBuf>,
     /// Replace what another run left in the output folder
     #[arg(long)]

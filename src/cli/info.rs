@@ -1,6 +1,7 @@
 //! `fredholm info [SCENE]`: what a scene holds, and what is known about ‖T‖ before anything is rendered.
 
 use super::{Ending, Failure, args};
+use fredholm::report::table;
 use fredholm::scene::description::{Description, Geometry, Sides};
 use fredholm::scene::{Scene, SurfaceSensor, builtin, load};
 use serde_json::json;
@@ -45,10 +46,10 @@ fn machine(d: &Description, scene: &Scene) -> serde_json::Value {
 fn people(d: &Description, scene: &Scene) -> String {
     let rgb = |v: glam::DVec3| format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z);
     let mut out = format!(
-        "{}: {} shapes, {} primitives, {}×{} pixels\n",
+        "{}: {}, {}, {}×{} pixels\n",
         d.name,
-        d.shapes.len(),
-        scene.sides() / 2,
+        counted(d.shapes.len(), "shape"),
+        counted(scene.sides() as usize / 2, "primitive"),
         d.camera.size[0],
         d.camera.size[1]
     );
@@ -62,7 +63,7 @@ fn people(d: &Description, scene: &Scene) -> String {
         let area: f64 = s.geometry.primitives().iter().map(fredholm::scene::Primitive::area).sum();
         let power = s.emission * area * std::f64::consts::PI;
         out += &format!(
-            "  {:16} {}, radiance {}, area {area:.4} m², power {} W\n",
+            "  {:16} {}, radiance {}\n                   area {area:.4} m², power {} W\n",
             s.name,
             kind(&s.geometry),
             rgb(s.emission),
@@ -87,9 +88,15 @@ fn people(d: &Description, scene: &Scene) -> String {
         out += "  no guaranteed bound: a surface reflects everything\n";
     }
     if let Some(e) = &d.expect {
-        out += &format!("\nexpected image means ({}): {:?}\n", e.source, e.terms);
+        let terms: Vec<String> = e.terms.iter().map(|&t| table::significant(t, 5)).collect();
+        out += &format!("\nexpected image means, k = 0 to {}\n", terms.len().saturating_sub(1));
+        out += &format!("  {}\n  source: {}\n", terms.join(", "), e.source);
     }
     out
+}
+
+fn counted(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 fn kind(g: &Geometry) -> &'static str {

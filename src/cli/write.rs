@@ -467,7 +467,8 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
     let d = (r.fine.series.image().total.mean - r.coarse.series.image().total.mean).abs();
     let mut out = format!(
         "F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4}, reciprocity {:.1e}\n\
-         residual of the solve {:.1e}; spectral radius ({rho}); |R_h − R_2h| of the image mean {:.1e}",
+         residual of the solve {:.1e}; spectral radius ({rho})\n\
+         |R_h − R_2h| of the image mean {:.1e}",
         i.row_sum_min,
         i.row_sum_max,
         i.smallest,
@@ -496,16 +497,18 @@ pub fn decay_facts(found: &Found) -> Vec<String> {
     if let Some((_, r)) = found.surface.iter().find(|s| s.0 == Estimator::Single) {
         let means = TermMeans::from(r);
         out.push(match observed_rate(&means) {
-            Ok(f) => format!(
-                "observed rate of the surface norm {:.4} ± {:.4} (k = {} to {}, p = {:.2})\nguaranteed: ‖T‖₁ ≤ {:.4}",
-                f.rate,
-                f.std_error,
-                f.window.start,
-                f.window.end - 1,
-                f.p,
-                found.scene.max_albedo().max_element()
-            ),
-            Err(why) => format!("no rate fitted: {why}"),
+            Ok(f) => {
+                // two terms fit any line: there is nothing to test
+                let p = if f.p.is_finite() { format!("p = {:.2}", f.p) } else { "two terms: no p".into() };
+                let (first, last) = (f.window.start, f.window.end - 1);
+                format!(
+                    "observed rate of the surface norm {:.4} ± {:.4} (k = {first} to {last}, {p})\nguaranteed: ‖T‖₁ ≤ {:.4}",
+                    f.rate,
+                    f.std_error,
+                    found.scene.max_albedo().max_element()
+                )
+            }
+            Err(why) => format!("no rate fitted: {}", why.to_string().replace("; ", ";\n")),
         });
     }
     out
@@ -520,12 +523,13 @@ pub fn orders(meshes: &[Series]) -> Vec<String> {
     };
     let order = |k: Option<usize>| {
         let (a, b, c) = (grey(coarsest, k), grey(coarse, k), grey(fine, k));
-        ((a - b) / (b - c)).abs().log2()
+        let order = ((a - b) / (b - c)).abs().log2();
+        if order.is_finite() { format!("{order:.1}") } else { "–".into() }
     };
     let terms = fine.image().terms.len();
-    let per_term: Vec<String> = (2..terms).map(|k| format!("T{k} {:.1}", order(Some(k)))).collect();
+    let per_term: Vec<String> = (2..terms).map(|k| format!("T{k} {}", order(Some(k)))).collect();
     vec![format!(
-        "order of convergence in h, from {}: whole image {:.1}; {}",
+        "order of convergence in h, from {}: whole image {}\n{}",
         meshes.iter().map(|m| m.label.split(' ').nth(1).unwrap_or("?")).collect::<Vec<_>>().join(", "),
         order(None),
         per_term.join(", ")
