@@ -2,6 +2,7 @@
 #![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used)] // every test file uses its own part
 
 pub mod judge;
+pub mod random;
 pub mod sampling;
 pub mod scenes;
 pub mod truth;
