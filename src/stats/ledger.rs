@@ -90,6 +90,12 @@ pub const ENTRIES: &[Entry] = &[
     entry("roulette_on_a_sphere_has_its_variance", 18, 1e-8),
     entry("terms_of_one_path_have_their_covariance", 300, 1e-8),
     entry("roulette_and_uniform_directions_have_their_variance_term_by_term", 100, 1e-8),
+    // tests/roulette.rs
+    entry("no_term_moves_under_roulette", 75, 1e-8),
+    // tests/scene_properties.rs
+    entry("no_bounce_gains_energy", 768, 1e-8),
+    entry("a_uniform_room_keeps_the_share_of_its_albedo", 144, 1e-8),
+    entry("terms_do_not_depend_on_the_axes", 45, 1e-8),
 ];
 
 impl Entry {
