@@ -118,7 +118,7 @@ pub struct Run {
     /// Seed: same seed, same bits, for any number of threads
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-    /// Image size in pixels [default: the scene's; 160x160 for the tour]
+    /// Image size in pixels [default: the scene's; 192x192 for the tour]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// K: keep the terms k = 0..=K; k counts applications of T
@@ -164,9 +164,9 @@ pub struct Run {
         verbatim_doc_comment
     )]
     pub worlds: Vec<WorldName>,
-    /// About how many patches the matrix has
-    #[arg(long, value_name = "N", default_value_t = 600, value_parser = clap::value_parser!(u32).range(1..=20_000))]
-    pub patches: u32,
+    /// About how many patches the matrix has [default: 600; 2400 for the tour]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20_000))]
+    pub patches: Option<u32>,
     /// Show patches as they are, without gathering a last bounce from them
     #[arg(long)]
     pub read_patches: bool,
@@ -252,9 +252,9 @@ pub struct Info {
 pub struct Chapter {
     /// Number of the chapter; nothing lists them
     pub number: Option<u32>,
-    /// Folder for its figures
-    #[arg(short, long, value_name = "DIR", default_value = "fredholm-out/chapter")]
-    pub out: PathBuf,
+    /// Folder for its figures [default: fredholm-out/chapter-<number>]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 fn size(s: &str) -> Result<[u32; 2], String> {

@@ -22,9 +22,13 @@ pub fn run(args: &args::Chapter) -> Result<Ending, Failure> {
             "error: there is no chapter {number}\nhelp: `fredholm chapter` lists those there are"
         )));
     };
-    match run(&args.out) {
+    let out = args.out.clone().unwrap_or_else(|| format!("fredholm-out/chapter-{number:02}").into());
+    match run(&out) {
         Ok(true) => Ok(Ending::Ok),
         Ok(false) => Ok(Ending::Failed),
-        Err(e) => Err(Failure::Input(format!("error: {e}"))),
+        Err(e) => {
+            let text = e.to_string();
+            Err(Failure::Input(if text.starts_with("error: ") { text } else { format!("error: {text}") }))
+        }
     }
 }

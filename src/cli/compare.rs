@@ -28,7 +28,7 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
         _ => vec![],
     };
     let comparison = compare(x, y, &criterion, &allowance);
-    let verdicts = write::verdicts("", &comparison);
+    let verdicts = summary::verdicts("", &comparison);
 
     let command = output::canonical_command();
     let folder = output::folder(args.out.as_deref(), "compare", &command, args.force)?;

@@ -28,6 +28,28 @@ pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failu
     )))
 }
 
+/// A side of a primitive is at least one patch, and the matrix is dense. Where the radiosity was not asked for by name it is
+/// left out of scenes with many primitives; asked for by name it is refused beyond what any machine holds.
+pub fn fits_in_a_matrix(scene: &Scene, worlds: &mut Vec<WorldName>, asked: bool) -> Result<(), Failure> {
+    const COMFORTABLE: usize = 4000;
+    const POSSIBLE: usize = 20_000;
+    let sides = (0..scene.sides()).filter(|&s| scene.takes_part(s)).count();
+    if !worlds.contains(&WorldName::Radiosity) || sides <= if asked { POSSIBLE } else { COMFORTABLE } {
+        return Ok(());
+    }
+    if asked {
+        return Err(Failure::Usage(format!(
+            "error: {sides} sides make a matrix of at least {sides}², more than the {POSSIBLE}² it may have\n\
+             help: leave the radiosity world out: --worlds terms,path"
+        )));
+    }
+    worlds.retain(|w| *w != WorldName::Radiosity);
+    super::note(&format!(
+        "note: no radiosity: {sides} sides are many for a dense matrix (--worlds terms,path,radiosity insists)"
+    ));
+    Ok(())
+}
+
 /// Bytes that Linux says are available.
 fn available(meminfo: &str) -> Option<u64> {
     let line = meminfo.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;

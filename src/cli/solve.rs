@@ -12,7 +12,7 @@ use fredholm::terms::Series;
 use fredholm::terms::functional::Replicates;
 use fredholm::worlds::discrete::{self, Discrete, MatrixError};
 use fredholm::worlds::sampled::{self, Estimator, Sampled};
-use fredholm::worlds::{Settings, surface};
+use fredholm::worlds::{Settings, Unobserved, surface};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -35,6 +35,8 @@ pub struct Found {
     pub orders: Vec<Series>,
     /// Surface norms by estimator.
     pub surface: Vec<(Estimator, Replicates)>,
+    /// Spectral radius of ρ²F/(1−q), where the path tracer's roulette is constant and the matrix is known.
+    pub second_moment: Option<f64>,
     pub verdicts: Vec<summary::Verdict>,
 }
 
@@ -44,31 +46,41 @@ struct Default {
     both_estimators: bool,
     size: Option<[u32; 2]>,
     roulette: Option<Roulette>,
+    patches: u32,
 }
 
 const ALL: &[WorldName] = &[WorldName::Terms, WorldName::Path, WorldName::Radiosity];
 
 /// The tour: all worlds, both estimators.
 pub fn tour(run: &Run) -> Result<Ending, Failure> {
-    solve(run, Default { worlds: ALL, both_estimators: true, size: Some([160, 160]), roulette: None })
+    solve(run, Default { worlds: ALL, both_estimators: true, size: Some([192, 192]), roulette: None, patches: 2400 })
 }
 
 /// Each T^k E and the sum.
 pub fn series(run: &Run) -> Result<Ending, Failure> {
-    solve(run, Default { worlds: ALL, both_estimators: false, size: None, roulette: None })
+    solve(run, Default { worlds: ALL, both_estimators: false, size: None, roulette: None, patches: 600 })
 }
 
 /// The full path tracer, with the lecture's roulette.
 pub fn render(run: &Run) -> Result<Ending, Failure> {
     solve(
         run,
-        Default { worlds: &[WorldName::Path], both_estimators: false, size: None, roulette: Some(Roulette::LECTURE) },
+        Default {
+            worlds: &[WorldName::Path],
+            both_estimators: false,
+            size: None,
+            roulette: Some(Roulette::LECTURE),
+            patches: 600,
+        },
     )
 }
 
 /// The matrix.
 pub fn radiosity(run: &Run) -> Result<Ending, Failure> {
-    solve(run, Default { worlds: &[WorldName::Radiosity], both_estimators: false, size: None, roulette: None })
+    solve(
+        run,
+        Default { worlds: &[WorldName::Radiosity], both_estimators: false, size: None, roulette: None, patches: 600 },
+    )
 }
 
 fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
@@ -103,10 +115,11 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         sampling: run.sampling,
         roulette: roulette.clone().unwrap_or(fallback.clone().after(max_bounces)),
         path_roulette: roulette.unwrap_or(fallback),
-        patches: run.patches as usize,
+        patches: run.patches.unwrap_or(default.patches) as usize,
         read_patches: run.read_patches,
     };
-    let worlds: Vec<WorldName> = if run.worlds.is_empty() { default.worlds.to_vec() } else { run.worlds.clone() };
+    let mut worlds: Vec<WorldName> = if run.worlds.is_empty() { default.worlds.to_vec() } else { run.worlds.clone() };
+    guard::fits_in_a_matrix(&scene, &mut worlds, !run.worlds.is_empty() || default.worlds.len() == 1)?;
     let estimators = match (worlds.contains(&WorldName::Terms), default.both_estimators, run.estimator) {
         (false, ..) => vec![],
         (_, true, _) => vec![Estimator::Single, Estimator::Prefix],
@@ -135,6 +148,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         radiosity: None,
         orders: vec![],
         surface: vec![],
+        second_moment: None,
         verdicts: vec![],
     };
 
@@ -174,6 +188,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         let _ = std::fs::remove_dir(&found.folder); // only if it is empty
         return Ok(Ending::Interrupted);
     }
+    found.second_moment = second_moment(&found);
     found.verdicts = verdicts(&found);
     let summary = write::all(&found)?;
     if run.json {
@@ -187,6 +202,21 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     }
     let differs = found.verdicts.iter().any(|v| v.outcome == summary::Outcome::Differs);
     Ok(if differs { Ending::Failed } else { Ending::Ok })
+}
+
+/// Whether the variance of the path tracer is finite can be known from the matrix; a coarse one will do.
+fn second_moment(found: &Found) -> Option<f64> {
+    let Roulette::Constant { q, .. } = found.settings.path_roulette else { return None };
+    found.path.as_ref()?;
+    let largest = |m: &discrete::Matrix| m.radiosity.second_moment_radius(1.0 - q).into_iter().fold(0.0, f64::max);
+    if let Some(r) = &found.radiosity {
+        return Some(largest(&r.matrix));
+    }
+    if found.scene.sides() > 400 {
+        return None; // not worth a matrix of its own
+    }
+    let coarse = discrete::matrix(&found.description, &found.scene, 150, 0, &Unobserved, stop_flag());
+    coarse.ok().map(|m| largest(&m))
 }
 
 /// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.
@@ -214,7 +244,7 @@ fn verdicts(found: &Found) -> Vec<summary::Verdict> {
     let criterion = Criterion::default();
     let mut all = vec![];
     let mut judge = |name: &str, a: &Series, b: &Series, allowance: &[fredholm::terms::Functional]| {
-        all.extend(write::verdicts(name, &compare(a, b, &criterion, allowance)));
+        all.extend(summary::verdicts(name, &compare(a, b, &criterion, allowance)));
     };
     let Some(terms) = found.terms.first().map(|t| &t.series) else { return all };
     if let Some(other) = found.terms.get(1) {

@@ -2,21 +2,19 @@
 
 use super::solve::Found;
 use super::{Failure, output};
-use fredholm::report::decay::{Decay, Rate, RateKind, independent_ratios};
+use fredholm::report::decay::{Decay, Rate, independent_ratios};
 use fredholm::report::html::{Page, Plate};
 use fredholm::report::plot::{Curve, Look, Point};
-use fredholm::report::sheet::{Cell, Sheet, direct_and_indirect, grid, single};
-use fredholm::report::typeset::Caption;
+use fredholm::report::sheet::{self, Sheet, direct_and_indirect, single};
+use fredholm::report::typeset::{Caption, superscript};
 use fredholm::report::variance::{Falling, Variance};
-use fredholm::report::{decay, exr, html, picture, summary, table, variance, zmap};
+use fredholm::report::{decay, exr, html, picture, summary, variance, zmap};
 use fredholm::scene::Description;
-use fredholm::stats::{self, Comparison, observed_rate, variance_slope};
-use fredholm::terms::functional::Replicates;
+use fredholm::stats::{self, Comparison, TermMeans, observed_rate, variance_slope};
 use fredholm::terms::{Estimate, Series, TermFilm, TermImage};
 use fredholm::worlds::discrete::Discrete;
 use fredholm::worlds::sampled::{Estimator, Sampled};
 use glam::DVec3;
-use nalgebra::DMatrix;
 use std::path::{Path, PathBuf};
 
 type Pixels = Vec<[f32; 3]>;
@@ -38,27 +36,14 @@ pub fn preview(folder: &Path, d: &Description, command: &str, seed: u64) -> impl
 }
 
 fn terms_sheet(
-    size: [u32; 2],
-    terms: &[Pixels],
-    total: Option<&Pixels>,
+    [w, h]: [u32; 2],
+    images: &[Pixels],
+    whole: Option<&Pixels>,
     caption: &Caption,
     note: &str,
 ) -> Result<Sheet, Failure> {
-    let name = |k: usize| match k {
-        0 => "T⁰E: emission".to_string(),
-        1 => "T¹E: direct light".to_string(),
-        k => format!("T{}E", superscript(k)),
-    };
-    let mut cells: Vec<Cell> =
-        terms.iter().enumerate().map(|(k, p)| Cell { label: name(k), pixels: p, gain: None }).collect();
-    cells.extend(total.map(|p| Cell { label: "Σ, all k".into(), pixels: p, gain: None }));
-    let title = format!("The terms of L = Σ TᵏE, {note}");
-    Ok(grid(&title, size[0] as usize, size[1] as usize, &cells, caption)?)
-}
-
-fn superscript(k: usize) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    k.to_string().bytes().map(|b| DIGITS[usize::from(b - b'0')]).collect()
+    let images: Vec<&[[f32; 3]]> = images.iter().map(Vec::as_slice).collect();
+    Ok(sheet::terms(w as usize, h as usize, &images, whole.map(Vec::as_slice), note, caption)?)
 }
 
 /// Writes everything and returns the summary that was written.
@@ -224,31 +209,6 @@ pub fn z_values(a: (&Pixels, &Pixels), b: (&Pixels, &Pixels)) -> Vec<f64> {
     (0..a.0.len()).map(z).collect()
 }
 
-/// The mean over channels of the surface norms, with the covariance of the terms.
-fn surface_means(r: &Replicates) -> stats::TermMeans {
-    let terms = r.mean.len() - 1;
-    let grey = |v: DVec3| v.element_sum() / 3.0;
-    let deviation = |i: usize| r.deviation.iter().map(move |d| grey(d[i]));
-    let n = r.deviation.len() as f64;
-    let covariance =
-        |a: usize, b: usize| deviation(a).zip(deviation(b)).map(|(x, y)| x * y).sum::<f64>() * n / (n - 1.0);
-    stats::TermMeans {
-        mean: r.mean[..terms].iter().map(|&m| grey(m)).collect(),
-        covariance: DMatrix::from_fn(terms, terms, covariance),
-        replicates: r.deviation.len() as u64,
-    }
-}
-
-fn norm_points(t: &stats::TermMeans) -> Vec<Point> {
-    let point = |k: usize| Point {
-        x: k as f64,
-        value: t.mean[k],
-        std_error: t.covariance[(k, k)].sqrt(),
-        replicates: t.replicates,
-    };
-    (0..t.mean.len()).map(point).collect()
-}
-
 fn write_plots(found: &Found, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
     if found.surface.is_empty() && found.radiosity.is_none() {
         return write_variance(found, out, caption);
@@ -256,27 +216,17 @@ fn write_plots(found: &Found, out: &mut Files, caption: &Caption) -> Result<(), 
     let mut figure = Decay { title: "How the terms decay".into(), ..Decay::default() };
     for (estimator, r) in &found.surface {
         let look = if *estimator == Estimator::Single { Look::SINGLE } else { Look::PREFIX };
-        let means = surface_means(r);
-        let points = norm_points(&means);
-        // ratio(k) is that of term k + 1 to term k; it is drawn at k + 1, as in the tables
-        let ratio = |k: usize| {
-            stats::ratio(&means, k).map(|(value, std_error)| Point {
-                x: k as f64 + 1.0,
-                value,
-                std_error,
-                replicates: means.replicates,
-            })
-        };
+        let means = TermMeans::from(r);
+        let points = decay::norms(&means);
         let ratios = match estimator {
             Estimator::Single => independent_ratios(&points),
-            Estimator::Prefix => (0..points.len() - 1).filter_map(ratio).collect(),
+            Estimator::Prefix => decay::ratios(&means),
         };
         figure.ratios.push(Curve { label: estimator.to_string(), points: ratios, look });
         figure.surface.push(Curve { label: format!("Monte Carlo, {estimator}"), points, look });
     }
     if let Some(r) = &found.radiosity {
-        let points: Vec<Point> =
-            r.matrix.surface.iter().enumerate().map(|(k, v)| Point::exact(k as f64, v.element_sum() / 3.0)).collect();
+        let points = decay::norms(&TermMeans::exact(&matrix_norms(r)));
         figure.ratios.push(Curve { label: "matrix".into(), points: independent_ratios(&points), look: Look::MATRIX });
         figure.surface.push(Curve {
             label: format!("matrix, {} patches", r.matrix.radiosity.patches.len()),
@@ -307,54 +257,27 @@ fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Observed rate, spectral radius, guarantee and tail bound.
+/// Observed rate, guarantee, tail bound and spectral radius.
 fn lines(found: &Found) -> Vec<Rate> {
     let mut lines = vec![];
     let g = f64::from(found.scene.max_albedo().max_element());
     if let Some((_, r)) = found.surface.iter().find(|s| s.0 == Estimator::Single) {
-        let means = surface_means(r);
-        if let Ok(fit) = observed_rate(&means) {
-            lines.push(Rate {
-                label: format!("observed rate {:.4} ± {:.4}", fit.rate, fit.std_error),
-                k0: fit.window.start as f64,
-                value: fit.amplitude * fit.rate.powi(fit.window.start as i32),
-                ratio: fit.rate,
-                kind: RateKind::Observed,
-            });
-        }
-        lines.push(Rate {
-            label: format!("guaranteed: ‖T‖₁ ≤ max albedo = {g:.3}"),
-            k0: 0.0,
-            value: means.mean[0],
-            ratio: g,
-            kind: RateKind::Guaranteed,
-        });
+        let means = TermMeans::from(r);
+        lines.extend(observed_rate(&means).ok().as_ref().map(Rate::observed));
+        lines.push(Rate::guaranteed(g, means.mean[0]));
         let k = means.mean.len() - 1;
-        if g < 1.0 && means.mean[k] > 0.0 {
-            let bound = g / (1.0 - g) * means.mean[k];
-            lines.push(Rate {
-                label: format!("‖Σ k>{k}‖₁ ≤ {}", table::significant(bound, 3)),
-                k0: k as f64,
-                value: bound,
-                ratio: g,
-                kind: RateKind::TailBound,
-            });
-        }
+        lines.extend(Rate::tail_bound(g, k, means.mean[k]));
     }
     if let Some(r) = &found.radiosity {
         let radius = r.matrix.spectral.iter().map(|s| s.radius).fold(0.0, f64::max);
-        if let Some(last) = r.matrix.surface.last() {
-            let k = r.matrix.surface.len() - 1;
-            lines.push(Rate {
-                label: format!("spectral radius of the matrix {radius:.4}"),
-                k0: 1.0,
-                value: last.element_sum() / 3.0 / radius.powi(k as i32 - 1),
-                ratio: radius,
-                kind: RateKind::Spectral,
-            });
-        }
+        lines.extend(Rate::spectral(radius, &matrix_norms(r)));
     }
     lines
+}
+
+/// The mean over channels of `‖T_h^k E‖₁`.
+fn matrix_norms(r: &Discrete) -> Vec<f64> {
+    r.matrix.surface.iter().map(|v| v.element_sum() / 3.0).collect()
 }
 
 fn write_variance(found: &Found, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
@@ -404,7 +327,7 @@ fn summarise(found: &Found, files: &[String]) -> summary::Summary {
     let variance: Vec<DVec3> = last.map_or(vec![], |s| s.slots.iter().map(|v| v.channels * f64::from(s.spp)).collect());
     let g = found.scene.max_albedo().as_dvec3();
     let single = found.surface.iter().find(|s| s.0 == Estimator::Single);
-    let fit = single.and_then(|(_, r)| observed_rate(&surface_means(r)).ok());
+    let fit = single.and_then(|(_, r)| observed_rate(&TermMeans::from(r)).ok());
     let all = found.terms.iter().chain(&found.path).chain(found.radiosity.iter().flat_map(|r| [&r.fine, &r.coarse]));
     summary::Summary {
         command: found.command.clone(),
@@ -515,23 +438,6 @@ fn meaning(name: &str) -> &'static str {
     }
 }
 
-/// The rows of a comparison, for the table and the summary.
-pub fn verdicts(name: &str, comparison: &Comparison) -> Vec<summary::Verdict> {
-    let row = |v: &stats::Verdict| summary::Verdict {
-        name: if name.is_empty() { format!("{} ({})", v.name, v.functional) } else { format!("{}: {name}", v.name) },
-        effect: v.effect,
-        interval: v.interval,
-        p: v.p,
-        min_detectable: v.min_detectable,
-        outcome: match v.outcome {
-            stats::Outcome::Agrees => summary::Outcome::Agrees,
-            stats::Outcome::Differs => summary::Outcome::Differs,
-            stats::Outcome::Inconclusive => summary::Outcome::Inconclusive,
-        },
-    };
-    comparison.rows.iter().map(row).collect()
-}
-
 /// One line: the outcome, and what would decide.
 pub fn judgement(c: &Comparison) -> String {
     match c.outcome {
@@ -589,7 +495,7 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
 pub fn decay_facts(found: &Found) -> Vec<String> {
     let mut out = vec![];
     if let Some((_, r)) = found.surface.iter().find(|s| s.0 == Estimator::Single) {
-        let means = surface_means(r);
+        let means = TermMeans::from(r);
         out.push(match observed_rate(&means) {
             Ok(f) => {
                 // two terms fit any line: there is nothing to test
@@ -640,16 +546,12 @@ pub fn warnings(found: &Found) -> Vec<String> {
             s.series.label, s.series.cost.non_finite
         ));
     }
-    if let (Some(r), fredholm::estimator::Roulette::Constant { q, .. }) =
-        (&found.radiosity, &found.settings.path_roulette)
-    {
-        let radius = r.matrix.radiosity.second_moment_radius(1.0 - q).into_iter().fold(0.0, f64::max);
-        if radius >= 1.0 {
-            out.push(format!(
-                "with q = {q} the second moment of the path tracer diverges\n\
-                 (spectral radius of ρ²F/(1−q) is {radius:.3} ≥ 1): its error bars cannot be trusted; use --roulette albedo"
-            ));
-        }
+    if let Some(radius) = found.second_moment.filter(|&r| r >= 1.0) {
+        out.push(format!(
+            "the second moment of the path tracer diverges under roulette {} (spectral radius of\n\
+             ρ²F/(1−q) is {radius:.3} ≥ 1): its error bars cannot be trusted; use --roulette albedo",
+            found.settings.path_roulette
+        ));
     }
     out
 }

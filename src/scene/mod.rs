@@ -68,6 +68,9 @@ pub struct Scene {
 /// Offset of ray origins and margin at edges, as fractions of half the diagonal of the scene.
 const OFFSET: f64 = 1.0 / 65_536.0;
 const MARGIN: f64 = 1.0 / 131_072.0;
+/// A scene this many times its half diagonal away from the origin or farther gets wider ones: there it is the rounding of
+/// coordinates that they must exceed, by a factor of 16 and 8.
+const FAR: f64 = 16.0;
 
 impl Scene {
     /// Builds what rays need. The description must have passed the checks of the loader: finite, no empty shapes.
@@ -75,7 +78,8 @@ impl Scene {
         let prims = description.primitives();
         let bounds: Vec<[DVec3; 2]> = prims.iter().map(|(_, p)| p.bounds()).collect();
         let all = bounds.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-        let extent = 0.5 * (all[1] - all[0]).length();
+        let farthest = all[0].abs().max(all[1].abs()).max_element();
+        let extent = (0.5 * (all[1] - all[0]).length()).max(farthest / FAR);
         let margin = MARGIN * extent;
         let shapes: Vec<Shape> = prims.iter().map(|(_, p)| Shape::new(p, margin)).collect();
         let widened: Vec<[Vec3; 2]> =

@@ -66,6 +66,36 @@ pub const ENTRIES: &[Entry] = &[
     entry("the_planned_power_is_reached", 2, 1e-8),
     entry("rates_have_the_error_they_claim", 4, 1e-8),
     entry("variance_slopes_have_the_error_they_claim", 2, 1e-8),
+    // tests/matrix_walk.rs
+    entry("estimators_match_a_random_substochastic_matrix", 12_000, 2e-8),
+    entry("estimators_match_two_plates", 4_000, 1e-8),
+    entry("estimators_match_concentric_spheres", 4_000, 1e-8),
+    entry("estimators_match_a_matrix_with_absorbing_rows", 7_000, 1e-8),
+    entry("estimators_match_a_matrix_with_a_single_emitter", 7_000, 1e-8),
+    entry("estimators_match_matrices_at_length", 12_000, 2e-8),
+    entry("variances_follow_the_recursion_of_second_moments", 144, 1e-8),
+    entry("a_small_error_in_the_operator_is_seen", 9, 1e-9),
+    // tests/identities.rs
+    entry("a_scene_scaled_by_ten_has_the_same_terms", 72, 1e-8),
+    // tests/truth_scenes.rs
+    entry("furnaces_have_their_terms_with_every_technique", 1_000, 1e-8),
+    entry("spheres_of_bands_have_their_terms", 2_000, 1e-8),
+    entry("bowls_have_their_terms_at_every_point", 1_000, 1e-8),
+    entry("concentric_spheres_have_their_terms", 1_000, 1e-8),
+    entry("eccentric_spheres_keep_the_area_mean_of_one_bounce", 18, 1e-8),
+    entry("direct_light_is_the_closed_form", 200, 1e-8),
+    entry("glowing_faces_of_a_cube_have_their_terms", 5_000, 2e-8),
+    entry("a_cube_with_a_patch_light_has_its_terms", 3_000, 1e-8),
+    entry("roulette_in_a_furnace_has_its_variance", 100, 1e-8),
+    entry("roulette_on_a_sphere_has_its_variance", 18, 1e-8),
+    entry("terms_of_one_path_have_their_covariance", 300, 1e-8),
+    entry("roulette_and_uniform_directions_have_their_variance_term_by_term", 100, 1e-8),
+    // tests/roulette.rs
+    entry("no_term_moves_under_roulette", 75, 1e-8),
+    // tests/scene_properties.rs
+    entry("no_bounce_gains_energy", 768, 1e-8),
+    entry("a_uniform_room_keeps_the_share_of_its_albedo", 144, 1e-8),
+    entry("terms_do_not_depend_on_the_axes", 45, 1e-8),
 ];
 
 impl Entry {

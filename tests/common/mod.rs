@@ -1,5 +1,12 @@
 //! What the tests share: accounts in the ledger with their seeds, and numbers that do not come from the library.
-#![allow(dead_code, missing_docs, unreachable_pub)] // every test file uses its own part
+// every test file uses its own part
+#![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used, clippy::print_stderr)]
+
+pub mod judge;
+pub mod random;
+pub mod sampling;
+pub mod scenes;
+pub mod truth;
 
 use fredholm::stats::ledger;
 pub use fredholm::stats::ledger::Account;

@@ -1,0 +1,206 @@
+//! Russian roulette changes no mean, whatever the schedule: path by path, by enumeration, and in the average.
+//!
+//! A stream fixes a path x_0, x_1, … without roulette. With it the path ends at some vertex N after that vertex has been
+//! scored, having collected S_N. Over all the ways the roulette can fall,
+//!
+//! ```text
+//! Σ_n P(N = n) S_n = Σ_k X_k        term by term, whatever q[v] depends on along the path
+//! ```
+//!
+//! is an equality. The numbers of the stream choose one N; the estimators must then return exactly the terms of S_N.
+//! Both together are the proof that they are unbiased.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::judge::{Judged, Jury};
+use common::random::{cases, furnished, items, matrix, schedule};
+use common::sampling::{Kind, TECHNIQUES, collect, film, plan};
+use common::scenes::{description, quad, room, sphere};
+use fredholm::estimator::{PathTracer, Prefix, Roulette, Technique};
+use fredholm::math::{Key, Purpose, Rgb, Rng};
+use fredholm::operator::matrix_walk::Rows;
+use fredholm::operator::{SceneTransport, Sensor, Transport};
+use fredholm::scene::Scene;
+use fredholm::terms::Estimate;
+use fredholm::terms::functional::image_replicates;
+use glam::DVec3;
+use proptest::prelude::*;
+
+/// K: slots 0..=K, then the tail.
+const K: usize = 4;
+/// Where paths without roulette are cut; with roulette they are cut there too.
+const LONG: usize = 40;
+
+/// What one vertex of the path without roulette holds.
+struct Stop {
+    /// What the vertex scores per unit of throughput: term v by being there, term v + 1 by connecting.
+    hit: Rgb,
+    connect: Rgb,
+    albedo: Rgb,
+    /// Weight of the step to the next vertex; none where the path ends by itself.
+    weight: Option<Rgb>,
+    /// The number that roulette draws here.
+    number: f32,
+}
+
+/// The path of one stream, without roulette.
+fn follow<T: Transport>(t: &T, start: T::State, technique: Technique, key: Key, pixel: u32, sample: u32) -> Vec<Stop> {
+    let mut path: Vec<Stop> = vec![];
+    let (mut x, mut hit) = (start, t.emission(&start));
+    for v in 0..LONG {
+        let rng = |purpose| Rng::at(key, pixel, sample, v, purpose);
+        let mut stop =
+            Stop { hit, connect: Rgb::ZERO, albedo: t.albedo(&x), weight: None, number: rng(Purpose::Roulette).one() };
+        if technique.connects()
+            && let Some(c) = t.connect(&x, &mut rng(Purpose::Connect))
+        {
+            stop.connect = c.weight * t.emission(&c.state) * technique.weight(c.pdf, c.other_pdf);
+        }
+        let step = t.scatter(&x, &mut rng(Purpose::Scatter));
+        stop.weight = step.map(|s| s.weight);
+        path.push(stop);
+        let Some(step) = step else { break };
+        x = step.state;
+        hit =
+            if technique.scatters() { t.emission(&x) * technique.weight(step.pdf, step.other_pdf) } else { Rgb::ZERO };
+    }
+    path
+}
+
+/// Terms and tail.
+type Slots = [DVec3; K + 2];
+
+fn add(slots: &mut Slots, k: usize, value: DVec3) {
+    slots[k.min(K + 1)] += value;
+}
+
+/// Every way the roulette can fall on a path: the probability of each, with what it has scored; `chosen` is the one that
+/// the stream takes.
+fn enumerate(path: &[Stop], schedule: &Roulette) -> (Vec<(f64, Slots)>, usize) {
+    let (mut ways, mut chosen) = (vec![], None);
+    let (mut reach, mut alpha, mut scored) = (1.0, Rgb::ONE, Slots::default());
+    for (v, stop) in path.iter().enumerate() {
+        add(&mut scored, v, (alpha * stop.hit).as_dvec3());
+        add(&mut scored, v + 1, (alpha * stop.connect).as_dvec3());
+        let q = schedule.termination(v, alpha, stop.albedo);
+        let Some(weight) = stop.weight.filter(|_| v + 1 < path.len()) else {
+            ways.push((reach, scored));
+            break;
+        };
+        ways.push((reach * f64::from(q), scored));
+        if stop.number < q && chosen.is_none() {
+            chosen = Some(v);
+        }
+        if q == 1.0 {
+            break;
+        }
+        reach *= 1.0 - f64::from(q);
+        alpha *= 1.0 / (1.0 - q);
+        alpha *= weight;
+    }
+    let last = ways.len() - 1;
+    (ways, chosen.unwrap_or(last))
+}
+
+fn near(a: DVec3, b: DVec3) -> bool {
+    (a - b).abs().cmple(1e-5 * b.abs() + 1e-12).all()
+}
+
+/// Both equalities for `samples` paths of every pixel.
+fn check<T: Transport>(t: &T, sensor: &impl Sensor<T>, schedule: &Roulette, samples: u32) -> Result<(), TestCaseError> {
+    let key = Key::new(11, "roulette");
+    let pixels = sensor.size()[0] * sensor.size()[1];
+    for technique in TECHNIQUES {
+        let plan = plan(K, technique, schedule);
+        let terms = collect(t, sensor, &Prefix(plan.clone()), samples, 4, key);
+        let totals = collect(t, sensor, &PathTracer(plan), samples, 4, key);
+        for (pixel, sample) in (0..pixels).flat_map(|p| (0..samples).map(move |s| (p, s))) {
+            let Some(start) = sensor.start(t, pixel, &mut Rng::at(key, pixel, sample, 0, Purpose::Start)) else {
+                continue;
+            };
+            let path = follow(t, start, technique, key, pixel, sample);
+            let (without, _) = enumerate(&path, &Roulette::Never);
+            let (ways, chosen) = enumerate(&path, schedule);
+
+            let probability: f64 = ways.iter().map(|w| w.0).sum();
+            prop_assert!((probability - 1.0).abs() < 1e-6, "{technique}: probabilities sum to {probability}");
+            for k in 0..K + 2 {
+                let mean: DVec3 = ways.iter().map(|(p, s)| *p * s[k]).sum();
+                let x = without.last().unwrap().1[k];
+                prop_assert!(near(mean, x), "{technique}, slot {k}: {mean} with roulette, {x} without");
+            }
+
+            // paths that would go on beyond LONG are not followed to their end
+            if chosen + 1 < LONG {
+                let expected = ways[chosen].1;
+                let got = terms.path(pixel, sample);
+                for k in 0..K + 2 {
+                    prop_assert!(near(got[k], expected[k]), "{technique}, slot {k}: {} for {}", got[k], expected[k]);
+                }
+                let (total, sum) = (totals.path(pixel, sample)[0], expected.iter().sum());
+                prop_assert!(near(total, sum), "{technique}, path tracer: {total} for {sum}");
+            }
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(cases(256))]
+
+    #[test]
+    fn all_the_ways_it_can_fall_on_a_matrix(walk in matrix(), schedule in schedule()) {
+        check(&walk, &Rows(2), &schedule, 32)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(256))]
+
+    #[test]
+    // walls reflect at most 0.8: where everything is white, a schedule that follows the albedo never ends a path
+    fn all_the_ways_it_can_fall_in_a_scene(walls in prop::array::uniform3(0.0..0.8f64), items in items(), schedule in schedule()) {
+        let scene = Scene::new(&furnished(DVec3::from(walls), &items));
+        check(&SceneTransport::new(&scene), &scene.camera, &schedule, 2)?;
+    }
+}
+
+fn minus(a: &Estimate, b: &Estimate) -> Estimate {
+    let std_error = (a.std_error * a.std_error + b.std_error * b.std_error).map(f64::sqrt);
+    Estimate { mean: a.mean - b.mean, std_error, replicates: a.replicates }
+}
+
+/// The means of the terms of one scene with and without roulette, from different streams.
+#[test]
+fn no_term_moves_under_roulette() {
+    let mut jury = Jury::open("no_term_moves_under_roulette");
+    // albedos of at most 0.59, so that ρ⁴ < ½³ and even the lecture's schedule has a finite fourth moment
+    let rho = DVec3::new(0.59, 0.45, 0.3);
+    let lamp = quad(DVec3::new(-0.4, 0.9, -0.4), DVec3::X * 0.8, DVec3::Z * 0.8);
+    let mut d = description(&[
+        (room(DVec3::splat(-1.0), DVec3::ONE, 0.0), rho, DVec3::ZERO),
+        (sphere(DVec3::new(0.2, -0.6, -0.3), 0.4, false), rho, DVec3::ZERO),
+        (lamp, rho, DVec3::ONE),
+    ]);
+    d.camera.origin = DVec3::new(0.0, 0.0, 0.9);
+    let scene = Scene::new(&d);
+    let t = SceneTransport::new(&scene);
+    let run = |schedule: &Roulette, stream: &str, seed: u64| {
+        let plan = plan(K, Technique::Mis, schedule);
+        image_replicates(&film(&t, &scene.camera, Kind::Prefix, &plan, 1 << 13, Key::new(seed, stream)))
+    };
+    let seed = jury.seed();
+    let without = run(&Roulette::Never, "none", seed);
+    let whole = without.estimate(0..K + 1).mean;
+    for text in ["lecture", "constant:0.3@0", "table:0,0.1,0.3,0.2", "albedo@0", "throughput@1"] {
+        let with = run(&text.parse().unwrap(), text, seed);
+        for k in 0..=K {
+            let (a, b) = (with.estimate(k..k + 1), without.estimate(k..k + 1));
+            let (what, delta) = (format!("{text}, T{k}"), 0.02 * b.mean + 0.002 * whole);
+            let judged = jury.judge(&what, &minus(&a, &b), DVec3::ZERO, delta, 5.0 * delta);
+            assert_ne!(judged, Judged::TooNoisy, "{what}: {a:?} {b:?}");
+        }
+    }
+    jury.assert_power(0.5, 0.0);
+}
