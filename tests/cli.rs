@@ -299,11 +299,12 @@ fn commands_end_as_they_say() {
     "#);
     let said = desk.ok("info cornell --json");
     assert_eq!(serde_json::from_str::<serde_json::Value>(&said.out).unwrap()["name"], "cornell");
-    std::fs::write(desk.path("bad.toml"), "name = \"bad\"\n[camera]\norigin = [0, 0]\n").unwrap();
+    let furnace = fredholm::scene::builtin::find("furnace").unwrap().source;
+    std::fs::write(desk.path("bad.toml"), format!("bogus = 1\n{furnace}")).unwrap();
     for line in ["info bad.toml", "series bad.toml", "render bad.toml"] {
         let said = desk.run(line);
         assert_eq!((said.code, said.out.as_str()), (3, ""), "{line}");
-        assert!(said.err.starts_with("error: ") && said.err.contains("--> bad.toml:3"), "{}", said.err);
+        assert!(said.err.starts_with("error: ") && said.err.contains("--> bad.toml:1"), "{}", said.err);
     }
     let said = desk.ok("render cornell --spp 8 --size 8x8 -q");
     assert!(said.out.contains("roulette: path tracer lecture (q ends a path"), "{}", said.out);
@@ -358,7 +359,7 @@ fn one_sample_has_no_known_error() {
 #[test]
 fn emission_alone() {
     let desk = Desk::new();
-    let said = desk.run(&format!("series furnace --max-bounces 0 --size 16x16 --patches 60 --spp 64 -q -o a"));
+    let said = desk.run("series furnace --max-bounces 0 --size 16x16 --patches 60 --spp 64 -q -o a");
     assert!(said.code <= 1, "{}", said.err);
     let s = desk.summary("a");
     assert_eq!((s.max_bounces, s.terms.len()), (0, 1));
