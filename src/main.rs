@@ -1,1 +1,9 @@
-fn main() {}
+//! The `fredholm` program: parses, calls the library, reports.
+
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::run(cli::args::read())
+}

@@ -2,7 +2,8 @@
 //!
 //! `(T^k E)(x) ≈ weight · (T_h^{k−1} E)_{j(y)}`, where x is what the pixel sees and y the end of one ray scattered there;
 //! k = 0 is E(x) itself. This is the Sloan iterate `E + T B_h`, 5 to 20 times closer to the limit of fine meshes than reading
-//! the patch under the pixel. One ray serves all k at once. For k = 1 it reads E, so **T¹ tests no matrix**.
+//! the patch under the pixel. One ray serves all k at once. For k = 1 what is read is E itself, so **T¹ tests no matrix**; it
+//! is estimated like everybody's direct light, by connecting and scattering with MIS.
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
@@ -13,7 +14,7 @@
 //! Reference: Sloan, *Improvement by iteration for compact operator equations* (Math. Comp. 30, 1976); in rendering, the
 //! final gather of Reichert (1992).
 
-use super::{Batch, Paths, TermEstimator, TermSink};
+use super::{Batch, Paths, Technique, TermEstimator, TermSink};
 use crate::math::Columns;
 use crate::operator::{SceneTransport, Sensor, patches::Patches};
 use crate::scene::{Vertex, VertexWave};
@@ -60,22 +61,34 @@ impl<'s> TermEstimator<SceneTransport<'s>> for Gather<'_> {
         paths.start(t, sensor, batch);
         sink.rays(0, batch.len());
         let tail = self.terms.len();
-        // `shift` is how many bounces lie between the pixel and the patch that is read
+        // `shift` is how many bounces lie between the pixel and the patch that is read; `read` the first slot read there
         let shift = usize::from(!self.read_patches);
+        let read = if self.read_patches { 0 } else { tail.min(2) };
+        // K = 0: slot 1 is the tail; its direct light is found like everybody's all the same
         if !self.read_patches {
             paths.emission(t);
             sink.add(0, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+            let direct = |paths: &mut Paths<VertexWave>, sink: &mut _| {
+                Technique::Mis.weigh(&mut paths.samples, paths.n);
+                paths.samples.value.multiply(&paths.through, paths.n);
+                TermSink::add(sink, 1, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+            };
             sink.rays(1, paths.n);
+            paths.connect(t, 0);
+            direct(paths, sink);
+            sink.rays(read, paths.n);
             paths.scatter(t, 0);
+            paths.emission(t);
+            direct(paths, sink);
         }
         let at: Vec<Option<usize>> = (0..paths.n).map(|i| self.patch(&paths.state.get(i))).collect();
         let mut value = Columns::new(paths.n);
-        for slot in shift..=tail {
+        for slot in read..=tail {
             for (i, patch) in at.iter().enumerate() {
-                // T_h^k E for k < K; the tail takes T_h^K E too when a bounce lies between
+                // T_h^k E for k < K; the tail takes T_h^K E too when a bounce lies between, unless that is E, taken above
                 let radiance = patch.map_or(DVec3::ZERO, |j| match slot {
                     s if s < tail => self.terms[s - shift][j],
-                    _ if self.read_patches => self.tail[j],
+                    _ if self.read_patches || tail == 1 => self.tail[j],
                     _ => self.tail[j] + self.terms[tail - 1][j],
                 });
                 value.set(i, paths.through.get(i) * radiance.as_vec3());

@@ -14,6 +14,7 @@ pub struct SingleTerm(pub Plan);
 
 impl SingleTerm {
     /// Fresh paths for slot `k`, walked to vertex `steps`.
+    #[allow(clippy::too_many_arguments)] // what a wave needs, and which slot it is for
     fn walk<T: Transport>(
         &self,
         t: &T,

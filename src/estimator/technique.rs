@@ -9,6 +9,7 @@
 //! Term 0, emission seen directly, is always scored at vertex 0. Reference: Veach and Guibas, *Optimally Combining
 //! Sampling Techniques* (1995).
 
+use crate::math::Columns;
 use crate::operator::Samples;
 
 /// How light is found.
@@ -43,10 +44,13 @@ impl Technique {
     pub fn weigh(self, samples: &mut Samples, n: usize) {
         if self == Self::Mis {
             let (p, other) = (&samples.pdf[..n], &samples.other_pdf[..n]);
-            for column in [&mut samples.value.x, &mut samples.value.y, &mut samples.value.z] {
-                for ((v, &p), &other) in column[..n].iter_mut().zip(p).zip(other) {
-                    *v *= self.weight(p, other);
-                }
+            let Columns { x, y, z } = &mut samples.value;
+            let (x, y, z) = (&mut x[..n], &mut y[..n], &mut z[..n]);
+            for i in 0..n {
+                let w = self.weight(p[i], other[i]);
+                x[i] *= w;
+                y[i] *= w;
+                z[i] *= w;
             }
         }
     }

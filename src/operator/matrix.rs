@@ -74,14 +74,14 @@ impl<'a> PatchOperator<'a> {
     pub fn norm_inf(&self) -> f64 {
         let mut y = vec![0.0; self.len()];
         self.apply(&vec![1.0; self.len()], &mut y);
-        y.into_iter().fold(0.0, f64::max)
+        y.into_iter().fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
     }
 
     /// ‖T‖₁ in the area measure, maxⱼ (1/Aⱼ) Σᵢ Aᵢ ρᵢ Fᵢⱼ: no light loses less than its complement in one bounce.
     pub fn norm_1(&self) -> f64 {
         let mut y = vec![0.0; self.len()];
         self.apply_adjoint(&vec![1.0; self.len()], &mut y);
-        y.into_iter().fold(0.0, f64::max)
+        y.into_iter().fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
     }
 
     /// Norm in the weight A/ρ, in which T is self-adjoint. Patches with ρ = 0 do not count: T u vanishes there.

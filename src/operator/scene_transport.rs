@@ -18,7 +18,7 @@ use super::patches::SurfacePoint;
 use super::transport::{self, Samples, Sensor, Step, Transport, Wave};
 use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::scene::bsdf::diffuse::{self, Sampling};
-use crate::scene::{Camera, Scene, SurfaceSensor, Vertex, VertexWave, cosine_directions, numbers};
+use crate::scene::{Camera, Rays, Scene, SurfaceSensor, Vertex, VertexWave, cosine_directions, numbers};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
@@ -29,6 +29,27 @@ pub struct SceneTransport<'a> {
     pub scene: &'a Scene,
     /// How [`Transport::scatter`] draws directions.
     pub sampling: Sampling,
+}
+
+/// Next-event estimation from x to the light point y, before visibility.
+#[derive(Clone, Copy)]
+pub(crate) struct Connection {
+    direction: Vec3,
+    cos_x: f32,
+    /// Density of y in solid angle at x.
+    pdf: f32,
+    /// cos θ_x/(π·pdf): the weight for albedo 1, and 0 where a cosine is not positive.
+    factor: f32,
+}
+
+/// `f cos θ_x cos θ_y / (r² p_A)` with f = 1/π, by way of the density in solid angle.
+#[inline(always)]
+pub(crate) fn connect_to(x: Vec3, n: Vec3, y: Vec3, m: Vec3, density: f32) -> Connection {
+    let (direction, r2, cos_x, cos_y) = connection(x, n, y, m);
+    let pdf = solid_angle(density, r2, cos_y);
+    let factor = FRAC_1_PI * cos_x / pdf;
+    let faces = (cos_x > 0.0) & (cos_y > 0.0);
+    Connection { direction, cos_x, pdf, factor: if faces { factor } else { 0.0 } }
 }
 
 impl<'a> SceneTransport<'a> {
@@ -81,16 +102,43 @@ impl SceneTransport<'_> {
         if albedo == Rgb::ZERO || self.scene.lights.is_empty() {
             return None;
         }
-        let side = 2 * self.scene.lights.choose([u[0], u[1]]);
-        let (y, m) = self.scene.point(side, [u[2], u[3]]);
-        let (d, r2, cos_x, cos_y) = connection(at.p, at.n, y, m);
-        if cos_x <= 0.0 || cos_y <= 0.0 {
+        let light = self.scene.light_point(u);
+        let c = connect_to(at.p, at.n, light.p, light.n, light.density);
+        if c.factor <= 0.0 {
             return None;
         }
-        let pdf = solid_angle(self.scene.light_density(side), r2, cos_y);
-        let weight = albedo * (FRAC_1_PI * cos_x / pdf);
-        let state = Vertex { p: y, n: m, omega: -d, side };
-        Some(Step { state, weight, pdf, other_pdf: self.sampling.pdf(cos_x) })
+        let state = Vertex { p: light.p, n: light.n, omega: -c.direction, side: light.side };
+        Some(Step { state, weight: albedo * c.factor, pdf: c.pdf, other_pdf: self.sampling.pdf(c.cos_x) })
+    }
+}
+
+/// Connections of a wave: light points in `rays.o`, `rays.d` (normals) and `rays.t` (densities) become shadow segments, with
+/// the weight for albedo 1 in `rays.t`, the cosine in `rays.cosine` and the density in `out.pdf`.
+#[pulp::with_simd(connections = pulp::Arch::new())]
+#[inline(always)]
+fn connections_with_simd<'a, S: pulp::Simd>(
+    _simd: S,
+    p: &'a Columns,
+    normal: &'a Columns,
+    offset: f32,
+    rays: &'a mut Rays,
+    out: &'a mut Samples,
+    n: usize,
+) {
+    let (px, py, pz) = (&p.x[..n], &p.y[..n], &p.z[..n]);
+    let (nx, ny, nz) = (&normal.x[..n], &normal.y[..n], &normal.z[..n]);
+    let (ox, oy, oz) = (&mut rays.o.x[..n], &mut rays.o.y[..n], &mut rays.o.z[..n]);
+    let (dx, dy, dz) = (&mut rays.d.x[..n], &mut rays.d.y[..n], &mut rays.d.z[..n]);
+    let (t, cosine, pdf) = (&mut rays.t[..n], &mut rays.cosine[..n], &mut out.pdf[..n]);
+    for i in 0..n {
+        let (x, n) = (Vec3::new(px[i], py[i], pz[i]), Vec3::new(nx[i], ny[i], nz[i]));
+        let (y, m) = (Vec3::new(ox[i], oy[i], oz[i]), Vec3::new(dx[i], dy[i], dz[i]));
+        let c = connect_to(x, n, y, m, t[i]);
+        let o = x + n * offset;
+        let d = y + m * offset - o;
+        (ox[i], oy[i], oz[i]) = (o.x, o.y, o.z);
+        (dx[i], dy[i], dz[i]) = (d.x, d.y, d.z);
+        (t[i], cosine[i], pdf[i]) = (c.factor, c.cos_x, c.pdf);
     }
 }
 
@@ -132,17 +180,19 @@ impl Transport for SceneTransport<'_> {
         if !self.scene.in_packets() {
             return transport::connect_one_by_one(self, wave, streams, out);
         }
+        let n = streams.len();
         numbers(streams, &mut wave.rays.u);
+        self.scene.light_points(&mut wave.rays, n);
+        connections(&wave.p, &wave.n, self.scene.offset(), &mut wave.rays, out, n);
         let mut shadow = 0;
-        for i in 0..streams.len() {
-            let (at, u) = (wave.get(i), wave.rays.u.each_ref().map(|u| u[i]));
-            if let Some(s) = self.propose(&at, u) {
-                let (o, d) = self.scene.segment(at.p, at.n, s.state.p, s.state.n);
-                wave.rays.o.set(i, o);
-                wave.rays.d.set(i, d);
+        for i in 0..n {
+            let albedo = self.scene.albedo(wave.side[i]);
+            let factor = wave.rays.t[i];
+            if factor > 0.0 && albedo != Rgb::ZERO {
+                out.value.set(i, albedo * factor * self.scene.emission(2 * wave.rays.prim[i]));
+                out.other_pdf[i] = self.sampling.pdf(wave.rays.cosine[i]);
                 wave.rays.list[shadow] = i as u32;
                 shadow += 1;
-                out.set(i, s.weight * self.emission(&s.state), s.pdf, s.other_pdf);
             } else {
                 out.set(i, Rgb::ZERO, 1.0, 0.0);
             }

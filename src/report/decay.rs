@@ -17,12 +17,14 @@
 use super::{
     ReportError,
     axis::Axis,
-    plot::{
-        BLACK, Curve, Drawn, Entry, Figure, GREEN, ORANGE, PURPLE, Page, Panel, Point, SKY, Sample, Stroke, Words,
-        figure,
-    },
+    canvas::{Drawn, Entry, Page, Sample, Words},
+    panel::Panel,
+    plot::{BLACK, Curve, Figure, Point, figure},
     typeset::Caption,
 };
+use crate::stats::{self, TermMeans};
+
+pub use super::rate::{Rate, RateKind};
 
 /// What the figure shows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -39,48 +41,32 @@ pub struct Decay {
     pub ratios: Vec<Curve>,
 }
 
-/// The line `value · ratio^(k − k0)` for k ≥ k0.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Rate {
-    /// Its words in the legend.
-    pub label: String,
-    /// Where it starts.
-    pub k0: f64,
-    /// Its value there.
-    pub value: f64,
-    /// Its factor per bounce.
-    pub ratio: f64,
-    /// What it claims.
-    pub kind: RateKind,
+/// The norms of terms as points.
+///
+/// ```
+/// use fredholm::{report::{decay::norms, plot::Point}, stats::TermMeans};
+/// assert_eq!(norms(&TermMeans::exact(&[4.0, 2.0])), [Point::exact(0.0, 4.0), Point::exact(1.0, 2.0)]);
+/// ```
+pub fn norms(terms: &TermMeans) -> Vec<Point> {
+    let point = |(k, &value): (usize, &f64)| {
+        let std_error = terms.covariance[(k, k)].sqrt();
+        Point { x: k as f64, value, std_error, replicates: terms.replicates }
+    };
+    terms.mean.iter().enumerate().map(point).collect()
 }
 
-/// What a geometric line claims.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RateKind {
-    /// Fitted to the data; claims nothing beyond them.
-    Observed,
-    /// The spectral radius of the matrix: the asymptotic rate there.
-    Spectral,
-    /// From ‖T‖₁ ≤ max albedo: no term lies above it.
-    Guaranteed,
-    /// On everything that follows after k bounces, not on single terms.
-    TailBound,
-}
-
-impl RateKind {
-    fn stroke(self) -> Stroke {
-        match self {
-            Self::Observed => Stroke::solid(ORANGE, 2.0),
-            Self::Spectral => Stroke { color: SKY, width: 2.0, dash: Some((9.0, 4.0)) },
-            Self::Guaranteed => Stroke::solid(GREEN, 2.0),
-            Self::TailBound => Stroke { color: PURPLE, width: 1.8, dash: Some((3.0, 3.0)) },
-        }
-    }
+/// Ratios of terms measured together, with their covariance: that of term k to term k − 1 stands at k, as in the tables.
+pub fn ratios(terms: &TermMeans) -> Vec<Point> {
+    let point = |k: usize| {
+        let (value, std_error) = stats::ratio(terms, k - 1)?;
+        Some(Point { x: k as f64, value, std_error, replicates: terms.replicates })
+    };
+    (1..terms.mean.len()).filter_map(point).collect()
 }
 
 /// Ratios of consecutive points whose errors are independent (one estimator per term, or exact values):
 /// `r = b/a`, `(se_r/r)² = (se_a/a)² + (se_b/b)²`, the delta method. Terms of one path are correlated; for them the
-/// covariance is needed and the caller computes the ratios.
+/// covariance is needed: [`ratios`].
 ///
 /// ```
 /// use fredholm::report::{decay::independent_ratios, plot::Point};

@@ -2,7 +2,7 @@
 //!
 //! The unnamed layer `R G B` is what a viewer shows first. Compression is lossless (ZIP, 16 lines), and equal input
 //! gives equal bytes: blocks stand in scan-line order and header attributes in the order of their names (the crate
-//! keeps custom attributes in a hash map, whose order differs from run to run; [`sort_attributes`] mends that).
+//! keeps custom attributes in a hash map, whose order differs from run to run; `sort_attributes` mends that).
 //!
 //! Reference: Kainz, Bogart, Stanczyk, Hillman, *Technical Introduction to OpenEXR* (2013), and the file layout page of
 //! the OpenEXR documentation.

@@ -207,11 +207,12 @@ fn series_section(series: &[(String, &Functional)]) -> String {
         );
         let mut row = |name: &str, estimate: &Estimate, ratio: String| {
             let (mean, half) = average(estimate);
-            let share = if total == 0.0 { "–".into() } else { format!("{:.1} %", 100.0 * mean / total) };
+            let share =
+                if total == 0.0 || mean.is_nan() { "–".into() } else { format!("{:.1} %", 100.0 * mean / total) };
             let _ = writeln!(
                 out,
                 "<tr><th scope=\"row\">{name}</th><td>{}</td><td>{}</td><td>{ratio}</td><td>{share}</td><td>{}</td></tr>",
-                significant(mean, 4),
+                if estimate.is_none() { "not estimated".into() } else { significant(mean, 4) },
                 known(half),
                 dot(mean, half, lo / 1.5, hi * 1.5)
             );
@@ -227,7 +228,10 @@ fn series_section(series: &[(String, &Functional)]) -> String {
             row(&format!("k &gt; {last}"), &functional.tail, String::new());
             row(&format!("Σ k ≤ {last}"), &functional.sum, String::new());
         }
-        row("all", &functional.total, String::new());
+        // without a tail the total is the sum, which stands there already
+        if functional.terms.is_empty() || !functional.tail.is_none() {
+            row(if functional.tail.is_none() { "cut at K" } else { "all" }, &functional.total, String::new());
+        }
         out += "</tbody>\n</table></div>\n";
     }
     out + "</section>\n"

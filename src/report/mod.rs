@@ -11,19 +11,23 @@
 //! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
 //! | `summary.json` | [`summary`] |
 //! | `index.html` | [`html`] |
-//! | tables on the terminal | [`table`] |
+//! | tables on the terminal, and in the book | [`table`], [`markdown`] |
 
 mod axis;
 mod base64;
+mod canvas;
 pub mod decay;
 mod error;
 pub mod exr;
 mod files;
 pub mod html;
 mod interval;
+pub mod markdown;
 mod null_as_nan;
+mod panel;
 pub mod picture;
 pub mod plot;
+mod rate;
 pub mod sheet;
 pub mod summary;
 pub mod table;

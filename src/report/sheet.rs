@@ -7,7 +7,7 @@
 use super::{
     ReportError,
     picture::{Developed, Picture, auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shrink},
-    typeset::{Caption, LINE, SANS, caption_elements, page, text_element, text_width},
+    typeset::{Caption, LINE, SANS, caption_elements, page, superscript, text_element, text_width},
 };
 
 const LABEL: f64 = 14.0;
@@ -127,6 +127,29 @@ pub fn grid(title: &str, width: usize, height: usize, cells: &[Cell], caption: &
         picture.paste(image, x.round() as usize, (y + LABEL * LINE).round() as usize);
     }
     Ok(Sheet { picture, clipped })
+}
+
+/// The terms k = 0, 1, … each at its own exposure, and the whole if it is known.
+///
+/// # Errors
+/// As for [`grid`].
+pub fn terms(
+    width: usize,
+    height: usize,
+    terms: &[&[[f32; 3]]],
+    whole: Option<&[[f32; 3]]>,
+    note: &str,
+    caption: &Caption,
+) -> Result<Sheet, ReportError> {
+    let name = |k: usize| match k {
+        0 => "T⁰E: emission".to_string(),
+        1 => "T¹E: direct light".to_string(),
+        k => format!("T{}E", superscript(k)),
+    };
+    let mut cells: Vec<Cell> =
+        terms.iter().enumerate().map(|(k, pixels)| Cell { label: name(k), pixels, gain: None }).collect();
+    cells.extend(whole.map(|pixels| Cell { label: "Σ, all k".into(), pixels, gain: None }));
+    grid(&format!("The terms of L = Σ TᵏE, {note}"), width, height, &cells, caption)
 }
 
 /// Direct light (k ≤ 1) beside direct plus indirect light, at one common exposure: that of the right image where no

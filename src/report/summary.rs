@@ -13,7 +13,7 @@
 //! | `threads`, `seconds` | worker threads and wall-clock seconds; no result depends on them |
 //! | `width`, `height` | pixels |
 //! | `terms` | per k: `k`, `mean`, `std_error`, `variance` (of one sample, averaged over the pixels), `ratio` (`mean` over that of k − 1; `null` for k = 0), `rays` (traced for this k) |
-//! | `tail` | estimate: everything longer than K |
+//! | `tail` | estimate: everything longer than K; all `null` with `replicates` 0 where paths are cut at K (`--roulette none`) |
 //! | `sum` | estimate: Σ_{k≤K} of the terms |
 //! | `path` | estimate by the full path tracer, or `null` |
 //! | `radiosity` | the matrix world, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solve), `spectral_radius` per channel, `discretisation` (abs. difference to half as many patches) |
@@ -29,6 +29,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{ReportError, files, null_as_nan::NullAsNan, write_atomically};
+use crate::stats;
 use crate::terms::{Estimate, Series};
 
 /// Name of the schema.
@@ -189,6 +190,29 @@ pub enum Outcome {
     Differs,
     /// Neither: more samples are needed.
     Inconclusive,
+}
+
+impl From<stats::Outcome> for Outcome {
+    fn from(outcome: stats::Outcome) -> Self {
+        match outcome {
+            stats::Outcome::Agrees => Self::Agrees,
+            stats::Outcome::Differs => Self::Differs,
+            stats::Outcome::Inconclusive => Self::Inconclusive,
+        }
+    }
+}
+
+/// The rows of a comparison of that name; without a name, the rows say which functional they speak of.
+pub fn verdicts(name: &str, comparison: &stats::Comparison) -> Vec<Verdict> {
+    let row = |v: &stats::Verdict| Verdict {
+        name: if name.is_empty() { format!("{} ({})", v.name, v.functional) } else { format!("{}: {name}", v.name) },
+        effect: v.effect,
+        interval: v.interval,
+        p: v.p,
+        min_detectable: v.min_detectable,
+        outcome: v.outcome.into(),
+    };
+    comparison.rows.iter().map(row).collect()
 }
 
 /// Writes the summary, indented, with a final newline.

@@ -28,8 +28,9 @@ pub fn series(label: &str, functional: &Functional, rays: &[u64]) -> String {
     let mut rows = vec![["k", "mean", "± 95 %", "ratio", "share", "rays"].map(String::from)];
     let mut push = |name: String, estimate: &Estimate, ratio: String, rays: String| {
         let (mean, half) = average(estimate);
-        let share = if total == 0.0 { dash() } else { format!("{:.1} %", 100.0 * mean / total) };
-        rows.push([name, significant(mean, 4), known(half), ratio, share, rays]);
+        let share = if total == 0.0 || mean.is_nan() { dash() } else { format!("{:.1} %", 100.0 * mean / total) };
+        let mean = if estimate.is_none() { dash() } else { significant(mean, 4) };
+        rows.push([name, mean, known(half), ratio, share, rays]);
     };
     let mut previous: Option<f64> = None;
     for (k, term) in functional.terms.iter().enumerate() {
@@ -42,7 +43,11 @@ pub fn series(label: &str, functional: &Functional, rays: &[u64]) -> String {
         push(format!("k > {last}"), &functional.tail, String::new(), String::new());
         push(format!("Σ k ≤ {last}"), &functional.sum, String::new(), String::new());
     }
-    push("all".into(), &functional.total, String::new(), String::new());
+    // without a tail the total is the sum, which stands there already
+    if functional.terms.is_empty() || !functional.tail.is_none() {
+        let name = if functional.tail.is_none() { "cut at K" } else { "all" };
+        push(name.into(), &functional.total, String::new(), String::new());
+    }
     let columns = if rays.is_empty() { 5 } else { 6 };
     let rows: Vec<Vec<String>> = rows.into_iter().map(|row| row.into_iter().take(columns).collect()).collect();
     format!("{label}\n{}", aligned(&rows, &[Side::Right; 6]))

@@ -45,10 +45,20 @@ impl Caption {
     }
 }
 
-/// Breaks at blanks so that every line `fits`; a word that does not fit by itself is cut.
+/// A number raised, as in TᵏE.
+///
+/// ```
+/// assert_eq!(fredholm::report::typeset::superscript(12), "¹²");
+/// ```
+pub fn superscript(k: usize) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    k.to_string().bytes().map(|b| DIGITS[usize::from(b - b'0')]).collect()
+}
+
+/// Breaks at blanks (not at no-break spaces) so that every line `fits`; a word that does not fit by itself is cut.
 pub(super) fn wrap(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
     let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
+    for word in text.split([' ', '\t', '\n']).filter(|word| !word.is_empty()) {
         let line = &lines[lines.len() - 1];
         let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
         if fits(&longer) {

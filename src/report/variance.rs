@@ -15,7 +15,9 @@
 use super::{
     ReportError,
     axis::Axis,
-    plot::{Curve, Drawn, Entry, Figure, GREY, Page, Panel, Sample, Stroke, Words, figure},
+    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    panel::Panel,
+    plot::{Curve, Figure, GREY, figure},
     typeset::Caption,
 };
 
@@ -67,7 +69,7 @@ fn panel(page: &Page, variance: &Variance) -> Drawn {
     let mut entries = vec![Entry::new(Sample::Heading, "Estimators, 95 % intervals")];
     entries.extend(variance.curves.iter().map(|f| {
         let label = match f.slope {
-            Some((slope, error)) => format!("{}: slope {} ± {error:.2}", f.curve.label, signed(slope)),
+            Some((slope, error)) => format!("{}: slope\u{a0}{}\u{a0}±\u{a0}{error:.2}", f.curve.label, signed(slope)),
             None => f.curve.label.clone(),
         };
         Entry::new(Sample::Mark(f.curve.look), label)

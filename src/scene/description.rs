@@ -1,6 +1,6 @@
 //! A scene as plain data: what a file says, before anything is built from it.
 //!
-//! Positions in metres, right-handed, `f64`; colours linear Rec. 709. [`Scene::build`](super::Scene::build)
+//! Positions in metres, right-handed, `f64`; colours linear Rec. 709. [`Scene::new`](super::Scene::new)
 //! turns a description into something rays can hit.
 
 use glam::DVec3;

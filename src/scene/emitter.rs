@@ -59,6 +59,14 @@ impl Lights {
         self.lights.is_empty()
     }
 
+    /// The emitting primitive, if there is only one.
+    pub(crate) fn only(&self) -> Option<u32> {
+        match self.lights.as_slice() {
+            [light] if light.prims.len() == 1 => Some(light.prims[0]),
+            _ => None,
+        }
+    }
+
     /// The light and the primitive on it that two uniform numbers choose.
     #[inline(always)]
     pub(crate) fn choose(&self, u: [f32; 2]) -> u32 {

@@ -35,9 +35,17 @@ use description::Sides;
 use emitter::Lights;
 use glam::{DVec3, Vec3};
 use shape::Shape;
-use vertex::Rays;
+pub(crate) use vertex::Rays;
 
 pub(crate) use packets::{cosine_directions, numbers};
+
+/// A point chosen by next-event estimation, with its density per area.
+pub(crate) struct LightPoint {
+    pub(crate) p: Vec3,
+    pub(crate) n: Vec3,
+    pub(crate) density: f32,
+    pub(crate) side: Side,
+}
 
 /// Surfaces ready for rays, and their lights.
 pub struct Scene {
@@ -144,6 +152,38 @@ impl Scene {
         let p = shape.settle(shape.point(u));
         let n = shape.normal(p);
         (p, if side & 1 == 0 { n } else { -n })
+    }
+
+    /// The light point that four uniform numbers choose.
+    #[inline(always)]
+    pub(crate) fn light_point(&self, u: [f32; 4]) -> LightPoint {
+        let prim = self.lights.choose([u[0], u[1]]);
+        let shape = &self.accel.shapes[prim as usize];
+        let p = shape.point([u[2], u[3]]);
+        LightPoint { p, n: shape.normal(p), density: self.lights.density[prim as usize], side: 2 * prim }
+    }
+
+    /// The light points of a wave: positions in `rays.o`, normals in `rays.d`, densities in `rays.t`, primitives in `rays.prim`.
+    #[inline(always)]
+    pub(crate) fn light_points(&self, rays: &mut Rays, n: usize) {
+        if let Some(prim) = self.lights.only() {
+            packets::points_on(&self.accel.shapes[prim as usize], self.lights.density[prim as usize], rays, n);
+            rays.prim[..n].fill(prim);
+            return;
+        }
+        for i in 0..n {
+            let light = self.light_point(rays.u.each_ref().map(|u| u[i]));
+            rays.o.set(i, light.p);
+            rays.d.set(i, light.n);
+            rays.t[i] = light.density;
+            rays.prim[i] = light.side / 2;
+        }
+    }
+
+    /// How far rays start off their surface, metres.
+    #[inline(always)]
+    pub(crate) fn offset(&self) -> f32 {
+        self.offset
     }
 
     /// Where a ray that leaves `p` on the side of `n` starts.

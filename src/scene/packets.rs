@@ -133,3 +133,18 @@ pub(crate) fn cosine_directions_with_simd<'a, S: Simd>(
         (dx[i], dy[i], dz[i], cosine[i]) = (v.x, v.y, v.z, z);
     }
 }
+
+/// Uniform points of one shape from the last two columns of numbers: positions, normals and a density for all.
+#[pulp::with_simd(points_on = Arch::new())]
+#[inline(always)]
+pub(crate) fn points_on_with_simd<'a, S: Simd>(_simd: S, shape: &'a Shape, density: f32, rays: &'a mut Rays, n: usize) {
+    let (u, v) = (&rays.u[2][..n], &rays.u[3][..n]);
+    let (ox, oy, oz) = (&mut rays.o.x[..n], &mut rays.o.y[..n], &mut rays.o.z[..n]);
+    let (dx, dy, dz, t) = (&mut rays.d.x[..n], &mut rays.d.y[..n], &mut rays.d.z[..n], &mut rays.t[..n]);
+    for i in 0..n {
+        let p = shape.point([u[i], v[i]]);
+        let m = shape.normal(p);
+        (ox[i], oy[i], oz[i]) = (p.x, p.y, p.z);
+        (dx[i], dy[i], dz[i], t[i]) = (m.x, m.y, m.z, density);
+    }
+}

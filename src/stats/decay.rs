@@ -20,7 +20,8 @@
 //! corrected here. Rao, *Biometrika* 46 (1959); Grizzle and Allen, *Biometrics* 25 (1969).
 
 use super::{Moments, line};
-use crate::terms::Estimate;
+use crate::terms::{Estimate, functional::Replicates};
+use glam::DVec3;
 use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::ops::Range;
@@ -49,6 +50,22 @@ impl TermMeans {
             mean: terms.iter().map(|t| t.mean[channel]).collect(),
             covariance: DMatrix::from_diagonal(&variance.into()),
             replicates: terms.iter().map(|t| t.replicates).min().unwrap_or(0),
+        }
+    }
+}
+
+impl From<&Replicates> for TermMeans {
+    /// The mean over channels of every term, without the tail.
+    fn from(r: &Replicates) -> Self {
+        let terms = r.mean.len().saturating_sub(1);
+        let grey = |v: DVec3| v.element_sum() / 3.0;
+        let n = r.deviation.len() as f64;
+        let covariance =
+            |a: usize, b: usize| r.deviation.iter().map(|d| grey(d[a]) * grey(d[b])).sum::<f64>() * n / (n - 1.0);
+        Self {
+            mean: r.mean[..terms].iter().map(|&m| grey(m)).collect(),
+            covariance: DMatrix::from_fn(terms, terms, covariance),
+            replicates: r.deviation.len() as u64,
         }
     }
 }
@@ -173,7 +190,6 @@ pub fn ratio(terms: &TermMeans, k: usize) -> Option<(f64, f64)> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use glam::DVec3;
 
     fn with_errors(mean: &[f64], relative: f64, correlation: f64) -> TermMeans {
         let covariance = DMatrix::from_fn(mean.len(), mean.len(), |i, j| {
@@ -244,6 +260,19 @@ mod tests {
         terms.replicates = 16;
         terms.covariance[(8, 8)] = 0.0;
         assert_eq!(observed_rate(&terms), Err(NoRate::Covariance));
+    }
+
+    #[test]
+    fn replicates_become_the_mean_over_channels_with_its_covariance() {
+        let row = |a: f64, b: f64, tail: f64| {
+            vec![DVec3::new(3.0 * a, 0.0, 0.0), DVec3::new(0.0, b, 2.0 * b), DVec3::splat(tail)]
+        };
+        let r = Replicates { mean: row(4.0, 2.0, 9.0), deviation: vec![row(0.1, 0.2, 5.0), row(-0.1, -0.2, -5.0)] };
+        let terms = TermMeans::from(&r);
+        assert_eq!((terms.mean.as_slice(), terms.replicates), ([4.0, 2.0].as_slice(), 2));
+        // n/(n − 1) Σ d_a d_b = 2 · (2 · 0.1 · 0.2)
+        let expected = [0.04, 0.08, 0.08, 0.16];
+        assert!(terms.covariance.iter().zip(expected).all(|(c, e)| (c - e).abs() < 1e-15), "{:?}", terms.covariance);
     }
 
     #[test]

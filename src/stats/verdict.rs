@@ -11,6 +11,7 @@
 //! | effect | first world − second world | [`Verdict::effect`] |
 //! | s, ν | standard error of the effect, its degrees of freedom | [`difference`] |
 //! | a | allowance: an error that is no noise (discretisation) | [`compare`] |
+//! | 3 max a | what a rejection must exceed: the largest allowance of its kind, with Roache's safety factor | [`compare`] |
 //! | δ | 2 % of the term + 10⁻⁴ of the whole image, per channel | [`Criterion`] |
 //! | α | chance that two equal worlds are told apart anywhere in the whole family | [`Criterion::alpha`] |
 //! | t* | critical value at α over the number of image means: the intervals hold all at once | [`Verdict::interval`] |
@@ -99,6 +100,18 @@ const NO_ERROR: &str = "the standard error is unknown: one replicate only (raise
 const NOT_FINITE: &str = "a mean is not finite";
 const ALLOWANCE: &str = "the allowance for discretisation alone exceeds what δ can resolve: refine the mesh";
 
+/// An allowance from two meshes is itself uncertain; a rejection must exceed it by this factor, the one that Roache asks for
+/// with two grids (*J. Fluids Engineering* 116, 1994).
+const SAFETY: f64 = 3.0;
+
+/// The largest allowance of the functionals of one kind (image, regions, projections): where the difference of two meshes
+/// changes its sign it is small by accident.
+fn largest_alike(allowance: &[Functional], name: &str, quantity: Quantity) -> DVec3 {
+    let kind = |name: &str| name.split(' ').next().unwrap_or_default().to_string();
+    let alike = allowance.iter().filter(|f| kind(&f.name) == kind(name));
+    alike.filter_map(|f| quantity.of(f)).fold(DVec3::ZERO, |a, e| a.max(e.mean.abs()))
+}
+
 const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 /// Compares every quantity that both results have. `allowance` holds, as the means of functionals, an absolute error
@@ -106,6 +119,7 @@ const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 ///
 /// K may differ: the common terms are compared, but then `tail` and `sum` mean different things and are left out. The
 /// path tracer has no terms: against it only `total` is compared. With nothing in common the outcome is Inconclusive.
+/// A series cut at K has no tail: `tail` is left out, and `total` too unless both are cut.
 ///
 /// Values without error on both sides agree if they are equal to [`ROUNDING`] of the whole image and differ otherwise,
 /// whatever δ: there is no noise to excuse them.
@@ -121,6 +135,7 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
         for quantity in shared_quantities(fa, fb) {
             let (Some(x), Some(y)) = (quantity.of(fa), quantity.of(fb)) else { continue };
             let extra = allowed.and_then(|f| quantity.of(f)).map_or(DVec3::ZERO, |e| e.mean.abs());
+            let excused = SAFETY * largest_alike(allowance, &fa.name, quantity);
             let whole = 0.5 * (image_a.total.mean.abs() + image_b.total.mean.abs());
             for (c, channel) in CHANNELS.iter().enumerate() {
                 family.push(Item {
@@ -129,6 +144,7 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
                     is_image: i == 0,
                     effect: difference(Measured::of(&x, c), Measured::of(&y, c)),
                     allowance: extra[c],
+                    excuse: excused[c].max(extra[c]),
                     rounding: ROUNDING * whole[c],
                     delta: delta_of(quantity)[c].max(ROUNDING * whole[c]),
                 });
@@ -186,10 +202,12 @@ impl Quantity {
 
 fn shared_quantities(a: &Functional, b: &Functional) -> Vec<Quantity> {
     let mut all: Vec<_> = (0..a.terms.len().min(b.terms.len())).map(Quantity::Term).collect();
+    let cut = [a.tail.is_none(), b.tail.is_none()];
     if !all.is_empty() && a.terms.len() == b.terms.len() {
-        all.extend([Quantity::Tail, Quantity::Sum]);
+        all.extend((cut == [false; 2]).then_some(Quantity::Tail));
+        all.push(Quantity::Sum);
     }
-    all.push(Quantity::Total);
+    all.extend((cut[0] == cut[1]).then_some(Quantity::Total));
     all
 }
 
@@ -210,15 +228,17 @@ struct Item {
     effect: Measured,
     /// What is no noise and no difference either: discretisation.
     allowance: f64,
+    /// What a rejection must exceed: the allowance with its own uncertainty.
+    excuse: f64,
     /// What `f32` may lose: never a difference.
     rounding: f64,
     delta: f64,
 }
 
 impl Item {
-    /// P(an effect at least this large | the true effect is within allowance and rounding). Without noise it is 0 or 1.
+    /// P(an effect at least this large | the true effect is within excuse and rounding). Without noise it is 0 or 1.
     fn p(&self) -> f64 {
-        let excess = self.effect.mean.abs() - self.allowance - self.rounding;
+        let excess = self.effect.mean.abs() - self.excuse - self.rounding;
         let s = self.effect.std_error;
         if excess.is_nan() || s.is_nan() {
             f64::NAN
@@ -280,9 +300,9 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Ve
     } else {
         Outcome::Inconclusive
     };
-    // undecided is δ − noise − a < |effect| ≤ reject + a + rounding. That is empty once noise + reject ≤ room, and both
+    // undecided is δ − noise − a < |effect| ≤ reject + excuse + rounding. That is empty once noise + reject ≤ room, and both
     // fall as 1/√n
-    let room = delta - 2.0 * item.allowance - item.rounding;
+    let room = delta - item.allowance - item.excuse - item.rounding;
     let reason = match outcome {
         Outcome::Agrees | Outcome::Differs => None,
         Outcome::Inconclusive if !effect.is_finite() => Some(NOT_FINITE),
@@ -297,7 +317,7 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Ve
         effect,
         interval: (effect - half, effect + half),
         p,
-        min_detectable: item.allowance
+        min_detectable: item.excuse
             + item.rounding
             + power::min_detectable(s, item.effect.dof, levels.1, criterion.beta),
         outcome,

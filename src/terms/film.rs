@@ -70,8 +70,14 @@ impl FilmBlock<'_> {
         let n = pixel.len();
         let (sample, x, y, z) = (&sample[..n], &value.x[..n], &value.y[..n], &value.z[..n]);
         let (replicates, slots) = (self.shape.replicates as u32, self.shape.slots);
+        let (power, mask) = (replicates.is_power_of_two(), replicates - 1);
         for i in 0..n {
-            let path = (pixel[i] - self.first) * replicates + sample[i] % replicates;
+            // most hits emit nothing, and adding zero is work for nobody
+            if x[i] == 0.0 && y[i] == 0.0 && z[i] == 0.0 {
+                continue;
+            }
+            let replicate = if power { sample[i] & mask } else { sample[i] % replicates };
+            let path = (pixel[i] - self.first) * replicates + replicate;
             let at = (path as usize * slots + slot) * 3;
             let s = &mut self.sums[at..at + 3];
             s[0] += f64::from(x[i]);

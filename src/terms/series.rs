@@ -19,6 +19,14 @@ impl Estimate {
     pub fn exact(mean: DVec3) -> Self {
         Self { mean, std_error: DVec3::ZERO, replicates: 0 }
     }
+
+    /// Nothing was estimated: the tail of paths that are cut at K.
+    pub const NONE: Self = Self { mean: DVec3::NAN, std_error: DVec3::NAN, replicates: 0 };
+
+    /// Whether this is [`Estimate::NONE`]. (A broken render is NaN too, but it has replicates.)
+    pub fn is_none(&self) -> bool {
+        self.replicates == 0 && self.mean.is_nan()
+    }
 }
 
 /// Which realisation of the operator a result comes from.
@@ -53,7 +61,7 @@ pub struct Functional {
     pub name: String,
     /// One estimate per k = 0..=K (empty for the path tracer).
     pub terms: Vec<Estimate>,
-    /// Everything longer than K.
+    /// Everything longer than K; [`Estimate::NONE`] where paths are cut at K, and then `total` holds k ≤ K only.
     pub tail: Estimate,
     /// Σ_{k≤K} terms, with the error that their covariance gives.
     pub sum: Estimate,

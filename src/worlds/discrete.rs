@@ -34,6 +34,9 @@ pub struct Matrix {
     pub surface: Vec<DVec3>,
 }
 
+/// From this spectral radius on a channel keeps all its light, as far as form factors can tell.
+const KEEPS_ALL: f64 = 1.0 - 1e-6;
+
 /// Why there is no matrix.
 #[derive(Debug, thiserror::Error)]
 pub enum MatrixError {
@@ -42,7 +45,7 @@ pub enum MatrixError {
     Scene(#[from] SceneError),
     /// `I − T_h` is singular: a channel keeps all its light.
     #[error(
-        "error: a channel keeps all its light, so L = E + T L has no solution\nhelp: lower a reflectance below 1, or leave the radiosity world out with --worlds terms,path"
+        "error: a channel keeps all its light, so L = E + T L has no solution\nhelp: lower a reflectance below 1, or look at the first terms alone with --worlds terms,path --roulette none"
     )]
     Singular,
     /// Interrupted.
@@ -76,18 +79,15 @@ pub fn matrix(
     let factors = FormFactors::new(&patches, scene, Sampling::default(), watch).map_err(|_| MatrixError::Stopped)?;
     let invariants = factors.invariants();
     let radiosity = Radiosity::new(patches, factors);
+    // LU of a matrix that is singular but for rounding succeeds, and means nothing
+    let spectral = radiosity.spectral_radius();
+    if spectral.iter().any(|s| s.radius >= KEEPS_ALL) {
+        return Err(MatrixError::Singular);
+    }
     let terms = radiosity.terms(max_bounces);
     let solution = radiosity.solve().map_err(|_| MatrixError::Singular)?;
     let surface = terms.iter().map(|t| radiosity.surface_mean(t)).collect();
-    Ok(Matrix {
-        spectral: radiosity.spectral_radius(),
-        norms: radiosity.norms(),
-        radiosity,
-        terms,
-        solution,
-        invariants,
-        surface,
-    })
+    Ok(Matrix { spectral, norms: radiosity.norms(), radiosity, terms, solution, invariants, surface })
 }
 
 impl Matrix {

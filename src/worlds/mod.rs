@@ -39,6 +39,24 @@ pub struct Settings {
     pub read_patches: bool,
 }
 
+impl Default for Settings {
+    /// What the command line does unless told otherwise.
+    fn default() -> Self {
+        let (max_bounces, end) = (8, Roulette::Albedo { from: 2 });
+        Self {
+            spp: 256,
+            seed: 0,
+            max_bounces,
+            technique: Technique::Mis,
+            sampling: Sampling::Bsdf,
+            roulette: end.clone().after(max_bounces),
+            path_roulette: end,
+            patches: 600,
+            read_patches: false,
+        }
+    }
+}
+
 impl Settings {
     /// The plan of the term estimators.
     pub fn plan(&self) -> Plan {

@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use crate::terms::functional::{Replicates, functionals, image_replicates};
 use crate::terms::norms::{SquaredNorm, squared_norm};
 use crate::terms::variance::{Snapshot, snapshot};
-use crate::terms::{Cost, Series, TermFilm, TermImage, World};
+use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, World};
 use std::fmt;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -70,7 +70,11 @@ pub fn terms(
         Estimator::Prefix => render(&t, &scene.camera, &Prefix(plan), amount, &mut run, stop),
         Estimator::Single => render(&t, &scene.camera, &SingleTerm(plan), amount, &mut run, stop),
     };
-    run.finish(&film, World::Terms, format!("{estimator}, {}", settings.technique))
+    let mut result = run.finish(&film, World::Terms, format!("{estimator}, {}", settings.technique));
+    if !settings.roulette.ends() {
+        cut(&mut result.series, settings);
+    }
+    result
 }
 
 /// The full path tracer.
@@ -78,7 +82,18 @@ pub fn path(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &
     let plan = Plan { roulette: settings.path_roulette.clone(), ..settings.plan() };
     let t = SceneTransport { scene, sampling: settings.sampling };
     let label = format!("path tracer, {}, roulette {}", settings.technique, settings.path_roulette);
-    sample(&t, &scene.camera, &PathTracer(plan), "path", (World::Path, label), settings, observer, stop)
+    let mut result =
+        sample(&t, &scene.camera, &PathTracer(plan), "path", (World::Path, label), settings, observer, stop);
+    if !settings.path_roulette.ends() {
+        cut(&mut result.series, settings);
+    }
+    result
+}
+
+/// Paths that no roulette ends are cut at K: says so, and that nothing is known about what is longer.
+fn cut(series: &mut Series, settings: &Settings) {
+    series.label += &format!(", k ≤ {} only", settings.max_bounces);
+    series.functionals.iter_mut().for_each(|f| f.tail = Estimate::NONE);
 }
 
 /// Any estimator through any sensor.

@@ -113,9 +113,12 @@ pub(super) fn exchange(a: &[DVec3], sa: &Side, b: &[DVec3], sb: &Side) -> f64 {
     let ((small, ss), (large, sl)) = if sa.radius <= sb.radius { ((a, sa), (b, sb)) } else { ((b, sb), (a, sa)) };
     let distance = (ss.centre - sl.centre).length() - sl.radius;
     if distance < 4.0 * ss.radius {
-        return contour(a, b, sa.centre.distance_squared(sb.centre)).max(0.0);
+        let value = contour(a, b, sa.centre.distance_squared(sb.centre));
+        // parts that touch in a sliver exchange less than the rounding of the sum; anything worse stays visible
+        let rounding = 1e-13 * ss.radius * sl.radius;
+        return if value < 0.0 && value > -rounding { 0.0 } else { value };
     }
-    let rule: &[(f64, f64)] = if distance < 12.0 * ss.radius { &GAUSS3 } else { &GAUSS2 };
+    let rule: &[(f64, f64)] = if distance < 16.0 * ss.radius { &GAUSS3 } else { &GAUSS2 };
     let at = |x: DVec3| -lambert(x, ss.normal, large);
     match *small {
         [p, q, r] => integrate([p, q, r, r], rule, at),
@@ -303,10 +306,10 @@ mod tests {
             let c = centroid(p);
             Side { normal: v.normalize(), centre: c, radius: radius_about(p, c), area: v.length() }
         };
-        for d in [3.6, 4.0, 6.0, 9.0, 10.0, 20.0] {
+        for d in [4.5, 6.0, 9.0, 13.0, 20.0] {
             let b = quad([0.7 * d, 0.0, 0.7 * d], [0.0, 0.9, 0.1], [0.6, 0.1, -0.8]);
             let (far, near) = (exchange(&a, &side(&a), &b, &side(&b)), contour(&a, &b, d * d));
-            assert!((far / near - 1.0).abs() < 3e-6, "{d}: {far} {near} {:e}", far / near - 1.0);
+            assert!((far / near - 1.0).abs() < 2e-6, "{d}: {far} {near} {:e}", far / near - 1.0);
         }
     }
 

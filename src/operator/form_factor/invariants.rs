@@ -40,17 +40,37 @@ impl Invariants {
                 let f = f64::from(f);
                 sum += f;
                 out.smallest = out.smallest.min(f);
-                out.largest = out.largest.max(f);
+                out.largest = worst(out.largest, f);
                 let (there, back) = (factors.area[i] * f, factors.area[j] * f64::from(factors.f[j * n + i]));
                 let scale = there.abs().max(back.abs());
                 if i < j && scale > 0.0 {
-                    out.reciprocity = out.reciprocity.max((there - back).abs() / scale);
+                    out.reciprocity = worst(out.reciprocity, (there - back).abs() / scale);
                 }
             }
-            out.closure = out.closure.max((1.0 - sum).abs());
+            out.closure = worst(out.closure, (1.0 - sum).abs());
             out.row_sum_min = out.row_sum_min.min(sum);
-            out.row_sum_max = out.row_sum_max.max(sum);
+            out.row_sum_max = worst(out.row_sum_max, sum);
         }
         out
+    }
+}
+
+/// The larger of the two, and NaN if there is one: `f64::max` would hide it.
+fn worst(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn broken_matrices_show() {
+        let of = |f: [f32; 4]| FormFactors { n: 2, f: f.to_vec(), area: vec![1.0, 2.0], rays: 0 }.invariants();
+        assert!(of([f32::NAN, 0.5, 0.25, 0.75]).closure.is_nan());
+        let good = of([0.5, 0.5, 0.25, 0.75]);
+        assert_eq!((good.closure, good.reciprocity, good.smallest, good.largest), (0.0, 0.0, 0.25, 0.75));
+        assert_eq!(of([0.5, 0.5, 0.5, 0.5]).reciprocity, 0.5);
+        assert_eq!(of([0.5, 0.75, 0.375, 0.75]).row_sum_max, 1.25);
     }
 }

@@ -86,8 +86,8 @@ impl FormFactors {
                 return;
             }
             let mut work = Scratch::default();
-            for j in i..n {
-                row[j] = (pairs.exchange(i, j, &mut work) / area[i]) as f32;
+            for (j, entry) in row.iter_mut().enumerate().skip(i) {
+                *entry = (pairs.exchange(i, j, &mut work) / area[i]) as f32;
             }
             rays.fetch_add(work.rays, Relaxed);
             let done = done.fetch_add(1, Relaxed) + 1;
@@ -152,9 +152,9 @@ impl Pairs<'_> {
     /// Aᵢ Fᵢⱼ.
     fn exchange(&self, i: usize, j: usize, work: &mut Scratch) -> f64 {
         let (a, b) = (&self.patches[i], &self.patches[j]);
-        if let (Some((_, radius)), true) = (a.ball, a.ball == b.ball && a.primitive == b.primitive) {
+        if let (Some((_, radius)), true) = (a.ball, a.ball == b.ball) {
             // a ball seen from outside is convex: no point of it sees another
-            if a.is_concave() != b.is_concave() || !a.is_concave() {
+            if !(a.is_concave() && b.is_concave()) {
                 return 0.0;
             }
             let clear = a.stretch * a.flat_area * b.stretch * b.flat_area / (2.0 * TAU * radius * radius);
@@ -205,5 +205,97 @@ impl Pairs<'_> {
         });
         *rays += u64::from(traced);
         share
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::operator::patches::BruteForce;
+    use crate::scene::description::*;
+    use glam::DVec3;
+
+    /// A room with a turned block, a ball and a disk in it.
+    fn clutter() -> Description {
+        let geometries = [
+            Geometry::Box { min: DVec3::NEG_ONE, max: DVec3::ONE, rotate_y: 0.0, inward: true },
+            Geometry::Box {
+                min: DVec3::new(-0.6, -1.0, -0.6),
+                max: DVec3::new(0.0, 0.1, 0.0),
+                rotate_y: 20.0,
+                inward: false,
+            },
+            Geometry::Sphere { center: DVec3::new(0.4, -0.3, 0.3), radius: 0.3, z: [-1.0, 1.0], inward: false },
+            Geometry::Disk { center: DVec3::new(0.1, 0.7, 0.0), normal: DVec3::new(0.2, -1.0, 0.1), radius: 0.3 },
+        ];
+        let shape = |geometry| Shape { name: "s".into(), geometry, material: 0, emission: DVec3::ZERO };
+        Description {
+            name: "clutter".into(),
+            camera: CameraDescription { origin: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov: 40.0, size: [8, 8] },
+            materials: vec![Material { name: "m".into(), reflectance: DVec3::splat(0.5), sides: Sides::Front }],
+            shapes: geometries.map(shape).to_vec(),
+            expect: None,
+        }
+    }
+
+    #[test]
+    fn what_the_shaft_test_leaves_out_never_blocks() {
+        let scene = clutter();
+        let patches = Patches::new(&scene, 150).unwrap();
+        let caster = BruteForce::new(&scene);
+        let blockers: Vec<Blocker> = patches.primitives().iter().map(Blocker::new).collect();
+        let (mut ruled_out, mut tried) = (0, 0);
+        for (i, a) in patches.iter().enumerate() {
+            for (j, b) in patches.iter().enumerate().skip(i + 1) {
+                if a.primitive == b.primitive {
+                    continue;
+                }
+                let (mut ca, mut cb) = (Vec::new(), Vec::new());
+                let Some((pa, pb)) = facing(&a.polygon, &side(a), &b.polygon, &side(b), &mut ca, &mut cb) else {
+                    continue;
+                };
+                let (ea, eb) = (End::new(a, pa), End::new(b, pb));
+                let own = |k: usize| (k == a.primitive && a.ball.is_none()) || (k == b.primitive && b.ball.is_none());
+                let out: Vec<u32> = (0..blockers.len())
+                    .filter(|k| own(*k) || !blockers[*k].may_block(&ea, &eb))
+                    .map(|k| k as u32)
+                    .collect();
+                tried += blockers.len();
+                ruled_out += out.len();
+                let fine = Sampling { rays: 40, refined: 40 };
+                let pair = (i * patches.len() + j) as u64;
+                let (share, _) = visible_share(fine, (a, pa), (b, pb), true, pair, |x, y| {
+                    // a point below the true horizon of the other is no pair of the operator
+                    let r = y.position - x.position;
+                    x.normal.dot(r) <= 0.0 || y.normal.dot(r) >= 0.0 || caster.visible_among(x, y, &out)
+                });
+                assert_eq!(share, 1.0, "{i} {j}");
+            }
+        }
+        assert!(ruled_out * 8 > tried * 7, "{ruled_out} of {tried}: the test is not sharp");
+    }
+
+    #[test]
+    fn the_result_does_not_depend_on_threads_and_can_be_stopped() {
+        let scene = clutter();
+        let patches = Patches::new(&scene, 100).unwrap();
+        let caster = BruteForce::new(&scene);
+        let make = |watch| FormFactors::new(&patches, &caster, Sampling::default(), watch);
+        let in_pool = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| make(Watch::default()).unwrap())
+        };
+        assert_eq!(in_pool(1), in_pool(3));
+
+        let stop = AtomicBool::new(false);
+        let seen = AtomicUsize::new(0);
+        let progress = |done: usize, all: usize| {
+            assert_eq!(all, patches.len());
+            seen.fetch_max(done, Relaxed);
+            stop.store(done >= 10, Relaxed);
+        };
+        assert_eq!(make(Watch { progress: Some(&progress), stop: Some(&stop) }), Err(Stopped));
+        assert!(seen.into_inner() < patches.len());
     }
 }

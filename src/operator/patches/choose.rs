@@ -117,7 +117,7 @@ pub(super) fn cell_area(regions: &[Region], n: usize) -> f64 {
     let whole: f64 = regions.iter().map(Region::area).sum();
     let (mut fine, mut coarse) = (whole / (4 * n + 4 * regions.len()) as f64, whole);
     // invariant: count(fine) ≥ n > count(coarse), unless even the coarsest mesh has n patches
-    if count(coarse) >= n {
+    if count(coarse) >= n || count(fine) == 0 {
         return coarse;
     }
     while count(fine) < n {

@@ -43,7 +43,7 @@ pub(super) struct Facet {
 }
 
 impl Grid {
-    /// Cells of about the area `a` on the band `z` of a sphere; at least 60°-wide rows of four.
+    /// Cells of about the area `a` on the band `z` of a sphere; at least 60°-wide rows of six.
     pub(super) fn sphere(center: DVec3, radius: f64, z: [f64; 2], inward: bool, a: f64) -> Self {
         let [top, bottom] = [z[1].acos(), z[0].acos()];
         let span = bottom - top;
@@ -55,7 +55,7 @@ impl Grid {
             i => (top + span * i as f64 / count as f64).cos(),
         };
         let area = |lo: f64, hi: f64| TAU * radius * radius * (hi - lo);
-        let rows = rows(count, 4, a, |i| [height(count - i), height(count - i - 1)], area);
+        let rows = rows(count, 6, a, |i| [height(count - i), height(count - i - 1)], area);
         Self { chart: Chart::Sphere { center, radius, inward }, rows }
     }
 

@@ -103,7 +103,7 @@ struct Index {
 }
 
 impl Patches {
-    /// About `n` patches of nearly equal area; at least one per uncovered side, six per disk, eight per sphere.
+    /// About `n` patches of nearly equal area; at least one per uncovered side, six per disk, eighteen per sphere.
     ///
     /// ```
     /// use fredholm::{operator::patches::Patches, scene::description::*};
@@ -126,6 +126,9 @@ impl Patches {
             return Err(SceneError::new("a mesh of 0 patches cannot hold anything").help("ask for at least one patch"));
         }
         let listed = scene.primitives();
+        if listed.is_empty() {
+            return Err(SceneError::new("the scene has no surface").help("add a shape"));
+        }
         for &(s, p) in &listed {
             let shape = &scene.shapes[s];
             if shape.material >= scene.materials.len() {
@@ -181,7 +184,9 @@ impl Patches {
             patches.indices.push(index);
         }
         if patches.list.is_empty() {
-            return Err(SceneError::new("no surface of the scene can be seen").help("add a shape"));
+            return Err(
+                SceneError::new("every surface of the scene is covered").help("check which sides face the light")
+            );
         }
         Ok(patches)
     }

@@ -1,0 +1,168 @@
+//! Chapter 1, one box, three answers: the light in a Cornell box by the series, by a path tracer and by a matrix.
+//!
+//! ```text
+//! L = E + T L = Σ T^k E,   k = 0, 1, …, K, and the tail
+//! ```
+//!
+//! Writes the figures and tables of the text into a folder and checks every claim the text makes:
+//! `fredholm chapter 1`, or `cargo run --release --example 01_one_box_three_answers -- --out DIR`.
+#![allow(clippy::print_stdout)] // a program, not the library
+
+use fredholm::report::decay::{self, Decay, Rate};
+use fredholm::report::plot::{Curve, Look};
+use fredholm::report::table::{average, significant};
+use fredholm::report::{ReportError, markdown, markdown::Claim, picture, sheet, typeset::Caption, write_atomically};
+use fredholm::scene::{Description, Scene, SceneError, load};
+use fredholm::stats::{Comparison, Criterion, Outcome, TermMeans, compare, discretisation};
+use fredholm::terms::{TermImage, functional::Replicates};
+use fredholm::worlds::discrete::{Discrete, MatrixError, radiosity};
+use fredholm::worlds::sampled::{self, Estimator, Sampled};
+use fredholm::worlds::{Settings, Unobserved, surface};
+use glam::Vec3;
+use std::{error::Error, path::Path, process::ExitCode, sync::atomic::AtomicBool};
+
+// ANCHOR: setup
+fn setup() -> Result<(Description, Scene, Settings), SceneError> {
+    let small = load::Options { set: vec!["camera.size=[96, 96]".into()], ..Default::default() };
+    let room = load::scene("cornell", &small)?.description;
+    let scene = Scene::new(&room);
+    let settings = Settings { spp: 256, max_bounces: 8, patches: 600, ..Settings::default() };
+    Ok((room, scene, settings))
+}
+// ANCHOR_END: setup
+
+// ANCHOR: three_answers
+struct Answers {
+    series: Sampled,
+    path: Sampled,
+    matrix: Discrete,
+    /// ‖T^k E‖₁ by random paths, from all surfaces instead of from the eye
+    norms: Replicates,
+}
+
+fn solve(room: &Description, scene: &Scene, settings: &Settings) -> Result<Answers, MatrixError> {
+    let (nobody, never) = (&Unobserved, &AtomicBool::new(false)); // who watches, and when to stop
+    Ok(Answers {
+        series: sampled::terms(scene, Estimator::Single, settings, nobody, never),
+        path: sampled::path(scene, settings, nobody, never),
+        matrix: radiosity(room, scene, settings, nobody, never)?,
+        norms: surface::norms(scene, Estimator::Single, 1 << 18, settings, nobody, never),
+    })
+}
+// ANCHOR_END: three_answers
+
+// ANCHOR: compare
+fn verdicts(a: &Answers) -> [(&'static str, Comparison); 2] {
+    let (fine, coarse) = (&a.matrix.fine.series, &a.matrix.coarse.series);
+    let criterion = Criterion::default();
+    [
+        ("series − path tracer", compare(&a.series.series, &a.path.series, &criterion, &[])),
+        ("series − matrix", compare(&a.series.series, fine, &criterion, &discretisation(fine, coarse))),
+    ]
+}
+// ANCHOR_END: compare
+
+// ANCHOR: claim
+fn claims(scene: &Scene, a: &Answers, [(_, path), (_, matrix)]: &[(&str, Comparison); 2]) -> Vec<Claim> {
+    let k = a.norms.mean.len() - 2; // K: the tail has a place of its own
+    let proved = |c: &Comparison| {
+        let rows = c.rows.iter().filter(|row| row.outcome == Outcome::Agrees);
+        format!("agree: {}", rows.map(|row| row.name.as_str()).collect::<Vec<_>>().join(", "))
+    };
+    let (same_as_path, same_as_matrix) = (proved(path), proved(matrix));
+
+    // norms and bounds in every channel, with five standard errors to spare
+    let g = scene.max_albedo().as_dvec3();
+    let emission = a.matrix.matrix.surface[0]; // known without noise
+    let seen = |n: usize| a.norms.estimate(n..n + 1).mean + 5.0 * a.norms.estimate(n..n + 1).std_error;
+    let of_bound = |n: usize| (seen(n) / (emission * g.powf(n as f64))).max_element();
+    let term = (1..=k).map(of_bound).fold(0.0, f64::max);
+    let tail = (seen(k + 1) / (a.norms.mean[k] * g / (1.0 - g))).max_element();
+
+    let lit = (1..=k).find(|&n| on_ceiling(scene, &a.series.terms[n]) > 0.0).unwrap_or(0);
+    let left = average(&a.series.series.image().tail).0 / average(&a.series.series.image().total).0;
+    let claim = |holds: bool, says, found: String| Claim { says, found, holds };
+    vec![
+        claim(same_as_path.contains("total"), "terms and tail add up to the path tracer's image", same_as_path),
+        claim(same_as_matrix.contains("T1"), "direct light is the matrix's", same_as_matrix.clone()),
+        claim(same_as_matrix.contains("total"), "and so is the whole", same_as_matrix),
+        claim(matrix.outcome != Outcome::Differs, "no term is proved to differ", format!("{:?}", matrix.outcome)),
+        claim(term < 1.0, "no term exceeds its bound", format!("at most {} of it", percent(term))),
+        claim(tail < 1.0, "nor does the tail", format!("at most {} of it", percent(tail))),
+        claim(lit == 2, "k = 2 is the first to light the ceiling", format!("k = {lit}")),
+        claim(left.log10().round() == -2.0, "about a hundredth is left after k = 8", percent(left)),
+    ]
+}
+// ANCHOR_END: claim
+
+/// The mean of an image over the pixels in which nothing but the ceiling is seen.
+fn on_ceiling(scene: &Scene, image: &TermImage) -> f64 {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+    let ceiling = |p: Vec3| p.y > 0.999; // the lamp hangs a centimetre lower
+    let seen = |pixel: u32, u: [f32; 2]| scene.trace(scene.camera.origin, scene.camera.direction(pixel, u));
+    let inside = |pixel: &usize| corners.iter().all(|&u| seen(*pixel as u32, u).is_some_and(|hit| ceiling(hit.p)));
+    let pixels: Vec<[f32; 3]> = (0..image.mean.len()).filter(inside).map(|p| image.mean[p]).collect();
+    picture::mean(&pixels)
+}
+
+fn percent(x: f64) -> String {
+    format!("{} %", significant(100.0 * x, 2))
+}
+
+const NORM: &str = "all surfaces, $\\norm{\\T^k E}_1$";
+
+/// Solves, draws, writes, and checks: true if every claim of the chapter holds.
+///
+/// # Errors
+/// If the folder cannot be written.
+pub fn run(out: &Path) -> Result<bool, Box<dyn Error>> {
+    let (room, scene, settings) = setup()?;
+    let answers = solve(&room, &scene, &settings)?;
+    let verdicts = verdicts(&answers);
+    let claims = claims(&scene, &answers, &verdicts);
+
+    std::fs::create_dir_all(out)?;
+    let write = |name: &str, text: String| write_atomically(&out.join(name), text.as_bytes());
+    let surface = answers.norms.functional("surface");
+    let images = [&answers.series.series, &answers.matrix.fine.series, &answers.path.series].map(|s| s.image());
+    let columns = [("series", images[0]), ("matrix", images[1]), ("path tracer", images[2]), (NORM, &surface)];
+    write("terms.md", markdown::terms(&columns))?;
+    write("verdicts.md", verdicts.each_ref().map(|(name, c)| markdown::verdicts(name, c)).join("\n"))?;
+    write("claims.md", markdown::claims(&claims))?;
+    figures(out, &scene, &answers, &settings)?;
+    for Claim { says, found, holds } in &claims {
+        println!("{} {says}: {found}", if *holds { '✓' } else { '✗' });
+    }
+    println!("figures and tables in {}", out.display());
+    Ok(claims.iter().all(|c| c.holds))
+}
+
+fn figures(out: &Path, scene: &Scene, a: &Answers, settings: &Settings) -> Result<(), ReportError> {
+    let caption = Caption { command: "fredholm chapter 1".into(), seed: settings.seed, scene: "cornell".into() };
+    let [w, h] = scene.camera.size.map(|n| n as usize);
+    let images: Vec<&[[f32; 3]]> = a.series.terms.iter().map(|t| t.mean.as_slice()).collect();
+    let note = format!("{} paths per pixel and term", settings.spp);
+    sheet::terms(w, h, &images, Some(&a.series.total.mean), &note, &caption)?.picture.write(&out.join("terms.png"))?;
+
+    let matrix: Vec<f64> = a.matrix.matrix.surface.iter().map(|v| v.element_sum() / 3.0).collect();
+    let (series, k) = (TermMeans::from(&a.norms), settings.max_bounces);
+    let g = f64::from(scene.max_albedo().max_element());
+    let curve = |label: &str, terms: &TermMeans, look| Curve { label: label.into(), points: decay::norms(terms), look };
+    let surface =
+        vec![curve("series", &series, Look::SINGLE), curve("matrix", &TermMeans::exact(&matrix), Look::MATRIX)];
+    let lines = [Some(Rate::guaranteed(g, matrix[0])), Rate::tail_bound(g, k, series.mean[k])];
+    let lines = lines.into_iter().flatten().collect();
+    let figure = Decay { title: "How the terms decay".into(), surface, lines, ..Decay::default() };
+    decay::draw(&figure, &caption)?.write(out, "decay")?;
+    Ok(())
+}
+
+fn main() -> Result<ExitCode, Box<dyn Error>> {
+    let mut args = std::env::args().skip(1);
+    let out = match (args.next().as_deref(), args.next()) {
+        (None, _) => "fredholm-out/chapter-01".into(),
+        (Some("--out"), Some(folder)) => folder,
+        _ => return Err("usage: 01_one_box_three_answers [--out DIR]".into()),
+    };
+    Ok(ExitCode::from(u8::from(!run(Path::new(&out))?)))
+}

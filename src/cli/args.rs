@@ -1,0 +1,291 @@
+//! What can be typed.
+
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use fredholm::estimator::{Roulette, Technique};
+use fredholm::scene::bsdf::diffuse::Sampling;
+use std::path::PathBuf;
+
+const TOUR: &str = "The operator view of global illumination: L = E + T L = Σ T^k E, measured.
+
+With no arguments: the tour. A Cornell box is solved three ways (each bounce by its own estimator,
+the full path tracer, the radiosity matrix), compared with error bars, and written to
+fredholm-out/cornell with pictures, plots and a report.";
+
+const EXAMPLES: &str = "Examples:
+  fredholm                                        the tour
+  fredholm series cornell --spp 64                each bounce, and their sum
+  fredholm series box.toml --set materials.white.reflectance=[0.6,0.6,0.6]
+  fredholm compare fredholm-out/cornell other     verdict per term
+  fredholm info                                   the built-in scenes
+  fredholm info cornell                           materials, lights, bounds
+
+Options: `fredholm tour --help`, `fredholm series --help`, …
+
+Exit codes: 0 ok, 1 a comparison failed, 2 usage, 3 scene or file,
+130 interrupted (what exists is saved).";
+
+/// The operator view of global illumination: L = E + T L = Σ T^k E, measured
+#[derive(Debug, Parser)]
+#[command(name = "fredholm", version, about = TOUR, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+pub struct Cli {
+    /// What to do; nothing is the tour
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Arguments of the tour
+    #[command(flatten)]
+    pub tour: Run,
+}
+
+/// Parses the command line, or prints help or what is wrong with it and ends the program.
+pub fn read() -> Cli {
+    // the tour's options are explained by `fredholm tour --help`; here they would hide the commands
+    let mut matches = Cli::command().mut_args(|arg| arg.hide(true)).get_matches();
+    Cli::from_arg_matches_mut(&mut matches).unwrap_or_else(|e| e.exit())
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// One scene solved three ways and compared: what happens with no arguments
+    Tour(Run),
+    /// Each T^k E and the sum, beside the path tracer and the radiosity matrix
+    #[command(after_help = "Examples:
+  fredholm series cornell --spp 256 --max-bounces 8 --size 128x128 --seed 1 -o a
+  fredholm series furnace --technique scatter --sampling cosine --spp 64 --json
+  fredholm series scene.obj --emit lamp=17,12,4
+
+How k counts: k is the number of applications of T, so k = 0 is emission seen directly, k = 1 direct
+light, k = 2 one bounce of indirect light. --max-bounces K keeps k = 0..=K; everything longer is the
+tail. (Elsewhere the same images are Mitsuba's max_depth = K + 1 and pbrt's maxdepth = K.)")]
+    Series(Run),
+    /// The full path tracer alone
+    #[command(after_help = "Example:\n  fredholm render cornell --spp 256 --roulette constant:0.3@2")]
+    Render(Run),
+    /// The matrix alone: form factors, terms, solve
+    #[command(after_help = "Example:\n  fredholm radiosity cornell --patches 2400 --orders")]
+    Radiosity(Run),
+    /// Two results: verdict per term, z map
+    #[command(
+        after_help = "Agrees: the difference is proved smaller than δ = 2 % of the term + 1e-4 of the whole image.
+Differs: it is proved not to be zero.
+Inconclusive: more samples are needed (how many is printed); exit code 1, as for Differs.
+
+Example:
+  fredholm series cornell --seed 1 -o a
+  fredholm series cornell --seed 2 -o b
+  fredholm compare a b"
+    )]
+    Compare(Compare),
+    /// Scenes, materials, lights, bounds on the norm of T
+    #[command(after_help = "Examples:
+  fredholm info            the built-in scenes
+  fredholm info cornell
+  fredholm info box.toml   also a check of the file")]
+    Info(Info),
+    /// Runs a chapter of the book
+    Chapter(Chapter),
+}
+
+/// A result as a choice on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum WorldName {
+    /// Each term by its own estimator
+    Terms,
+    /// The full path tracer
+    Path,
+    /// The matrix over patches
+    Radiosity,
+}
+
+/// Estimators of the terms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EstimatorName {
+    /// Each term from paths of its own
+    Single,
+    /// All terms from the prefixes of one path
+    Prefix,
+}
+
+/// Arguments of everything that renders.
+#[derive(Clone, Debug, Args)]
+pub struct Run {
+    /// Built-in scene, .toml, or .obj
+    #[arg(value_name = "SCENE", default_value = "cornell")]
+    pub scene: String,
+    /// Samples per pixel
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub spp: u32,
+    /// Seed: same seed, same bits, for any number of threads
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Image size in pixels [default: the scene's; 192x192 for the tour]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// K: keep the terms k = 0..=K; k counts applications of T
+    #[arg(long, value_name = "K", default_value_t = 8, value_parser = clap::value_parser!(u16).range(0..=1000))]
+    pub max_bounces: u16,
+    /// How the terms are estimated: single, prefix
+    ///
+    /// single: each term from paths of its own; prefix: all terms from the prefixes of one path.
+    /// The tour runs both.
+    #[arg(long, value_enum, default_value_t = EstimatorName::Prefix, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
+    pub estimator: EstimatorName,
+    /// How light is found: scatter, connect, mis
+    ///
+    /// scatter: paths must hit it; connect: next-event estimation; mis: both, weighed.
+    #[arg(long, default_value = "mis", value_parser = technique, value_name = "NAME")]
+    pub technique: Technique,
+    /// How directions are drawn: uniform, cosine, bsdf
+    #[arg(long, default_value = "bsdf", value_parser = sampling, value_name = "NAME")]
+    pub sampling: Sampling,
+    /// Russian roulette: none, lecture, constant:Q@V, … (all: --help)
+    ///
+    /// [default: render: lecture; else none for k ≤ K, then albedo]
+    ///
+    /// q is the probability of TERMINATION, tested at vertex v = 0, 1, … after it is scored:
+    ///   none                 never; nothing longer than K is estimated
+    ///   lecture              q = 0, 0, then 0.5
+    ///   constant:Q[@V]       q = Q from vertex V on (2)
+    ///   table:q0,q1,…        as listed, the last for all that follow
+    ///   albedo[@V]           q = 1 − albedo from vertex V on (2)
+    ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
+    #[arg(long, value_name = "SCHEDULE", verbatim_doc_comment)]
+    pub roulette: Option<Roulette>,
+    /// Which worlds to solve, with commas: terms, path, radiosity
+    ///
+    /// terms: each term by its own estimator; path: the full path tracer;
+    /// radiosity: the matrix over patches. [default: all; render and radiosity: their own]
+    #[arg(
+        long,
+        value_enum,
+        value_delimiter = ',',
+        value_name = "WORLD,…",
+        hide_possible_values = true,
+        verbatim_doc_comment
+    )]
+    pub worlds: Vec<WorldName>,
+    /// About how many patches the matrix has [default: 600; 2400 for the tour]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20_000))]
+    pub patches: Option<u32>,
+    /// Show patches as they are, without gathering a last bounce from them
+    #[arg(long)]
+    pub read_patches: bool,
+    /// Fit the order of convergence of the radiosity from three meshes
+    #[arg(long)]
+    pub orders: bool,
+    /// Override a key of the scene
+    ///
+    /// For example materials.white.reflectance=[0.6,0.6,0.6]
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Let a material emit: lamp=17,12,4
+    #[arg(long, value_name = "MATERIAL=R,G,B")]
+    pub emit: Vec<String>,
+    /// Output folder [default: fredholm-out/<scene>]
+    ///
+    /// The same command replaces its own output. Where another run's stands, the default becomes
+    /// <scene>-2, and a folder given here is refused without --force.
+    #[arg(short, long, value_name = "DIR", verbatim_doc_comment)]
+    pub out: Option<PathBuf>,
+    /// Replace what another run left in the output folder
+    #[arg(long)]
+    pub force: bool,
+    /// Threads [default: all]; results do not depend on it
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+    /// Print summary.json instead of tables
+    #[arg(long)]
+    pub json: bool,
+    /// No progress
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// More about the matrix and the cost
+    #[arg(short, long)]
+    pub verbose: bool,
+}
+
+/// Arguments of `compare`.
+#[derive(Clone, Debug, Args)]
+pub struct Compare {
+    /// A result: an output folder or its summary.json
+    pub a: PathBuf,
+    /// Another result
+    pub b: PathBuf,
+    /// δ as a fraction of the term
+    #[arg(long, default_value_t = 0.02, value_name = "FRACTION", value_parser = fraction)]
+    pub of_term: f64,
+    /// δ as a fraction of the whole image, added
+    #[arg(long, default_value_t = 1e-4, value_name = "FRACTION", value_parser = fraction)]
+    pub of_total: f64,
+    /// Chance that equal results are told apart anywhere
+    #[arg(long, default_value_t = 1e-3, value_name = "P", value_parser = probability)]
+    pub alpha: f64,
+    /// Where the z map goes [default: fredholm-out/compare]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace what another run left in the output folder
+    #[arg(long)]
+    pub force: bool,
+    /// Print JSON instead of tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `info`.
+#[derive(Clone, Debug, Args)]
+pub struct Info {
+    /// Built-in scene, .toml, or .obj; nothing lists the built-in scenes
+    pub scene: Option<String>,
+    /// Override a key of the scene
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Let a material emit
+    #[arg(long, value_name = "MATERIAL=R,G,B")]
+    pub emit: Vec<String>,
+    /// Print JSON instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `chapter`.
+#[derive(Clone, Debug, Args)]
+pub struct Chapter {
+    /// Number of the chapter; nothing lists them
+    pub number: Option<u32>,
+    /// Folder for its figures [default: fredholm-out/chapter-<number>]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+fn size(s: &str) -> Result<[u32; 2], String> {
+    let wrong = || format!("`{s}` is not a size such as 128x128 (each side 1 to 32768)");
+    let (w, h) = s.split_once('x').ok_or_else(wrong)?;
+    let side = |s: &str| s.parse().ok().filter(|n| (1..=32768).contains(n)).ok_or_else(wrong);
+    Ok([side(w)?, side(h)?])
+}
+
+fn fraction(s: &str) -> Result<f64, String> {
+    s.parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite()).ok_or(format!("`{s}` is not a number from 0 on"))
+}
+
+fn probability(s: &str) -> Result<f64, String> {
+    s.parse().ok().filter(|p| *p > 0.0 && *p < 1.0).ok_or(format!("`{s}` is not between 0 and 1"))
+}
+
+fn technique(s: &str) -> Result<Technique, String> {
+    match s {
+        "scatter" => Ok(Technique::Scatter),
+        "connect" => Ok(Technique::Connect),
+        "mis" => Ok(Technique::Mis),
+        _ => Err(format!("`{s}` is none of scatter, connect, mis")),
+    }
+}
+
+fn sampling(s: &str) -> Result<Sampling, String> {
+    match s {
+        "uniform" => Ok(Sampling::Uniform),
+        "cosine" => Ok(Sampling::Cosine),
+        "bsdf" => Ok(Sampling::Bsdf),
+        _ => Err(format!("`{s}` is none of uniform, cosine, bsdf")),
+    }
+}

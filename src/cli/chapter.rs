@@ -1,0 +1,34 @@
+//! `fredholm chapter [N]`: runs a chapter's own program, compiled in.
+
+use super::{Ending, Failure, args};
+
+#[path = "../../chapters/01_one_box_three_answers.rs"]
+#[allow(dead_code)] // its `main` is for `cargo run --example`
+mod one_box_three_answers;
+
+type Run = fn(&std::path::Path) -> Result<bool, Box<dyn std::error::Error>>;
+
+const CHAPTERS: [(u32, &str, Run); 1] = [(1, "One box, three answers", one_box_three_answers::run)];
+
+/// Runs a chapter or lists them all.
+pub fn run(args: &args::Chapter) -> Result<Ending, Failure> {
+    let Some(number) = args.number else {
+        let lines: Vec<String> = CHAPTERS.iter().map(|(n, title, _)| format!("{n:>2}  {title}")).collect();
+        super::say(&lines.join("\n"))?;
+        return Ok(Ending::Ok);
+    };
+    let Some((_, _, run)) = CHAPTERS.iter().find(|c| c.0 == number) else {
+        return Err(Failure::Usage(format!(
+            "error: there is no chapter {number}\nhelp: `fredholm chapter` lists those there are"
+        )));
+    };
+    let out = args.out.clone().unwrap_or_else(|| format!("fredholm-out/chapter-{number:02}").into());
+    match run(&out) {
+        Ok(true) => Ok(Ending::Ok),
+        Ok(false) => Ok(Ending::Failed),
+        Err(e) => {
+            let text = e.to_string();
+            Err(Failure::Input(if text.starts_with("error: ") { text } else { format!("error: {text}") }))
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! `fredholm compare A B`: two results, verdict per term, z map.
+
+use super::{Ending, Failure, args, output, write};
+use fredholm::report::{exr, summary, table, typeset::Caption, zmap};
+use fredholm::stats::{Criterion, compare, discretisation};
+use fredholm::terms::{Series, World};
+use std::path::{Path, PathBuf};
+
+/// Compares two results.
+pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
+    let (a, b) = (read(&args.a)?, read(&args.b)?);
+    if (a.1.width, a.1.height) != (b.1.width, b.1.height) {
+        return Err(Failure::Input(format!(
+            "error: the images have different sizes, {}×{} and {}×{}\nhelp: render both with the same --size",
+            a.1.width, a.1.height, b.1.width, b.1.height
+        )));
+    }
+    let criterion =
+        Criterion { of_term: args.of_term, of_total: args.of_total, alpha: args.alpha, ..Criterion::default() };
+    let Some((x, y)) = pair(&a.1, &b.1) else {
+        return Err(Failure::Input("error: one of the results holds no world\nhelp: render it again".into()));
+    };
+    // what the mesh may matter, where one side is a matrix and the other is not
+    let allowance = match (x.world, y.world) {
+        (World::Radiosity, World::Radiosity) => vec![],
+        (World::Radiosity, _) => coarse(&a.1).map_or(vec![], |c| discretisation(x, c)),
+        (_, World::Radiosity) => coarse(&b.1).map_or(vec![], |c| discretisation(y, c)),
+        _ => vec![],
+    };
+    let comparison = compare(x, y, &criterion, &allowance);
+    let verdicts = summary::verdicts("", &comparison);
+
+    let command = output::canonical_command();
+    let folder = output::folder(args.out.as_deref(), "compare", &command, args.force)?;
+    let map = z_map(&a, &b, &folder, &command)?;
+    let record = summary::Summary {
+        command: command.clone(),
+        scene: format!("{} | {}", a.1.scene, b.1.scene),
+        scene_hash: a.1.scene_hash.clone(),
+        width: a.1.width,
+        height: a.1.height,
+        verdicts: verdicts.clone(),
+        files: map.iter().map(|_| "z.png".to_string()).chain(["summary.json".to_string()]).collect(),
+        ..summary::Summary::default()
+    };
+    let old = output::left_by_the_last_run(&folder);
+    summary::write(&folder.join("summary.json"), &record)?;
+    output::remove_stale(&folder, &old, &record.files);
+
+    if args.json {
+        super::say(&serde_json::to_string_pretty(&comparison)?)?;
+    } else {
+        let line = |name: char, path: &Path, world: &Series, s: &summary::Summary| {
+            let (path, world) = (path.display(), &world.label);
+            format!("{name}  {path}: {world}\n   scene {} ({}), seed {}, {} spp", s.scene, s.scene_hash, s.seed, s.spp)
+        };
+        let mut head = format!("{}\n{}", line('A', &args.a, x, &a.1), line('B', &args.b, y, &b.1));
+        if a.1.command == b.1.command {
+            head += "\nwarning: both were made by the same command with the same seed: equal bits prove nothing";
+        }
+        let mut foot = write::judgement(&comparison);
+        if let Some((two, three)) = map {
+            foot += "\nz map: ";
+            foot += &if two.is_finite() {
+                let (two, three) = (100.0 * two, 100.0 * three);
+                format!("{two:.1} % of the pixels beyond 2 (4.6 % if equal), {three:.2} % beyond 3 (0.27 %)")
+            } else {
+                "no pixel has a known error".into()
+            };
+            foot += &format!("\n       {}", folder.join("z.png").display());
+        }
+        super::say(&super::paragraphs(&[head, table::verdicts(&verdicts), foot]))?;
+    }
+    Ok(if comparison.outcome == fredholm::stats::Outcome::Agrees { Ending::Ok } else { Ending::Failed })
+}
+
+type Result2 = (PathBuf, summary::Summary);
+
+fn read(path: &Path) -> Result<Result2, Failure> {
+    let (folder, file) = if path.is_dir() {
+        (path.to_path_buf(), path.join("summary.json"))
+    } else {
+        (path.parent().unwrap_or(Path::new(".")).to_path_buf(), path.to_path_buf())
+    };
+    Ok((folder, summary::read(&file)?))
+}
+
+/// The same world on both sides if there is one, terms before path before radiosity; else the best of each.
+fn pair<'a>(a: &'a summary::Summary, b: &'a summary::Summary) -> Option<(&'a Series, &'a Series)> {
+    let of = |s: &'a summary::Summary, w: World| s.series.iter().find(|s| s.world == w);
+    let order = [World::Terms, World::Path, World::Radiosity];
+    let same = order.iter().find_map(|&w| Some((of(a, w)?, of(b, w)?)));
+    same.or_else(|| Some((order.iter().find_map(|&w| of(a, w))?, order.iter().find_map(|&w| of(b, w))?)))
+}
+
+/// The coarse mesh is written after the fine one.
+fn coarse(s: &summary::Summary) -> Option<&Series> {
+    s.series.iter().filter(|s| s.world == World::Radiosity).nth(1)
+}
+
+/// The z map of the whole images, if both runs left theirs; the fractions beyond 2 and 3.
+fn z_map(a: &Result2, b: &Result2, folder: &Path, command: &str) -> Result<Option<(f64, f64)>, Failure> {
+    let open = |r: &Result2| {
+        let file = r.0.join("terms.exr");
+        if file.exists() { exr::read(&file).map(Some) } else { Ok(None) }
+    };
+    let (Some(x), Some(y)) = (open(a)?, open(b)?) else { return Ok(None) };
+    let whole =
+        |image: &exr::Image| Some((image.layer("")?.to_vec(), image.layer(write::beauty_error(image))?.to_vec()));
+    let (Some((m, s)), Some((n, t))) = (whole(&x), whole(&y)) else { return Ok(None) };
+    let z = write::z_values((&m, &s), (&n, &t));
+    let caption = Caption { command: command.to_string(), seed: a.1.seed, scene: a.1.scene.clone() };
+    let map = zmap::draw("z of the whole image: A − B", x.width, x.height, &z, &caption)?;
+    map.picture.write(&folder.join("z.png"))?;
+    Ok(Some((map.beyond_2, map.beyond_3)))
+}

@@ -1,0 +1,92 @@
+//! What is refused before a run starts, because it could only end badly.
+
+use super::Failure;
+use super::args::WorldName;
+use fredholm::math::{Key, Purpose, Rng};
+use fredholm::operator::{SceneTransport, Transport};
+use fredholm::scene::{Scene, SurfaceSensor};
+use fredholm::worlds::Settings;
+use fredholm::worlds::discrete::MatrixError;
+
+/// The sums of all terms, pixels and replicates are held at once: better refused now than killed later.
+pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
+    let replicates = u64::from(settings.spp.min(16));
+    let bytes = u64::from(w) * u64::from(h) * (settings.max_bounces as u64 + 2) * (replicates + 2) * 24;
+    // where the system does not say what is free, the allocator has the last word
+    let Some(free) = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| available(&text)) else {
+        return Ok(());
+    };
+    if bytes <= free {
+        return Ok(());
+    }
+    let gib = |b: u64| b as f64 / f64::from(1 << 30);
+    let (need, have) = (gib(bytes), gib(free));
+    Err(Failure::Usage(format!(
+        "error: {w}×{h} pixels with terms up to k = {} need {need:.1} GiB of memory; {have:.1} GiB are free\n\
+         help: choose a smaller --size or --max-bounces",
+        settings.max_bounces
+    )))
+}
+
+/// A side of a primitive is at least one patch, and the matrix is dense. Where the radiosity was not asked for by name it is
+/// left out of scenes with many primitives; asked for by name it is refused beyond what any machine holds.
+pub fn fits_in_a_matrix(scene: &Scene, worlds: &mut Vec<WorldName>, asked: bool) -> Result<(), Failure> {
+    const COMFORTABLE: usize = 4000;
+    const POSSIBLE: usize = 20_000;
+    let sides = (0..scene.sides()).filter(|&s| scene.takes_part(s)).count();
+    if !worlds.contains(&WorldName::Radiosity) || sides <= if asked { POSSIBLE } else { COMFORTABLE } {
+        return Ok(());
+    }
+    if asked {
+        return Err(Failure::Usage(format!(
+            "error: {sides} sides make a matrix of at least {sides}², more than the {POSSIBLE}² it may have\n\
+             help: leave the radiosity world out: --worlds terms,path"
+        )));
+    }
+    worlds.retain(|w| *w != WorldName::Radiosity);
+    super::note(&format!(
+        "note: no radiosity: {sides} sides are many for a dense matrix (--worlds terms,path,radiosity insists)"
+    ));
+    Ok(())
+}
+
+/// Bytes that Linux says are available.
+fn available(meminfo: &str) -> Option<u64> {
+    let line = meminfo.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|k| 1024 * k)
+}
+
+/// Refuses a scene in which a channel keeps all its light, if anything longer than K is asked for: `L = E + T L` has no
+/// solution, and paths that only absorption ends would never end.
+pub fn light_is_lost(scene: &Scene, settings: &Settings, worlds: &[WorldName]) -> Result<(), Failure> {
+    let has = |world| worlds.contains(&world);
+    let asked = has(WorldName::Radiosity)
+        || has(WorldName::Terms) && settings.roulette.ends()
+        || has(WorldName::Path) && settings.path_roulette.ends();
+    let bound = scene.max_albedo().max_element();
+    if asked && bound >= 1.0 && (0..WALKS).any(|walk| never_ends(scene, walk)) {
+        return Err(MatrixError::Singular.into());
+    }
+    Ok(())
+}
+
+/// Walks, and bounces of each: an opening of 0.1 % of the surface lets one of 5·10⁸ walks pass for closed.
+const WALKS: u32 = 16;
+const BOUNCES: usize = 20_000;
+
+/// Whether in some channel a walk still has all its light after many bounces.
+fn never_ends(scene: &Scene, walk: u32) -> bool {
+    let t = SceneTransport::new(scene);
+    let stream = |bounce| Rng::at(Key::new(0, "closed"), walk, 0, bounce, Purpose::Scatter);
+    let mut at = SurfaceSensor::new(scene).vertex(scene, &mut stream(0));
+    let mut keeps = [true; 3];
+    for bounce in 1..=BOUNCES {
+        let albedo = t.albedo(&at).to_array();
+        keeps = std::array::from_fn(|c| keeps[c] && albedo[c] >= 1.0);
+        match t.scatter(&at, &mut stream(bounce)) {
+            Some(step) if keeps != [false; 3] => at = step.state,
+            _ => return false,
+        }
+    }
+    true
+}

@@ -1,0 +1,119 @@
+//! The output folder: the same command replaces its own output, another run's is never overwritten without `--force`.
+
+use super::Failure;
+use fredholm::report::summary;
+use std::path::{Path, PathBuf};
+
+/// The folder for this command: created, and safe to write into.
+pub fn folder(asked: Option<&Path>, name: &str, command: &str, force: bool) -> Result<PathBuf, Failure> {
+    let folder = match asked {
+        Some(dir) if dir.exists() && !dir.is_dir() => {
+            return Err(refused("the output folder is a file", dir, "choose another with -o"));
+        }
+        Some(dir) if !force && !ours(dir, command) => {
+            let help = "choose another with -o, or replace it with --force";
+            return Err(refused("the output folder holds something else", dir, help));
+        }
+        Some(dir) => dir.to_path_buf(),
+        None => {
+            let base = PathBuf::from("fredholm-out");
+            let numbered = (2..).map(|i| base.join(format!("{name}-{i}")));
+            let free = |dir: &PathBuf| force || ours(dir, command);
+            std::iter::once(base.join(name)).chain(numbered).find(free).unwrap_or(base)
+        }
+    };
+    // a folder that cannot be written is better found now than after the last sample
+    let probe = folder.join(format!(".fredholm.{}.tmp", std::process::id()));
+    std::fs::create_dir_all(&folder)
+        .and_then(|()| std::fs::write(&probe, "").and_then(|()| std::fs::remove_file(&probe)))
+        .map_err(|e| {
+            refused(&format!("cannot write into the output folder: {e}"), &folder, "choose another with -o")
+        })?;
+    Ok(folder)
+}
+
+fn refused(what: &str, dir: &Path, help: &str) -> Failure {
+    Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", dir.display()))
+}
+
+/// Whether a folder is empty, absent, or the output of this very command.
+fn ours(dir: &Path, command: &str) -> bool {
+    if std::fs::read_dir(dir).map_or(!dir.exists(), |mut files| files.next().is_none()) {
+        return true;
+    }
+    summary::read(&dir.join("summary.json")).is_ok_and(|s| s.command == command)
+}
+
+/// The files that the last run left in this folder, by its own account.
+pub fn left_by_the_last_run(folder: &Path) -> Vec<String> {
+    summary::read(&folder.join("summary.json")).map_or(vec![], |s| s.files)
+}
+
+/// Removes what the last run left and this one did not replace, so that a folder never shows two results.
+pub fn remove_stale(folder: &Path, old: &[String], new: &[String]) {
+    let plain = |name: &&String| Path::new(name).file_name().is_some_and(|n| n == name.as_str());
+    for name in old.iter().filter(|n| !new.contains(n)).filter(plain) {
+        // what cannot be removed was perhaps removed by someone else; the new files are whole either way
+        let _ = std::fs::remove_file(folder.join(name));
+    }
+}
+
+/// The command line as anyone would type it again: without what does not change the result.
+pub fn canonical_command() -> String {
+    let words: Vec<String> = std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()).collect();
+    canonical(&words)
+}
+
+fn canonical(args: &[String]) -> String {
+    const WITH_VALUE: [&str; 2] = ["--out", "--threads"];
+    const ALONE: [&str; 4] = ["--force", "--json", "--quiet", "--verbose"];
+    let mut words = vec!["fredholm".to_string()];
+    let mut args = args.iter();
+    while let Some(arg) = args.next() {
+        if arg == "--" {
+            words.extend(std::iter::once(arg).chain(args.by_ref()).map(|a| quoted(a)));
+        } else if let Some(cluster) = arg.strip_prefix('-').filter(|a| !a.is_empty() && !a.starts_with('-')) {
+            // -q and -v stand alone; -o and -t take the rest of the word, or else the next one
+            if cluster.trim_start_matches(['q', 'v']).len() == 1 {
+                args.next();
+            }
+        } else if WITH_VALUE.contains(&arg.as_str()) {
+            args.next();
+        } else if !ALONE.contains(&arg.as_str()) && !WITH_VALUE.iter().any(|n| arg.starts_with(&format!("{n}="))) {
+            words.push(quoted(arg));
+        }
+    }
+    words.join(" ")
+}
+
+fn quoted(arg: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_=.,:@/+".contains(c);
+    if !arg.is_empty() && arg.chars().all(plain) {
+        arg.to_string()
+    } else {
+        format!("'{}'", arg.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::canonical;
+
+    #[test]
+    fn what_does_not_change_the_result_is_no_part_of_the_command() {
+        let of = |line: &str| canonical(&line.split(' ').map(String::from).collect::<Vec<_>>());
+        let same = [
+            "series a.toml --spp 4",
+            "series -o x a.toml --spp 4",
+            "series -ox a.toml --spp 4 -t2",
+            "series -qvo x a.toml --spp 4 -vt 2",
+            "series --out=x a.toml --threads 2 --spp 4 --force --json --quiet --verbose",
+            "series --out x a.toml -o=x --spp 4 -q",
+        ];
+        for line in same {
+            assert_eq!(of(line), "fredholm series a.toml --spp 4", "{line}");
+        }
+        assert_eq!(of("series -q -- -o.toml"), "fredholm series -- -o.toml");
+        assert_eq!(of("info a[0].toml"), "fredholm info 'a[0].toml'");
+    }
+}

@@ -1,0 +1,100 @@
+//! Progress with an ETA on stderr, and Ctrl-C.
+
+use fredholm::worlds::Observer;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, OnceLock};
+use std::time::{Duration, Instant};
+
+/// The flag that Ctrl-C sets. A second Ctrl-C ends the program at once.
+pub fn stop_flag() -> &'static AtomicBool {
+    static FLAG: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+    FLAG.get_or_init(|| {
+        let flag = Arc::new(AtomicBool::new(false));
+        let set = Arc::clone(&flag);
+        // without a handler Ctrl-C simply ends the program, which is a fair second best
+        let _ = ctrlc::set_handler(move || {
+            if set.swap(true, Ordering::SeqCst) {
+                std::process::exit(130);
+            }
+            super::note("\ninterrupted: saving what exists (again: stop at once)");
+        });
+        flag
+    })
+}
+
+/// A bar on a terminal; elsewhere a line per 10 % for work that takes more than two seconds.
+pub struct Progress {
+    quiet: bool,
+    bar: Mutex<Option<ProgressBar>>,
+    what: Mutex<(String, u64, Instant)>,
+    done: AtomicU64,
+    tenths: AtomicU64,
+    preview: Box<dyn Fn(&fredholm::terms::TermFilm) + Sync + Send>,
+}
+
+impl Progress {
+    /// `preview` is shown the film after every complete pass.
+    pub fn new(quiet: bool, preview: impl Fn(&fredholm::terms::TermFilm) + Sync + Send + 'static) -> Self {
+        Self {
+            quiet,
+            bar: Mutex::new(None),
+            what: Mutex::new((String::new(), 1, Instant::now())),
+            done: AtomicU64::new(0),
+            tenths: AtomicU64::new(0),
+            preview: Box::new(preview),
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = lock(&self.bar).take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn lock<T>(m: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    m.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+impl Observer for Progress {
+    fn begin(&self, what: &str, units: u64) {
+        self.finish();
+        *lock(&self.what) = (what.to_string(), units.max(1), Instant::now());
+        self.done.store(0, Ordering::Relaxed);
+        self.tenths.store(0, Ordering::Relaxed);
+        if !self.quiet && std::io::stderr().is_terminal() {
+            let bar = ProgressBar::new(units);
+            if let Ok(style) = ProgressStyle::with_template("{msg:32} {wide_bar} {percent:>3} %  ETA {eta}") {
+                bar.set_style(style);
+            }
+            bar.set_message(what.to_string());
+            bar.enable_steady_tick(Duration::from_millis(200));
+            *lock(&self.bar) = Some(bar);
+        }
+    }
+
+    fn advance(&self, units: u64) {
+        let done = self.done.fetch_add(units, Ordering::Relaxed) + units;
+        if self.quiet {
+            return;
+        }
+        if let Some(bar) = lock(&self.bar).as_ref() {
+            bar.set_position(done);
+            return;
+        }
+        let (what, all, since) = &*lock(&self.what);
+        let elapsed = since.elapsed().as_secs_f64();
+        let tenth = 10 * done / all;
+        if elapsed > 2.0 && tenth < 10 && self.tenths.fetch_max(tenth, Ordering::Relaxed) < tenth {
+            let eta = elapsed * (*all as f64 / done as f64 - 1.0);
+            super::note(&format!("{what}: {} %, ETA {eta:.0} s", 10 * tenth));
+        }
+    }
+
+    fn preview(&self, film: &fredholm::terms::TermFilm) {
+        (self.preview)(film);
+    }
+}

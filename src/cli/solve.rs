@@ -1,0 +1,297 @@
+//! `tour`, `series`, `render`, `radiosity`: load, solve in the worlds asked for, compare, write, print.
+
+use super::args::{EstimatorName, Run, WorldName};
+use super::progress::{Progress, stop_flag};
+use super::{Ending, Failure, guard, output, write};
+use fredholm::estimator::Roulette;
+use fredholm::report::{summary, table};
+use fredholm::scene::load::{self, Options};
+use fredholm::scene::{Description, Scene};
+use fredholm::stats::{Criterion, compare, discretisation};
+use fredholm::terms::Series;
+use fredholm::terms::functional::Replicates;
+use fredholm::worlds::discrete::{self, Discrete, MatrixError};
+use fredholm::worlds::sampled::{self, Estimator, Sampled};
+use fredholm::worlds::{Settings, Unobserved, surface};
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// Everything a run found.
+pub struct Found {
+    pub command: String,
+    pub folder: PathBuf,
+    pub description: Description,
+    pub hash: String,
+    pub scene: Scene,
+    pub settings: Settings,
+    pub threads: usize,
+    pub started: Instant,
+    /// The first is the one whose images are shown.
+    pub terms: Vec<Sampled>,
+    pub path: Option<Sampled>,
+    pub radiosity: Option<Discrete>,
+    /// Three meshes, coarse to fine, for the order of convergence: patches and image means.
+    pub orders: Vec<Series>,
+    /// Surface norms by estimator.
+    pub surface: Vec<(Estimator, Replicates)>,
+    /// Spectral radius of ρ²F/(1−q), where the path tracer's roulette is constant and the matrix is known.
+    pub second_moment: Option<f64>,
+    pub verdicts: Vec<summary::Verdict>,
+}
+
+/// What a command computes unless told otherwise.
+struct Default {
+    worlds: &'static [WorldName],
+    both_estimators: bool,
+    size: Option<[u32; 2]>,
+    roulette: Option<Roulette>,
+    patches: u32,
+}
+
+const ALL: &[WorldName] = &[WorldName::Terms, WorldName::Path, WorldName::Radiosity];
+
+/// The tour: all worlds, both estimators.
+pub fn tour(run: &Run) -> Result<Ending, Failure> {
+    solve(run, Default { worlds: ALL, both_estimators: true, size: Some([192, 192]), roulette: None, patches: 2400 })
+}
+
+/// Each T^k E and the sum.
+pub fn series(run: &Run) -> Result<Ending, Failure> {
+    solve(run, Default { worlds: ALL, both_estimators: false, size: None, roulette: None, patches: 600 })
+}
+
+/// The full path tracer, with the lecture's roulette.
+pub fn render(run: &Run) -> Result<Ending, Failure> {
+    solve(
+        run,
+        Default {
+            worlds: &[WorldName::Path],
+            both_estimators: false,
+            size: None,
+            roulette: Some(Roulette::LECTURE),
+            patches: 600,
+        },
+    )
+}
+
+/// The matrix.
+pub fn radiosity(run: &Run) -> Result<Ending, Failure> {
+    solve(
+        run,
+        Default { worlds: &[WorldName::Radiosity], both_estimators: false, size: None, roulette: None, patches: 600 },
+    )
+}
+
+fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
+    let started = Instant::now();
+    if let Some(n) = run.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
+    }
+    let command = output::canonical_command();
+
+    // the scene
+    let mut set = run.set.clone();
+    let built_in_size = if run.scene == "cornell" { default.size } else { None };
+    if let Some([w, h]) = run.size.or(built_in_size) {
+        set.push(format!("camera.size=[{w},{h}]"));
+    }
+    let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
+    for warning in &loaded.warnings {
+        super::note(&format!("warning: {warning}"));
+    }
+    let description = loaded.description;
+    let scene = Scene::new(&description);
+
+    // what to do with it
+    let max_bounces = usize::from(run.max_bounces);
+    let fallback = default.roulette.unwrap_or(Roulette::Albedo { from: 2 });
+    let roulette = run.roulette.clone();
+    let settings = Settings {
+        spp: run.spp,
+        seed: run.seed,
+        max_bounces,
+        technique: run.technique,
+        sampling: run.sampling,
+        roulette: roulette.clone().unwrap_or(fallback.clone().after(max_bounces)),
+        path_roulette: roulette.unwrap_or(fallback),
+        patches: run.patches.unwrap_or(default.patches) as usize,
+        read_patches: run.read_patches,
+    };
+    let mut worlds: Vec<WorldName> = if run.worlds.is_empty() { default.worlds.to_vec() } else { run.worlds.clone() };
+    guard::fits_in_a_matrix(&scene, &mut worlds, !run.worlds.is_empty() || default.worlds.len() == 1)?;
+    let estimators = match (worlds.contains(&WorldName::Terms), default.both_estimators, run.estimator) {
+        (false, ..) => vec![],
+        (_, true, _) => vec![Estimator::Single, Estimator::Prefix],
+        (_, _, EstimatorName::Single) => vec![Estimator::Single],
+        (_, _, EstimatorName::Prefix) => vec![Estimator::Prefix],
+    };
+    guard::fits_in_memory(&settings, description.camera.size)?;
+    guard::light_is_lost(&scene, &settings, &worlds)?;
+    let folder = output::folder(run.out.as_deref(), &description.name, &command, run.force)?;
+    let stop = stop_flag();
+    let preview = write::preview(&folder, &description, &command, run.seed);
+    let progress = Progress::new(run.quiet, preview);
+    let stopped = || stop.load(Ordering::Relaxed);
+
+    let mut found = Found {
+        hash: scene_hash(&loaded.canonical),
+        threads: rayon::current_num_threads(),
+        command,
+        folder,
+        description,
+        scene,
+        settings,
+        started,
+        terms: vec![],
+        path: None,
+        radiosity: None,
+        orders: vec![],
+        surface: vec![],
+        second_moment: None,
+        verdicts: vec![],
+    };
+
+    // the quick estimator first, so that there is something to see
+    for &estimator in estimators.iter().rev() {
+        if !stopped() {
+            let result = sampled::terms(&found.scene, estimator, &found.settings, &progress, stop);
+            found.terms.insert(0, result);
+        }
+    }
+    if worlds.contains(&WorldName::Path) && !stopped() {
+        found.path = Some(sampled::path(&found.scene, &found.settings, &progress, stop));
+    }
+    if worlds.contains(&WorldName::Radiosity) && !stopped() {
+        match discrete::radiosity(&found.description, &found.scene, &found.settings, &progress, stop) {
+            Ok(result) => found.radiosity = Some(result),
+            Err(MatrixError::Stopped) => {}
+            Err(e) => return Err(e.into()),
+        }
+        if run.orders && !stopped() {
+            found.orders = orders(&found, &progress)?;
+        }
+    }
+    if !estimators.is_empty() {
+        let paths = found.settings.spp.saturating_mul(1024).min(1 << 22);
+        for estimator in [Estimator::Single, Estimator::Prefix] {
+            if !stopped() {
+                let norms = surface::norms(&found.scene, estimator, paths, &found.settings, &progress, stop);
+                found.surface.push((estimator, norms));
+            }
+        }
+    }
+    progress.finish();
+
+    if found.terms.is_empty() && found.path.is_none() && found.radiosity.is_none() {
+        super::note("nothing to save yet");
+        let _ = std::fs::remove_dir(&found.folder); // only if it is empty
+        return Ok(Ending::Interrupted);
+    }
+    found.second_moment = second_moment(&found);
+    found.verdicts = verdicts(&found);
+    let summary = write::all(&found)?;
+    if run.json {
+        write::warnings(&found).iter().for_each(|w| super::note(&format!("warning: {w}")));
+        super::say(&serde_json::to_string_pretty(&summary)?)?;
+    } else {
+        super::say(&people(&found, &summary, run.verbose))?;
+    }
+    if stopped() {
+        return Ok(Ending::Interrupted);
+    }
+    let differs = found.verdicts.iter().any(|v| v.outcome == summary::Outcome::Differs);
+    Ok(if differs { Ending::Failed } else { Ending::Ok })
+}
+
+/// Whether the variance of the path tracer is finite can be known from the matrix; a coarse one will do.
+fn second_moment(found: &Found) -> Option<f64> {
+    let Roulette::Constant { q, .. } = found.settings.path_roulette else { return None };
+    found.path.as_ref()?;
+    let largest = |m: &discrete::Matrix| m.radiosity.second_moment_radius(1.0 - q).into_iter().fold(0.0, f64::max);
+    if let Some(r) = &found.radiosity {
+        return Some(largest(&r.matrix));
+    }
+    if found.scene.sides() > 400 {
+        return None; // not worth a matrix of its own
+    }
+    let coarse = discrete::matrix(&found.description, &found.scene, 150, 0, &Unobserved, stop_flag());
+    coarse.ok().map(|m| largest(&m))
+}
+
+/// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.
+fn orders(found: &Found, progress: &Progress) -> Result<Vec<Series>, Failure> {
+    let coarsest = (found.settings.patches / 16).max(1);
+    let matrix =
+        discrete::matrix(&found.description, &found.scene, coarsest, found.settings.max_bounces, progress, stop_flag());
+    let picture = match matrix {
+        Ok(m) => m.through_camera(&found.scene, &found.settings, progress, stop_flag()),
+        Err(MatrixError::Stopped) => return Ok(vec![]),
+        Err(e) => return Err(e.into()),
+    };
+    let Some(discrete) = &found.radiosity else { return Ok(vec![]) };
+    Ok(vec![picture.series, discrete.coarse.series.clone(), discrete.fine.series.clone()])
+}
+
+/// FNV-1a of the scene as loaded.
+fn scene_hash(canonical: &str) -> String {
+    let hash =
+        canonical.bytes().fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
+    format!("{hash:016x}")
+}
+
+fn verdicts(found: &Found) -> Vec<summary::Verdict> {
+    let criterion = Criterion::default();
+    let mut all = vec![];
+    let mut judge = |name: &str, a: &Series, b: &Series, allowance: &[fredholm::terms::Functional]| {
+        all.extend(summary::verdicts(name, &compare(a, b, &criterion, allowance)));
+    };
+    let Some(terms) = found.terms.first().map(|t| &t.series) else { return all };
+    if let Some(other) = found.terms.get(1) {
+        judge("single − prefix", terms, &other.series, &[]);
+    }
+    if let Some(path) = &found.path {
+        judge("terms − path", terms, &path.series, &[]);
+    }
+    if let Some(r) = &found.radiosity {
+        judge("terms − radiosity", terms, &r.fine.series, &discretisation(&r.fine.series, &r.coarse.series));
+    }
+    all
+}
+
+/// What a run prints: the settings, a table per world, what is known about the decay, the verdicts, the folder.
+fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
+    let s = &found.settings;
+    let spp = if summary.spp < s.spp.into() { format!("{} of {}", summary.spp, s.spp) } else { s.spp.to_string() };
+    let mut head =
+        format!("{}\nseed {}, {spp} spp, {}×{} pixels", found.command, s.seed, summary.width, summary.height);
+    if !found.terms.is_empty() || found.path.is_some() {
+        head += &format!("; technique {}", s.technique);
+    }
+    let used =
+        [(!found.terms.is_empty(), "terms", &s.roulette), (found.path.is_some(), "path tracer", &s.path_roulette)];
+    let roulette: Vec<_> = used.iter().filter(|r| r.0).map(|(_, who, r)| format!("{who} {r}")).collect();
+    if !roulette.is_empty() {
+        head += &format!("\nroulette: {} (q ends a path, survivors weigh 1/(1−q))", roulette.join(", "));
+    }
+    let mut blocks = vec![head];
+    let world = |s: &Sampled, rays: &[u64]| table::series(&s.series.label, s.series.image(), rays);
+    blocks.extend(found.terms.iter().map(|t| world(t, &t.rays)));
+    blocks.extend(found.path.iter().map(|p| world(p, &[])));
+    blocks.extend(found.radiosity.iter().map(|r| world(&r.fine, &[])));
+    let mut facts: Vec<String> = found.radiosity.iter().map(|r| write::matrix_facts(r, verbose)).collect();
+    facts.extend(write::decay_facts(found));
+    facts.extend(write::orders(&found.orders));
+    blocks.push(facts.join("\n"));
+    if !found.verdicts.is_empty() {
+        blocks.push(table::verdicts(&found.verdicts));
+    }
+    blocks.push(write::warnings(found).iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n"));
+    blocks.push(format!(
+        "{} files after {:.1} s; open {}",
+        summary.files.len(),
+        summary.seconds,
+        found.folder.join("index.html").display()
+    ));
+    super::paragraphs(&blocks)
+}

@@ -1,0 +1,85 @@
+//! Scenes for the tests of the discrete world, built without any file.
+#![allow(dead_code, unreachable_pub)]
+
+use fredholm::operator::form_factor::{FormFactors, Sampling, Watch};
+use fredholm::operator::patches::{BruteForce, Patches};
+use fredholm::scene::description::*;
+use glam::DVec3;
+
+pub fn v(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+/// A scene of (geometry, albedo, emission), all sides front only.
+pub fn scene(shapes: Vec<(Geometry, DVec3, DVec3)>) -> Description {
+    let camera = CameraDescription { origin: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov: 40.0, size: [8, 8] };
+    let material = |i: usize, reflectance: DVec3| Material { name: format!("m{i}"), reflectance, sides: Sides::Front };
+    let materials = shapes.iter().enumerate().map(|(i, s)| material(i, s.1)).collect();
+    let shape = |(i, (geometry, _, emission))| Shape { name: format!("shapes[{i}]"), geometry, material: i, emission };
+    let shapes = shapes.into_iter().enumerate().map(shape).collect();
+    Description { name: "test".into(), camera, materials, shapes, expect: None }
+}
+
+pub fn quad(origin: DVec3, edge_u: DVec3, edge_v: DVec3) -> Geometry {
+    Geometry::Quad { origin, edge_u, edge_v }
+}
+
+/// The six faces −x, +x, −y, +y, −z, +z of [0, dims], seen from inside, grey.
+pub fn room(dims: DVec3, rho: [f64; 6], e: [f64; 6]) -> Description {
+    let whole = Geometry::Box { min: DVec3::ZERO, max: dims, rotate_y: 0.0, inward: true };
+    let face = |(i, p): (usize, fredholm::scene::Primitive)| {
+        let fredholm::scene::Primitive::Parallelogram { origin, edge_u, edge_v } = p else { unreachable!() };
+        (quad(origin, edge_u, edge_v), DVec3::splat(rho[i]), DVec3::splat(e[i]))
+    };
+    scene(whole.primitives().into_iter().enumerate().map(face).collect())
+}
+
+pub const WHITE: DVec3 = DVec3::new(0.885809, 0.698859, 0.666422);
+pub const GREEN: DVec3 = DVec3::new(0.105421, 0.37798, 0.076425);
+pub const RED: DVec3 = DVec3::new(0.570068, 0.0430135, 0.0443706);
+pub const LIGHT: DVec3 = DVec3::new(18.387, 13.9873, 6.75357);
+
+/// The ±1 Cornell box with open front. The small block stands on the floor, the tall one reaches 1 cm through it.
+pub fn cornell() -> Description {
+    let block = |centre: DVec3, half: DVec3, rotate_y| Geometry::Box {
+        min: centre - half,
+        max: centre + half,
+        rotate_y,
+        inward: false,
+    };
+    let (x, y, z) = (2.0 * DVec3::X, 2.0 * DVec3::Y, 2.0 * DVec3::Z);
+    let o = DVec3::ZERO;
+    scene(vec![
+        (quad(v(-1., -1., -1.), z, x), WHITE, o),
+        (quad(v(-1., 1., -1.), x, z), WHITE, o),
+        (quad(v(-1., -1., -1.), x, y), WHITE, o),
+        (quad(v(1., -1., -1.), z, y), GREEN, o),
+        (quad(v(-1., -1., -1.), y, z), RED, o),
+        (quad(v(-0.23, 0.99, -0.18), v(0.46, 0., 0.), v(0., 0., 0.38)), o, LIGHT),
+        (block(v(0.335, -0.7, 0.38), DVec3::splat(0.3), -17.0), WHITE, o),
+        (block(v(-0.335, -0.4, -0.38), v(0.3, 0.61, 0.3), 18.25), WHITE, o),
+    ])
+}
+
+pub fn factors(scene: &Description, patches: &Patches) -> FormFactors {
+    FormFactors::new(patches, &BruteForce::new(scene), Sampling::default(), Watch::default()).unwrap()
+}
+
+/// Mesh and form factors.
+pub fn discretise(scene: &Description, n: usize) -> (Patches, FormFactors) {
+    let patches = Patches::new(scene, n).unwrap();
+    let factors = factors(scene, &patches);
+    (patches, factors)
+}
+
+/// CPU seconds of all threads so far.
+pub fn cpu_seconds() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap();
+    let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
+    (fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap()) / 100.0
+}
+
+/// Values known in closed form, by case.
+pub fn truth() -> serde_json::Map<String, serde_json::Value> {
+    serde_json::from_str(include_str!("../truth/discrete.json")).unwrap()
+}
