@@ -164,7 +164,7 @@ pub struct Run {
         verbatim_doc_comment
     )]
     pub worlds: Vec<WorldName>,
-    /// About how many patches the matrix has [default: 600; 2400 for the tour]
+    /// About how many patches [default: 600; 2400 for the tour]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20_000))]
     pub patches: Option<u32>,
     /// Show patches as they are, without gathering a last bounce from them
