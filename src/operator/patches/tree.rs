@@ -153,7 +153,6 @@ pub(super) fn share(polygon: &[DVec3], a: f64) -> usize {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
