@@ -546,6 +546,12 @@ pub fn warnings(found: &Found) -> Vec<String> {
             s.series.label, s.series.cost.non_finite
         ));
     }
+    if let Some(r) = found.radiosity.as_ref().filter(|r| r.matrix.invariants.row_sum_max > 1.01) {
+        out.push(format!(
+            "the mesh is too coarse: a row of F sums to {:.3}, and no more than 1 can leave a patch;\nraise --patches",
+            r.matrix.invariants.row_sum_max
+        ));
+    }
     if let Some(radius) = found.second_moment.filter(|&r| r >= 1.0) {
         out.push(format!(
             "the second moment of the path tracer diverges under roulette {} (spectral radius of\n\

@@ -5,7 +5,7 @@
 //! | notation | type | place |
 //! |---|---|---|
 //! | x, ω | [`Vertex`] | [`vertex`] |
-//! | ray(x, ω) | [`Scene::trace`] | [`accel`], [`shape`] |
+//! | ray(x, ω) | [`Scene::trace`] | `accel`, `packets`, `shape` |
 //! | f(ω → ω') | [`bsdf::diffuse`] | [`bsdf`] |
 //! | E(x, ω) | [`Scene::emission`] | [`emitter`] |
 //! | W(x, ω) | [`Camera`], [`SurfaceSensor`] | [`sensor`] |
