@@ -83,7 +83,7 @@ fn row<'a>(text: &'a str, head: &str) -> Vec<&'a str> {
 fn a_series_leaves_every_file_and_layer() {
     let desk = Desk::new();
     let said = desk.small("a", "series cornell --spp 32");
-    let mut files: Vec<String> = "summary.json index.html terms.exr terms.png direct.png path.png radiosity.png z.png \
+    let mut files: Vec<String> = "summary.json index.html terms.exr terms.png direct.png three.png path.png radiosity.png z.png \
          decay.png decay.svg variance.png variance.svg"
         .split_whitespace()
         .map(String::from)

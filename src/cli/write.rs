@@ -5,7 +5,7 @@ use super::{Failure, output};
 use fredholm::report::decay::{Decay, Rate, independent_ratios};
 use fredholm::report::html::{Page, Plate};
 use fredholm::report::plot::{Curve, Look, Point};
-use fredholm::report::sheet::{self, Sheet, direct_and_indirect, single};
+use fredholm::report::sheet::{self, Cell, Sheet, direct_and_indirect, single};
 use fredholm::report::typeset::{Caption, superscript};
 use fredholm::report::variance::{Falling, Variance};
 use fredholm::report::{decay, exr, html, picture, summary, variance, zmap};
@@ -178,6 +178,12 @@ fn write_pictures(found: &Found, out: &mut Files, size: [u32; 2], caption: &Capt
         let gain = whole_gain(&r.fine.total.mean, r.fine.terms.first());
         let (picture, _) = single("radiosity", w, h, &r.fine.total.mean, Some(gain))?;
         picture.picture.write(&out.add("radiosity.png"))?;
+    }
+    if let (Some(t), Some(p), Some(r)) = (found.terms.first(), &found.path, &found.radiosity) {
+        let gain = Some(whole_gain(&p.total.mean, t.terms.first()));
+        let answers = [("the series: Σ TᵏE", t), ("the path tracer", p), ("the matrix: (I − T)⁻¹E", &r.fine)];
+        let cells = answers.map(|(label, s)| Cell { label: label.into(), pixels: &s.total.mean, gain });
+        sheet::grid("One scene, three answers", w, h, &cells, caption)?.picture.write(&out.add("three.png"))?;
     }
     Ok(())
 }
@@ -379,7 +385,18 @@ fn write_page(found: &Found, out: &Files, summary: &summary::Summary) -> Result<
     let [sheet, direct, decay, variance, z] =
         ["terms.png", "direct.png", "decay.svg", "variance.svg", "z.png"].map(path);
     let mut plates = vec![];
+    let three = out.path("three.png");
     let candidates = [
+        (
+            "three.png",
+            Plate {
+                heading: "Three answers",
+                text: "The same picture by three programs: the sum of the terms, the full path tracer, and the solution of a linear \
+                       system over patches. One exposure for all.",
+                alt: "The scene by the series, by the path tracer and by radiosity",
+                path: &three,
+            },
+        ),
         ("terms.png", Plate::terms(&sheet)),
         ("direct.png", Plate::direct_and_indirect(&direct)),
         ("decay.svg", Plate::decay(&decay)),
@@ -428,6 +445,7 @@ fn meaning(name: &str) -> &'static str {
         "terms.png" => "contact sheet of the terms",
         "direct.png" => "direct light beside the whole",
         "path.png" => "the path tracer's image",
+        "three.png" => "the three answers at one exposure",
         "radiosity.png" => "the matrix solution through the camera",
         "z.png" => "standardised difference, terms − path tracer",
         "index.html" => "this page",

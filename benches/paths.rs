@@ -1,0 +1,80 @@
+//! What a path costs: `cargo bench --bench paths [-- SPP]`, one thread, Cornell box 256×256, k = 0..=8, MIS.
+//!
+//! Prints nanoseconds per path, medians of five interleaved rounds, and the ratio of keeping all terms to keeping their sum.
+#![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
+
+use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::{
+    Batch, PathTracer, Paths, Plan, Prefix, Roulette, SingleTerm, Technique, TermEstimator, TermSink,
+};
+use fredholm::math::{Columns, Key};
+use fredholm::operator::{SceneTransport, Sensor, Transport};
+use fredholm::scene::{Scene, load};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// The prefix estimator with every term added to one slot: the same walk, nothing kept apart.
+struct OnlyTheSum(Prefix);
+
+struct OneSlot<'a, S>(&'a mut S);
+
+impl<S: TermSink> TermSink for OneSlot<'_, S> {
+    fn add(&mut self, _: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
+        self.0.add(0, pixel, sample, value);
+    }
+}
+
+impl<T: Transport> TermEstimator<T> for OnlyTheSum {
+    fn slots(&self) -> usize {
+        1
+    }
+    fn sample(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        batch: &Batch,
+        paths: &mut Paths<T::Wave>,
+        sink: &mut impl TermSink,
+    ) {
+        self.0.sample(t, sensor, batch, paths, &mut OneSlot(sink));
+    }
+}
+
+fn main() {
+    let spp = std::env::args().filter_map(|a| a.parse().ok()).next().unwrap_or(32);
+    rayon::ThreadPoolBuilder::new().num_threads(1).build_global().unwrap();
+    let scene = Scene::new(&load::scene("cornell", &load::Options::default()).unwrap().description);
+    let t = SceneTransport::new(&scene);
+    let plan = |roulette| Plan { max_bounces: 8, technique: Technique::Mis, roulette };
+    let (cut, tail) = (plan(Roulette::Never), plan(Roulette::Albedo { from: 8 }));
+    let time = |what: &str| {
+        let (amount, stop, start) = (Amount::new(spp, Key::new(0, what)), AtomicBool::new(false), Instant::now());
+        let camera = &scene.camera;
+        let film = match what {
+            "prefix, all terms" => render(&t, camera, &Prefix(cut.clone()), amount, &mut Unwatched, &stop),
+            "prefix, sum only" => render(&t, camera, &OnlyTheSum(Prefix(cut.clone())), amount, &mut Unwatched, &stop),
+            "prefix, all terms and tail" => render(&t, camera, &Prefix(tail.clone()), amount, &mut Unwatched, &stop),
+            "path tracer (scalar)" => render(&t, camera, &PathTracer(cut.clone()), amount, &mut Unwatched, &stop),
+            _ => render(&t, camera, &SingleTerm(cut.clone()), amount, &mut Unwatched, &stop),
+        };
+        start.elapsed().as_secs_f64() * 1e9 / (film.shape.pixels() as f64 * f64::from(spp))
+    };
+    let names =
+        ["prefix, all terms", "prefix, sum only", "prefix, all terms and tail", "path tracer (scalar)", "single"];
+    let mut times = names.map(|_| vec![]);
+    for _ in 0..5 {
+        for (name, times) in names.iter().zip(&mut times) {
+            times.push(time(name));
+        }
+    }
+    let median = |v: &mut Vec<f64>| {
+        v.sort_by(f64::total_cmp);
+        v[v.len() / 2]
+    };
+    let medians = times.each_mut().map(median);
+    for (name, ns) in names.iter().zip(medians) {
+        println!("{name:28} {ns:7.0} ns per path");
+    }
+    println!("all terms / sum only         {:7.2}", medians[0] / medians[1]);
+    println!("all terms / path tracer      {:7.2}", medians[0] / medians[3]);
+}
