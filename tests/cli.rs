@@ -83,11 +83,12 @@ fn row<'a>(text: &'a str, head: &str) -> Vec<&'a str> {
 fn a_series_leaves_every_file_and_layer() {
     let desk = Desk::new();
     let said = desk.small("a", "series cornell --spp 32");
-    let mut files: Vec<String> = "summary.json index.html terms.exr terms.png direct.png three.png path.png radiosity.png z.png \
+    let mut files: Vec<String> =
+        "summary.json index.html terms.exr terms.png direct.png three.png path.png radiosity.png z.png \
          decay.png decay.svg variance.png variance.svg"
-        .split_whitespace()
-        .map(String::from)
-        .collect();
+            .split_whitespace()
+            .map(String::from)
+            .collect();
     files.extend((0..4).flat_map(|k| [format!("T{k:02}.png"), format!("partial_{k:02}.png")]));
     files.sort();
     assert_eq!(names(&desk.path("a")), files);

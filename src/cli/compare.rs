@@ -1,6 +1,6 @@
 //! `fredholm compare A B`: two results, verdict per term, z map.
 
-use super::{Ending, Failure, args, output, write};
+use super::{Ending, Failure, args, facts, output, write};
 use fredholm::report::{exr, summary, table, typeset::Caption, zmap};
 use fredholm::stats::{Criterion, compare, discretisation};
 use fredholm::terms::{Series, World};
@@ -58,7 +58,7 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
         if a.1.command == b.1.command {
             head += "\nwarning: both were made by the same command with the same seed: equal bits prove nothing";
         }
-        let mut foot = write::judgement(&comparison);
+        let mut foot = facts::judgement(&comparison);
         if let Some((two, three)) = map {
             foot += "\nz map: ";
             foot += &if two.is_finite() {

@@ -8,6 +8,7 @@
 pub mod args;
 mod chapter;
 mod compare;
+mod facts;
 mod guard;
 mod info;
 mod output;

@@ -2,7 +2,7 @@
 
 use super::args::{EstimatorName, Run, WorldName};
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, guard, output, write};
+use super::{Ending, Failure, facts, guard, output, write};
 use fredholm::estimator::Roulette;
 use fredholm::report::{summary, table};
 use fredholm::scene::load::{self, Options};
@@ -192,7 +192,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     found.verdicts = verdicts(&found);
     let summary = write::all(&found)?;
     if run.json {
-        write::warnings(&found).iter().for_each(|w| super::note(&format!("warning: {w}")));
+        facts::warnings(&found).iter().for_each(|w| super::note(&format!("warning: {w}")));
         super::say(&serde_json::to_string_pretty(&summary)?)?;
     } else {
         super::say(&people(&found, &summary, run.verbose))?;
@@ -279,14 +279,14 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     blocks.extend(found.terms.iter().map(|t| world(t, &t.rays)));
     blocks.extend(found.path.iter().map(|p| world(p, &[])));
     blocks.extend(found.radiosity.iter().map(|r| world(&r.fine, &[])));
-    let mut facts: Vec<String> = found.radiosity.iter().map(|r| write::matrix_facts(r, verbose)).collect();
-    facts.extend(write::decay_facts(found));
-    facts.extend(write::orders(&found.orders));
-    blocks.push(facts.join("\n"));
+    let mut lines: Vec<String> = found.radiosity.iter().map(|r| facts::matrix_facts(r, verbose)).collect();
+    lines.extend(facts::decay_facts(found));
+    lines.extend(facts::orders(&found.orders));
+    blocks.push(lines.join("\n"));
     if !found.verdicts.is_empty() {
         blocks.push(table::verdicts(&found.verdicts));
     }
-    blocks.push(write::warnings(found).iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n"));
+    blocks.push(facts::warnings(found).iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n"));
     blocks.push(format!(
         "{} files after {:.1} s; open {}",
         summary.files.len(),

@@ -67,19 +67,14 @@ impl<'s> TermEstimator<SceneTransport<'s>> for Gather<'_> {
         // K = 0: slot 1 is the tail; its direct light is found like everybody's all the same
         if !self.read_patches {
             paths.emission(t);
-            sink.add(0, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
-            let direct = |paths: &mut Paths<VertexWave>, sink: &mut _| {
-                Technique::Mis.weigh(&mut paths.samples, paths.n);
-                paths.samples.value.multiply(&paths.through, paths.n);
-                TermSink::add(sink, 1, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
-            };
+            paths.add(0, sink);
             sink.rays(1, paths.n);
             paths.connect(t, 0);
-            direct(paths, sink);
+            paths.score(Technique::Mis, 1, sink);
             sink.rays(read, paths.n);
             paths.scatter(t, 0);
             paths.emission(t);
-            direct(paths, sink);
+            paths.score(Technique::Mis, 1, sink);
         }
         let at: Vec<Option<usize>> = (0..paths.n).map(|i| self.patch(&paths.state.get(i))).collect();
         let mut value = Columns::new(paths.n);

@@ -8,7 +8,9 @@
 //!
 //! Paths that end are compacted away; the order of those that stay never changes, so sums do not depend on the wave size.
 
+use super::TermSink;
 use super::roulette::Roulette;
+use super::technique::Technique;
 use crate::math::{Columns, Key, Purpose, Rgb, Streams, columns};
 use crate::operator::{Samples, Sensor, Transport, Wave};
 use std::ops::Range;
@@ -132,6 +134,18 @@ impl<W> Paths<W> {
             }
         }
         self.compact();
+    }
+
+    /// Scores what the last batched call gave: weighted by the technique and by the throughput, into a slot.
+    pub fn score(&mut self, technique: Technique, slot: usize, sink: &mut impl TermSink) {
+        technique.weigh(&mut self.samples, self.n);
+        self.samples.value.multiply(&self.through, self.n);
+        self.add(slot, sink);
+    }
+
+    /// Adds the samples as they are to a slot.
+    pub fn add(&self, slot: usize, sink: &mut impl TermSink) {
+        sink.add(slot, &self.pixel[..self.n], &self.sample[..self.n], &self.samples.value);
     }
 
     fn compact<S>(&mut self)

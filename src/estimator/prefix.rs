@@ -33,7 +33,7 @@ impl<T: Transport> TermEstimator<T> for Prefix {
     ) {
         paths.start(t, sensor, batch);
         paths.emission(t);
-        sink.add(0, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+        paths.add(0, sink);
         sink.rays(0, batch.len());
         follow(t, &self.0, 0, paths, sink);
     }
@@ -60,9 +60,7 @@ pub(super) fn follow<T: Transport>(
         if technique.connects() {
             sink.rays(slot, paths.n);
             paths.connect(t, v);
-            technique.weigh(&mut paths.samples, paths.n);
-            paths.samples.value.multiply(&paths.through, paths.n);
-            sink.add(slot, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+            paths.score(technique, slot, sink);
         }
         if v + 1 == tail - 1 && !technique.scatters() && !plan.roulette.ends() {
             break;
@@ -76,9 +74,7 @@ pub(super) fn follow<T: Transport>(
         paths.scatter(t, v);
         if technique.scatters() {
             paths.emission(t);
-            technique.weigh(&mut paths.samples, paths.n);
-            paths.samples.value.multiply(&paths.through, paths.n);
-            sink.add(slot, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+            paths.score(technique, slot, sink);
         }
     }
 }

@@ -53,25 +53,21 @@ impl<T: Transport> TermEstimator<T> for SingleTerm {
             self.walk(t, sensor, batch, k, k.saturating_sub(1), paths, sink);
             if k == 0 {
                 paths.emission(t);
-                sink.add(0, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+                paths.add(0, sink);
                 continue;
             }
             let v = k - 1;
             if technique.connects() {
                 sink.rays(k, paths.n);
                 paths.connect(t, v);
-                technique.weigh(&mut paths.samples, paths.n);
-                paths.samples.value.multiply(&paths.through, paths.n);
-                sink.add(k, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+                paths.score(technique, k, sink);
             }
             if technique.scatters() {
                 paths.roulette(t, v, roulette);
                 sink.rays(k, paths.n);
                 paths.scatter(t, v);
                 paths.emission(t);
-                technique.weigh(&mut paths.samples, paths.n);
-                paths.samples.value.multiply(&paths.through, paths.n);
-                sink.add(k, &paths.pixel[..paths.n], &paths.sample[..paths.n], &paths.samples.value);
+                paths.score(technique, k, sink);
             }
         }
         if roulette.ends() {

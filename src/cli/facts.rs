@@ -1,0 +1,131 @@
+//! What a run says beside its tables: the judgement, facts about the matrix and the decay, warnings.
+
+use super::solve::Found;
+use fredholm::stats::{self, Comparison, TermMeans, observed_rate};
+use fredholm::terms::Series;
+use fredholm::worlds::discrete::Discrete;
+use fredholm::worlds::sampled::Estimator;
+
+/// One line: the outcome, and what would decide.
+pub fn judgement(c: &Comparison) -> String {
+    match c.outcome {
+        stats::Outcome::Agrees => {
+            format!("Agrees: every difference is proved smaller than δ ({} comparisons share α).", c.family)
+        }
+        stats::Outcome::Differs => format!("Differs: at least one of {} comparisons is rejected.", c.family),
+        stats::Outcome::Inconclusive => {
+            let reason = c.rows.iter().find_map(|r| r.reason);
+            let factor = c.rows.iter().filter_map(|r| r.needed_factor).fold(0.0, f64::max);
+            match reason {
+                Some(reason) => format!("Inconclusive: {reason}."),
+                None if factor > 0.0 => format!(
+                    "Inconclusive: the noise hides differences of the size of δ; {factor:.1} times the samples will decide."
+                ),
+                None => "Inconclusive: the results have nothing in common to compare.".into(),
+            }
+        }
+    }
+}
+
+/// What is printed about the matrix on every run.
+pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
+    let m = &r.matrix;
+    let i = &m.invariants;
+    let rho = m.spectral.each_ref().map(|s| format!("{:.5}", s.radius)).join(", ");
+    let d = (r.fine.series.image().total.mean - r.coarse.series.image().total.mean).abs();
+    let mut out = format!(
+        "F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4}, reciprocity {:.1e}\n\
+         residual of the solve {:.1e}; spectral radius ({rho})\n\
+         |R_h − R_2h| of the image mean {:.1e}",
+        i.row_sum_min,
+        i.row_sum_max,
+        i.smallest,
+        i.largest,
+        i.reciprocity,
+        m.solution.residual.max_element(),
+        d.element_sum() / 3.0
+    );
+    if verbose {
+        let norms = m.norms.each_ref().map(|(one, inf)| format!("{one:.4}/{inf:.4}")).join(", ");
+        let p = &m.radiosity.patches;
+        out += &format!(
+            "\n‖T_h‖₁/‖T_h‖∞ per channel {norms}\nsurface {:.4} m², covered {:.4} m²; visibility rays {}",
+            p.surface_area(),
+            p.covered_area(),
+            m.radiosity.factors.rays
+        );
+        out += "\nT¹ through the camera reads E itself: it tests no matrix";
+    }
+    out
+}
+
+/// What is printed about the decay.
+pub fn decay_facts(found: &Found) -> Vec<String> {
+    let mut out = vec![];
+    if let Some((_, r)) = found.surface.iter().find(|s| s.0 == Estimator::Single) {
+        let means = TermMeans::from(r);
+        out.push(match observed_rate(&means) {
+            Ok(f) => {
+                // two terms fit any line: there is nothing to test
+                let p = if f.p.is_finite() { format!("p = {:.2}", f.p) } else { "two terms: no p".into() };
+                let (first, last) = (f.window.start, f.window.end - 1);
+                format!(
+                    "observed rate of the surface norm {:.4} ± {:.4} (k = {first} to {last}, {p})\nguaranteed: ‖T‖₁ ≤ {:.4}",
+                    f.rate,
+                    f.std_error,
+                    found.scene.max_albedo().max_element()
+                )
+            }
+            Err(why) => format!("no rate fitted: {}", why.to_string().replace("; ", ";\n")),
+        });
+    }
+    out
+}
+
+/// The fitted order of convergence of the radiosity, from three meshes.
+pub fn orders(meshes: &[Series]) -> Vec<String> {
+    let [coarsest, coarse, fine] = meshes else { return vec![] };
+    let grey = |s: &Series, k: Option<usize>| {
+        let f = s.image();
+        k.map_or(f.total.mean, |k| f.terms[k].mean).element_sum() / 3.0
+    };
+    let order = |k: Option<usize>| {
+        let (a, b, c) = (grey(coarsest, k), grey(coarse, k), grey(fine, k));
+        let order = ((a - b) / (b - c)).abs().log2();
+        if order.is_finite() { format!("{order:.1}") } else { "–".into() }
+    };
+    let terms = fine.image().terms.len();
+    let per_term: Vec<String> = (2..terms).map(|k| format!("T{k} {}", order(Some(k)))).collect();
+    vec![format!(
+        "order of convergence in h, from {}: whole image {}\n{}",
+        meshes.iter().map(|m| m.label.split(' ').nth(1).unwrap_or("?")).collect::<Vec<_>>().join(", "),
+        order(None),
+        per_term.join(", ")
+    )]
+}
+
+/// What the reader must know before trusting an error bar.
+pub fn warnings(found: &Found) -> Vec<String> {
+    let mut out = vec![];
+    let all = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
+    for s in all.filter(|s| s.series.cost.non_finite > 0) {
+        out.push(format!(
+            "{}: {} samples were not finite; they are left in the sums",
+            s.series.label, s.series.cost.non_finite
+        ));
+    }
+    if let Some(r) = found.radiosity.as_ref().filter(|r| r.matrix.invariants.row_sum_max > 1.01) {
+        out.push(format!(
+            "the mesh is too coarse: a row of F sums to {:.3}, and no more than 1 can leave a patch;\nraise --patches",
+            r.matrix.invariants.row_sum_max
+        ));
+    }
+    if let Some(radius) = found.second_moment.filter(|&r| r >= 1.0) {
+        out.push(format!(
+            "the second moment of the path tracer diverges under roulette {} (spectral radius of\n\
+             ρ²F/(1−q) is {radius:.3} ≥ 1): its error bars cannot be trusted; use --roulette albedo",
+            found.settings.path_roulette
+        ));
+    }
+    out
+}
