@@ -55,7 +55,7 @@ pub fn series(label: &str, functional: &Functional, rays: &[u64]) -> String {
 
 /// The verdicts of a comparison.
 pub fn verdicts(verdicts: &[Verdict]) -> String {
-    let header = ["what", "difference", "95 % interval", "p", "detectable", "verdict"];
+    let header = ["what", "difference", "interval at 1 − α", "p", "detectable", "verdict"];
     let mut rows = vec![header.map(String::from).to_vec()];
     rows.extend(verdicts.iter().map(|v| {
         let interval = format!("[{}, {}]", signed(v.interval.0), signed(v.interval.1));
