@@ -7,7 +7,7 @@
 use super::{Batch, Paths, TermEstimator, TermSink};
 use crate::math::{Columns, Key};
 use crate::operator::{Sensor, Transport};
-use crate::terms::film::{FilmBlock, Shape, TermFilm};
+use crate::terms::film::{BLOCK, FilmBlock, Shape, TermFilm};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -41,8 +41,7 @@ pub trait Watch: Sync {
 pub struct Unwatched;
 impl Watch for Unwatched {}
 
-/// Pixels of a job, and paths of a wave.
-const BLOCK: u32 = 64;
+/// Paths of a wave.
 const WAVE: u32 = 1024;
 
 impl TermSink for FilmBlock<'_> {
@@ -91,18 +90,19 @@ fn pass<T: Transport>(
     stop: &AtomicBool,
 ) {
     let shape = film.shape;
-    let sums = film.sums.par_chunks_mut(BLOCK as usize * shape.per_pixel());
-    let counts = film.samples.par_chunks_mut(BLOCK as usize);
+    let sums = film.sums.par_chunks_mut(BLOCK * shape.per_pixel());
+    let counts = film.samples.par_chunks_mut(BLOCK);
     // the first pass is always finished, so that every pixel holds something
     let may_stop = samples.start > 0;
     let job = |paths: &mut Paths<T::Wave>, (i, (sums, counts)): (usize, (&mut [f64], &mut [u32]))| {
         if may_stop && stop.load(Ordering::Relaxed) {
             return (vec![0; shape.slots], 0);
         }
-        let first = i as u32 * BLOCK;
+        let first = (i * BLOCK) as u32;
         let pixels = first..first + counts.len() as u32;
-        let mut block = FilmBlock { shape, first, sums, non_finite: 0, rays: vec![0; shape.slots] };
-        let at_once = WAVE / BLOCK * (BLOCK / pixels.len() as u32);
+        let mut block =
+            FilmBlock { shape, first, pixels: pixels.len(), sums, non_finite: 0, rays: vec![0; shape.slots] };
+        let at_once = WAVE / BLOCK as u32 * (BLOCK / pixels.len()) as u32;
         for s in samples.clone().step_by(at_once as usize) {
             let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + at_once).min(samples.end) };
             estimator.sample(t, sensor, &batch, paths, &mut block);

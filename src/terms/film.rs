@@ -55,10 +55,21 @@ pub struct TermFilm {
     pub(crate) sums: Vec<f64>,
 }
 
+/// Pixels of a block, the part of the film that one job fills.
+pub(crate) const BLOCK: usize = 64;
+
+/// Where the sum of a slot, replicate and pixel of a block stands. A wave adds to one slot at a time, over all replicates and
+/// pixels: that is the order in memory, and a slot of a block fits the first cache.
+#[inline(always)]
+fn place(slot: usize, replicate: usize, pixel: usize, replicates: usize, pixels: usize) -> usize {
+    ((slot * replicates + replicate) * pixels + pixel) * 3
+}
+
 /// The part of a film that one thread works on: some neighbouring pixels.
 pub(crate) struct FilmBlock<'a> {
     pub(crate) shape: Shape,
     pub(crate) first: u32,
+    pub(crate) pixels: usize,
     pub(crate) sums: &'a mut [f64],
     pub(crate) non_finite: u64,
     pub(crate) rays: Vec<u64>,
@@ -69,7 +80,7 @@ impl FilmBlock<'_> {
     pub(crate) fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
         let n = pixel.len();
         let (sample, x, y, z) = (&sample[..n], &value.x[..n], &value.y[..n], &value.z[..n]);
-        let (replicates, slots) = (self.shape.replicates as u32, self.shape.slots);
+        let replicates = self.shape.replicates as u32;
         let (power, mask) = (replicates.is_power_of_two(), replicates - 1);
         for i in 0..n {
             // most hits emit nothing, and adding zero is work for nobody
@@ -77,8 +88,8 @@ impl FilmBlock<'_> {
                 continue;
             }
             let replicate = if power { sample[i] & mask } else { sample[i] % replicates };
-            let path = (pixel[i] - self.first) * replicates + replicate;
-            let at = (path as usize * slots + slot) * 3;
+            let at =
+                place(slot, replicate as usize, (pixel[i] - self.first) as usize, replicates as usize, self.pixels);
             let s = &mut self.sums[at..at + 3];
             s[0] += f64::from(x[i]);
             s[1] += f64::from(y[i]);
@@ -98,7 +109,9 @@ impl TermFilm {
     /// Sum of the samples of one pixel, replicate and slot.
     #[inline(always)]
     pub fn sum(&self, pixel: usize, replicate: usize, slot: usize) -> DVec3 {
-        let at = pixel * self.shape.per_pixel() + (replicate * self.shape.slots + slot) * 3;
+        let first = pixel / BLOCK * BLOCK;
+        let pixels = BLOCK.min(self.samples.len() - first);
+        let at = first * self.shape.per_pixel() + place(slot, replicate, pixel - first, self.shape.replicates, pixels);
         DVec3::new(self.sums[at], self.sums[at + 1], self.sums[at + 2])
     }
 
