@@ -14,12 +14,12 @@
 //! | 3 max a | what a rejection must exceed: the largest allowance of its kind, with Roache's safety factor | [`compare`] |
 //! | δ | 2 % of the term + 10⁻⁴ of the whole image, per channel | [`Criterion`] |
 //! | α | chance that two equal worlds are told apart anywhere in the whole family | [`Criterion::alpha`] |
-//! | t* | critical value at α over the number of image means: the intervals hold all at once | [`Verdict::interval`] |
+//! | t* | critical value at α: agreement needs *every* interval inside its margin, and such a claim needs no share of α for each | [`Verdict::interval`] |
 //!
 //! The family is every functional (image mean, regions, projections) × every quantity (terms, tail, sum, total) ×
 //! channel. All of it can reject. Only image means must also *prove* agreement: a region sees more noise, and that no
 //! test rejected it proves nothing. Two one-sided tests as one interval: Schuirmann, *J. Pharmacokinetics and
-//! Biopharmaceutics* 15 (1987).
+//! Biopharmaceutics* 15 (1987); a claim that needs all of them to hold needs no correction: Berger, *Technometrics* 24 (1982).
 
 use super::hypothesis::{Measured, ROUNDING, critical, difference, holm, two_sided_p};
 use super::power;
@@ -67,7 +67,7 @@ pub struct Verdict {
     pub functional: String,
     /// First − second.
     pub effect: f64,
-    /// Where the effect lies, all image means at once at level 1 − α; widened by the allowance.
+    /// Where the effect lies at level 1 − α; widened by the allowance.
     pub interval: (f64, f64),
     /// Holm-adjusted p-value: rejected if ≤ α.
     pub p: f64,
@@ -262,9 +262,9 @@ impl Item {
 
 fn judge(family: &[Item], criterion: &Criterion) -> Comparison {
     let adjusted = holm(&family.iter().map(Item::p).collect::<Vec<_>>());
-    let images = family.iter().filter(|i| i.is_image).count();
-    // α shared over the image means for the intervals, over the whole family for the power to reject
-    let levels = (criterion.alpha / images as f64, criterion.alpha / family.len() as f64);
+    // a rejection anywhere is a claim, so α is shared over the family; agreement claims all margins at once, and is wrong
+    // only if it is wrong where it is worst, so every interval may use the whole α
+    let levels = (criterion.alpha, criterion.alpha / family.len() as f64);
 
     let mut quantities: Vec<Quantity> = family.iter().filter(|i| i.is_image).map(|i| i.quantity).collect();
     quantities.dedup(); // three channels each
