@@ -235,9 +235,7 @@ fn orders(found: &Found, progress: &Progress) -> Result<Vec<Series>, Failure> {
 
 /// FNV-1a of the scene as loaded.
 fn scene_hash(canonical: &str) -> String {
-    let hash =
-        canonical.bytes().fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
-    format!("{hash:016x}")
+    format!("{:016x}", fredholm::math::fnv1a(canonical.bytes()))
 }
 
 fn verdicts(found: &Found) -> Vec<summary::Verdict> {

@@ -8,7 +8,7 @@ pub mod direction;
 pub mod random;
 
 pub use columns::Columns;
-pub use random::{Key, Purpose, Rng, Streams};
+pub use random::{Key, Purpose, Rng, Streams, fnv1a};
 
 /// A radiance, reflectance or throughput: linear Rec. 709, one `f32` per channel. Sums of it are kept in [`glam::DVec3`].
 pub type Rgb = glam::Vec3;

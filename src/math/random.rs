@@ -38,9 +38,8 @@ impl Key {
     /// assert_ne!(Key::new(1, "prefix"), Key::new(1, "path"));
     /// ```
     pub fn new(seed: u64, name: &str) -> Self {
-        // FNV-1a over the name, then the finaliser of splitmix64
-        let name =
-            name.bytes().fold(0xcbf2_9ce4_8422_2325, |h: u64, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
+        // the hash of the name, then the finaliser of splitmix64
+        let name = fnv1a(name.bytes());
         let mut z = name ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(0x9e37_79b9_7f4a_7c15);
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -54,6 +53,11 @@ impl Key {
         let v = pcg4d([self.0[0], self.0[1], index, 0x5bd1_e995]);
         Self([v[0], v[1]])
     }
+}
+
+/// FNV-1a, 64 bits: the same number for the same bytes on every machine (Fowler, Noll, Vo 1991).
+pub fn fnv1a(bytes: impl IntoIterator<Item = u8>) -> u64 {
+    bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3))
 }
 
 /// The numbers of one (path, bounce, purpose), four at a time.

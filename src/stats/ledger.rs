@@ -34,6 +34,7 @@
 //! answer; the cure of the second is samples, never a larger δ or another seed.
 
 use super::hypothesis::{Measured, ROUNDING, critical};
+use crate::math::fnv1a;
 use crate::terms::Estimate;
 use glam::DVec3;
 
@@ -140,7 +141,7 @@ impl Account {
     /// base seed.
     pub fn seed(&self) -> u64 {
         let bytes = self.entry.name.bytes().chain(self.base_seed.to_le_bytes());
-        bytes.fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
+        fnv1a(bytes)
     }
 
     /// Takes `n` comparisons from the account and returns the level of each.
