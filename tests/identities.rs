@@ -32,6 +32,7 @@ fn lamps() -> Description {
             .map(DVec3::from)
             .to_vec(),
         faces: vec![[0, 2, 1], [1, 2, 3], [3, 2, 0]],
+        uvs: vec![],
     };
     let disk = Geometry::Disk { center: DVec3::new(0.3, 0.95, -0.4), normal: DVec3::NEG_Y, radius: 0.3 };
     description(&[
@@ -48,6 +49,7 @@ fn mixed_flat() -> Description {
     let roof = Geometry::Mesh {
         vertices: [[-0.5, 0.9, -0.5], [0.5, 0.9, -0.5], [0.5, 0.8, 0.5], [-0.5, 0.9, 0.5]].map(DVec3::from).to_vec(),
         faces: vec![[0, 1, 2], [0, 2, 3]],
+        uvs: vec![],
     };
     let block = Geometry::Box {
         min: DVec3::new(-0.6, -1.0, -0.7),

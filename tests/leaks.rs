@@ -28,7 +28,7 @@ fn glowing(surfaces: impl IntoIterator<Item = Geometry>) -> Description {
 
 /// A mesh seen from inside: faces are given counter-clockwise from outside.
 fn inside_of(vertices: Vec<DVec3>, faces: &[[u32; 3]]) -> Geometry {
-    Geometry::Mesh { vertices, faces: faces.iter().map(|&[a, b, c]| [a, c, b]).collect() }
+    Geometry::Mesh { vertices, faces: faces.iter().map(|&[a, b, c]| [a, c, b]).collect(), uvs: vec![] }
 }
 
 /// The icosahedron, its faces cut in four `times` times, corners on the unit sphere.

@@ -106,7 +106,7 @@ fn tetrahedron(rho: &[f64], e: &[f64]) -> Description {
         let others: Vec<DVec3> = (0..4).filter(|j| *j != i).map(|j| p[j]).collect();
         let outwards = (others[1] - others[0]).cross(others[2] - others[0]).dot(others[0]) > 0.0;
         let faces = vec![if outwards { [0, 2, 1] } else { [0, 1, 2] }];
-        (Geometry::Mesh { vertices: others, faces }, DVec3::splat(rho[i]), DVec3::splat(e[i]))
+        (Geometry::Mesh { vertices: others, faces, uvs: vec![] }, DVec3::splat(rho[i]), DVec3::splat(e[i]))
     };
     scene((0..4).map(face).collect())
 }

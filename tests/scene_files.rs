@@ -97,7 +97,7 @@ fn the_good_scene_is_read_as_written() {
     assert_eq!((d.name.as_str(), d.camera.fov, d.camera.size), ("good", 40.0, [8, 6]));
     assert_eq!((d.camera.origin, d.camera.target, d.camera.up), (DVec3::new(0.0, 0.0, 4.0), DVec3::ZERO, DVec3::Y));
     assert_eq!((d.materials[0].name.as_str(), d.materials[0].sides), ("white", Sides::Both));
-    assert_eq!((d.materials[1].reflectance, d.materials[1].sides), (DVec3::new(0.6, 0.1, 0.1), Sides::Front));
+    assert_eq!((d.materials[1].lambertian().unwrap(), d.materials[1].sides), (DVec3::new(0.6, 0.1, 0.1), Sides::Front));
     assert_eq!(d.shapes.iter().map(|s| s.material).collect::<Vec<_>>(), [0, 1, 1, 0, 0]);
     assert_eq!((d.shapes[0].emission, d.shapes[1].emission), (DVec3::new(1.0, 2.0, 3.0), DVec3::ZERO));
     assert_eq!(d.shapes[3].name, "shapes[3]");
@@ -114,7 +114,7 @@ fn the_good_scene_is_read_as_written() {
         d.shapes[3].geometry,
         Geometry::Disk { center: DVec3::ZERO, normal: DVec3::new(0.0, 0.0, 2.0), radius: 0.5 }
     );
-    let Geometry::Mesh { vertices, faces } = &d.shapes[4].geometry else { panic!() };
+    let Geometry::Mesh { vertices, faces, .. } = &d.shapes[4].geometry else { panic!() };
     assert_eq!(
         (vertices.len(), vertices[3], faces.as_slice()),
         (4, DVec3::new(2.0, 0.0, 0.0), &[[0, 1, 2], [0, 3, 2]][..])
@@ -296,7 +296,7 @@ fn overrides_replace_values() {
     ])
     .unwrap()
     .description;
-    assert_eq!((d.materials[0].reflectance, d.materials[0].sides), (DVec3::new(0.25, 0.5, 0.75), Sides::Front));
+    assert_eq!((d.materials[0].lambertian().unwrap(), d.materials[0].sides), (DVec3::new(0.25, 0.5, 0.75), Sides::Front));
     assert_eq!(d.shapes[1].emission, DVec3::new(4.0, 5.0, 6.0));
     assert!(matches!(d.shapes[2].geometry, Geometry::Sphere { inward: false, .. }));
     assert_eq!((d.camera.size, d.camera.fov, d.name.as_str()), ([16, 6], 60.0, "other"));
@@ -553,7 +553,7 @@ fn an_imperfect_obj_loads_with_warnings() {
     let Loaded { description: d, warnings, .. } = scene(&bad("imperfect.obj"), &Options::default()).unwrap();
     let names: Vec<_> = d.shapes.iter().map(|s| (s.name.as_str(), d.materials[s.material].name.as_str())).collect();
     assert_eq!(names, [("sheet", "ligth"), ("sheet", "light"), ("dart", "glossy")]);
-    let kd: Vec<_> = d.shapes.iter().map(|s| d.materials[s.material].reflectance.x).collect();
+    let kd: Vec<_> = d.shapes.iter().map(|s| d.materials[s.material].lambertian().unwrap().x).collect();
     assert_eq!(kd, [0.5, 0.5, 0.25]);
     assert_eq!(d.shapes[1].emission, DVec3::new(17.0, 12.0, 4.0));
     assert_eq!(d.shapes.iter().map(|s| s.geometry.primitives().len()).collect::<Vec<_>>(), [2, 1, 2]);
@@ -646,7 +646,7 @@ fn real_obj_files() {
     let Primitive::Triangle([a, b, c]) = light.geometry.primitives()[0] else { panic!() };
     assert!((b - a).cross(c - a).y < 0.0, "the light shines down");
     let left = d.materials.iter().find(|m| m.name == "leftWall").unwrap();
-    assert_eq!(left.reflectance, DVec3::new(0.63, 0.065, 0.05));
+    assert_eq!(left.lambertian().unwrap(), DVec3::new(0.63, 0.065, 0.05));
     assert_eq!(cornell.warnings.len(), 2, "{:?}", cornell.warnings);
     let cow = scene(inputs.join("spot.obj").to_str().unwrap(), &options(&[], &["default=1,1,1"])).unwrap();
     assert_eq!((cow.description.primitives().len(), cow.warnings.len()), (5856, 0));

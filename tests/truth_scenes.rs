@@ -23,7 +23,7 @@ use fredholm::estimator::{PathTracer, Prefix, Roulette, SingleTerm, Technique};
 use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
 use fredholm::scene::Scene;
-use fredholm::scene::bsdf::diffuse::Sampling;
+use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::description::Geometry;
 use fredholm::terms::Estimate;
 use fredholm::terms::functional::image_replicates;

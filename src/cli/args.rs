@@ -2,7 +2,7 @@
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use fredholm::estimator::{Roulette, Technique};
-use fredholm::scene::bsdf::diffuse::Sampling;
+use fredholm::scene::bsdf::Sampling;
 use std::path::PathBuf;
 
 const TOUR: &str = "The operator view of global illumination: L = E + T L = Σ T^k E, measured.

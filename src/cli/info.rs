@@ -32,7 +32,7 @@ fn machine(d: &Description, scene: &Scene) -> serde_json::Value {
         "name": d.name,
         "size": d.camera.size,
         "materials": d.materials.iter().map(|m| json!({
-            "name": m.name, "type": "diffuse", "reflectance": m.reflectance.to_array(),
+            "name": m.name, "type": m.bsdf.kind(), "reflectance": m.lambertian().map(|r| r.to_array()),
             "sides": if m.sides == Sides::Both { "both" } else { "front" },
         })).collect::<Vec<_>>(),
         "shapes": d.shapes.len(),
@@ -56,7 +56,11 @@ fn people(d: &Description, scene: &Scene) -> String {
     out += "\nmaterials\n";
     for m in &d.materials {
         let sides = if m.sides == Sides::Both { "both sides" } else { "front only" };
-        out += &format!("  {:16} diffuse, reflectance {}, {sides}\n", m.name, rgb(m.reflectance));
+        let what = match m.lambertian() {
+            Some(rho) => format!("diffuse, reflectance {}", rgb(rho)),
+            None => m.bsdf.kind().to_owned(),
+        };
+        out += &format!("  {:16} {what}, {sides}\n", m.name);
     }
     out += "\nlights\n";
     for s in d.shapes.iter().filter(|s| s.emission.max_element() > 0.0) {

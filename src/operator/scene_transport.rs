@@ -17,7 +17,7 @@ use super::form_factor::Visibility;
 use super::patches::SurfacePoint;
 use super::transport::{self, Samples, Sensor, Step, Transport, Wave};
 use crate::math::{Columns, Rgb, Rng, Streams};
-use crate::scene::bsdf::diffuse::{self, Sampling};
+use crate::scene::bsdf::{Sampling, diffuse};
 use crate::scene::{Camera, Rays, Scene, SurfaceSensor, Vertex, VertexWave, cosine_directions, numbers};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;

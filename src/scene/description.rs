@@ -3,7 +3,9 @@
 //! Positions in metres, right-handed, `f64`; colours linear Rec. 709. [`Scene::new`](super::Scene::new)
 //! turns a description into something rays can hit.
 
-use glam::DVec3;
+use super::raster::Raster;
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
 
 /// Everything a scene file can say.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,8 +18,24 @@ pub struct Description {
     pub materials: Vec<Material>,
     /// The geometry, in file order.
     pub shapes: Vec<Shape>,
+    /// Lights without a surface, in file order; at most one of them is an environment.
+    pub lights: Vec<LightDescription>,
     /// Closed-form image means the scene claims for itself, if any.
     pub expect: Option<Expect>,
+}
+
+impl Description {
+    /// Why a radiosity matrix cannot hold this scene, if it cannot: Lambertian surfaces of one colour, lit by surfaces.
+    pub fn radiosity_suits(&self) -> Result<(), String> {
+        if !self.lights.is_empty() {
+            return Err("it has lights that are no surfaces".into());
+        }
+        let used = |m: &Material| self.shapes.iter().any(|s| self.materials[s.material].name == m.name);
+        match self.materials.iter().find(|m| used(m) && m.lambertian().is_none()) {
+            Some(m) => Err(format!("material `{}` is not Lambertian of one colour", m.name)),
+            None => Ok(()),
+        }
+    }
 }
 
 /// A pinhole camera; a pixel is the mean radiance over its square.
@@ -44,15 +62,185 @@ pub enum Sides {
     Front,
 }
 
-/// A Lambertian surface.
+/// A named surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// The name shapes use.
     pub name: String,
-    /// Albedo per channel, in [0, 1].
-    pub reflectance: DVec3,
-    /// Sides that reflect.
+    /// How it scatters.
+    pub bsdf: BsdfDescription,
+    /// Sides that scatter; of a dielectric always both.
     pub sides: Sides,
+}
+
+impl Material {
+    /// A Lambertian surface of one colour.
+    pub fn diffuse(name: impl Into<String>, reflectance: DVec3, sides: Sides) -> Self {
+        let bsdf = BsdfDescription::Diffuse { reflectance: Colour::Uniform(reflectance) };
+        Self { name: name.into(), bsdf, sides }
+    }
+
+    /// The albedo, if the surface is Lambertian and of one colour: what a radiosity matrix can hold.
+    pub fn lambertian(&self) -> Option<DVec3> {
+        match &self.bsdf {
+            BsdfDescription::Diffuse { reflectance: Colour::Uniform(rho) } => Some(*rho),
+            _ => None,
+        }
+    }
+}
+
+/// How a surface scatters; the formulas are in [`crate::scene::bsdf`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum BsdfDescription {
+    /// Lambertian.
+    Diffuse {
+        /// Albedo per channel, in [0, 1].
+        reflectance: Colour,
+    },
+    /// A perfect mirror, the same at every angle.
+    Mirror {
+        /// Albedo per channel, in [0, 1].
+        reflectance: DVec3,
+    },
+    /// A metal.
+    Conductor {
+        /// What it reflects.
+        metal: Metal,
+        /// Microfacets; smooth without.
+        rough: Option<Ggx>,
+    },
+    /// Glass and its like. The inside is behind the normal.
+    Dielectric {
+        /// Index of refraction inside.
+        ior: f64,
+        /// Index of refraction outside.
+        ior_outside: f64,
+        /// How reflection or refraction is chosen.
+        choice: Choice,
+        /// Microfacets; smooth without.
+        rough: Option<Ggx>,
+    },
+    /// A diffuse base under a dielectric coat.
+    Plastic {
+        /// Albedo of the base, in [0, 1].
+        reflectance: Colour,
+        /// Index of refraction of the coat.
+        ior: f64,
+        /// Microfacets of the coat; smooth without.
+        rough: Option<Ggx>,
+    },
+    /// The classic.
+    Phong {
+        /// Albedo of the diffuse part.
+        reflectance: Colour,
+        /// Albedo of the lobe at normal incidence; with `reflectance` at most 1.
+        specular: DVec3,
+        /// Exponent of the lobe, at least 0.
+        exponent: f64,
+    },
+}
+
+impl BsdfDescription {
+    /// Its name in a scene file.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Diffuse { .. } => "diffuse",
+            Self::Mirror { .. } => "mirror",
+            Self::Conductor { .. } => "conductor",
+            Self::Dielectric { .. } => "dielectric",
+            Self::Plastic { .. } => "plastic",
+            Self::Phong { .. } => "phong",
+        }
+    }
+}
+
+/// A colour, the same everywhere or from an image.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Colour {
+    /// One colour.
+    Uniform(DVec3),
+    /// Bilinear, repeating; the uv origin is at the bottom left.
+    Texture(Arc<Raster>),
+}
+
+/// What a metal reflects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Metal {
+    /// Complex index of refraction η + ik per channel: exact Fresnel reflectance.
+    Fresnel {
+        /// η.
+        eta: DVec3,
+        /// k.
+        k: DVec3,
+    },
+    /// F = this, at every angle.
+    Reflectance(DVec3),
+}
+
+/// GGX microfacets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ggx {
+    /// Width α as it enters the distribution, not squared.
+    pub alpha: f64,
+    /// Masking and shadowing.
+    pub masking: Masking,
+}
+
+/// How masking and shadowing of microfacets go together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Masking {
+    /// G = 1/(1 + Λ(ω_o) + Λ(ω_i)).
+    HeightCorrelated,
+    /// G = G₁(ω_o) G₁(ω_i).
+    Separable,
+}
+
+/// How a dielectric chooses between reflection and refraction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Choice {
+    /// With the Fresnel reflectance as probability of reflection.
+    Fresnel,
+    /// With this probability of reflection, in (0, 1); under total internal reflection always.
+    Constant(f64),
+}
+
+/// A light without a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightDescription {
+    /// Light from a point, the same in every direction.
+    Point {
+        /// Where.
+        position: DVec3,
+        /// Radiant intensity, W/sr.
+        intensity: DVec3,
+    },
+    /// Parallel light from infinity.
+    Directional {
+        /// Direction the light travels in, any length.
+        direction: DVec3,
+        /// Irradiance on a surface perpendicular to it, W/m².
+        irradiance: DVec3,
+    },
+    /// Light from every direction at infinity.
+    Environment {
+        /// What the sky looks like.
+        sky: Sky,
+        /// Degrees about the vertical, counter-clockwise seen from +y.
+        rotate: f64,
+        /// Factor on the radiance.
+        scale: f64,
+    },
+}
+
+/// What an environment looks like.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sky {
+    /// The same radiance from everywhere.
+    Constant(DVec3),
+    /// u = ½ + atan2(x, −z)/2π, v = acos(y)/π, row 0 at +y, constant per texel.
+    LatLong(Arc<Raster>),
+    /// A photograph of a mirror sphere, seen along −z and filling the image.
+    MirrorBall(Arc<Raster>),
 }
 
 /// A piece of geometry with its material and emission.
@@ -77,6 +265,8 @@ pub enum Geometry {
         vertices: Vec<DVec3>,
         /// Three indices into `vertices` per triangle.
         faces: Vec<[u32; 3]>,
+        /// Texture coordinates of the corners of each triangle; empty if there are none.
+        uvs: Vec<[DVec2; 3]>,
     },
     /// The parallelogram `origin + u·edge_u + v·edge_v`, u, v in [0, 1]; normal `edge_u × edge_v`.
     Quad {

@@ -19,6 +19,7 @@ mod error;
 pub mod load;
 mod packets;
 pub mod primitive;
+pub mod raster;
 pub mod sensor;
 mod shape;
 pub mod vertex;
@@ -88,7 +89,7 @@ impl Scene {
         for &(shape, _) in &prims {
             let shape = &description.shapes[shape];
             let material = &description.materials[shape.material];
-            let rho = material.reflectance.as_vec3();
+            let rho = material.lambertian().unwrap_or_default().as_vec3();
             let both = material.sides == Sides::Both;
             albedo.extend([rho, if both { rho } else { Rgb::ZERO }]);
             emission.extend([shape.emission.as_vec3(), Rgb::ZERO]);

@@ -74,7 +74,7 @@ impl Geometry {
     /// The primitives of the shape, in a fixed order: mesh faces in file order, box faces −x, +x, −y, +y, −z, +z.
     pub fn primitives(&self) -> Vec<Primitive> {
         match self {
-            Self::Mesh { vertices, faces } => {
+            Self::Mesh { vertices, faces, .. } => {
                 faces.iter().map(|f| Primitive::Triangle(f.map(|i| vertices[i as usize]))).collect()
             }
             &Self::Quad { origin, edge_u, edge_v } => vec![Primitive::Parallelogram { origin, edge_u, edge_v }],

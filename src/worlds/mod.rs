@@ -13,7 +13,7 @@ pub mod sampled;
 pub mod surface;
 
 use crate::estimator::{Plan, Roulette, Technique};
-use crate::scene::bsdf::diffuse::Sampling;
+use crate::scene::bsdf::Sampling;
 use crate::terms::TermFilm;
 
 /// What a run is made with.

@@ -8,7 +8,7 @@ pub type Surface = (Geometry, DVec3, DVec3);
 
 /// A description of these surfaces, with a camera at the origin that looks down −z.
 pub fn description(surfaces: &[Surface]) -> Description {
-    let material = |(i, s): (usize, &Surface)| Material { name: i.to_string(), reflectance: s.1, sides: Sides::Front };
+    let material = |(i, s): (usize, &Surface)| Material::diffuse(i.to_string(), s.1, Sides::Front);
     let shape = |(i, s): (usize, &Surface)| Shape {
         name: format!("shapes[{i}]"),
         geometry: s.0.clone(),
@@ -20,6 +20,7 @@ pub fn description(surfaces: &[Surface]) -> Description {
         camera: CameraDescription { origin: DVec3::ZERO, target: DVec3::NEG_Z, up: DVec3::Y, fov: 90.0, size: [8, 8] },
         materials: surfaces.iter().enumerate().map(material).collect(),
         shapes: surfaces.iter().enumerate().map(shape).collect(),
+        lights: vec![],
         expect: None,
     }
 }

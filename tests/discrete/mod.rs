@@ -13,11 +13,11 @@ pub fn v(x: f64, y: f64, z: f64) -> DVec3 {
 /// A scene of (geometry, albedo, emission), all sides front only.
 pub fn scene(shapes: Vec<(Geometry, DVec3, DVec3)>) -> Description {
     let camera = CameraDescription { origin: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov: 40.0, size: [8, 8] };
-    let material = |i: usize, reflectance: DVec3| Material { name: format!("m{i}"), reflectance, sides: Sides::Front };
+    let material = |i: usize, reflectance: DVec3| Material::diffuse(format!("m{i}"), reflectance, Sides::Front);
     let materials = shapes.iter().enumerate().map(|(i, s)| material(i, s.1)).collect();
     let shape = |(i, (geometry, _, emission))| Shape { name: format!("shapes[{i}]"), geometry, material: i, emission };
     let shapes = shapes.into_iter().enumerate().map(shape).collect();
-    Description { name: "test".into(), camera, materials, shapes, expect: None }
+    Description { name: "test".into(), camera, materials, shapes, lights: vec![], expect: None }
 }
 
 pub fn quad(origin: DVec3, edge_u: DVec3, edge_v: DVec3) -> Geometry {

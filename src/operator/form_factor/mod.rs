@@ -233,8 +233,9 @@ mod tests {
         Description {
             name: "clutter".into(),
             camera: CameraDescription { origin: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov: 40.0, size: [8, 8] },
-            materials: vec![Material { name: "m".into(), reflectance: DVec3::splat(0.5), sides: Sides::Front }],
+            materials: vec![Material::diffuse("m", DVec3::splat(0.5), Sides::Front)],
             shapes: geometries.map(shape).to_vec(),
+            lights: vec![],
             expect: None,
         }
     }

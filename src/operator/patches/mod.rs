@@ -109,10 +109,10 @@ impl Patches {
     /// use fredholm::{operator::patches::Patches, scene::description::*};
     /// use glam::DVec3;
     /// let camera = CameraDescription { origin: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov: 40.0, size: [8, 8] };
-    /// let grey = Material { name: "grey".into(), reflectance: DVec3::splat(0.5), sides: Sides::Front };
+    /// let grey = Material::diffuse("grey", DVec3::splat(0.5), Sides::Front);
     /// let geometry = Geometry::Box { min: DVec3::ZERO, max: DVec3::ONE, rotate_y: 0.0, inward: true };
     /// let room = Shape { name: "room".into(), geometry, material: 0, emission: DVec3::ONE };
-    /// let scene = Description { name: "furnace".into(), camera, materials: vec![grey], shapes: vec![room], expect: None };
+    /// let scene = Description { name: "furnace".into(), camera, materials: vec![grey], shapes: vec![room], lights: vec![], expect: None };
     /// let patches = Patches::new(&scene, 96)?;
     /// assert_eq!(patches.len(), 96);
     /// assert_eq!(patches.surface_area(), 6.0);
@@ -120,7 +120,8 @@ impl Patches {
     /// ```
     ///
     /// # Errors
-    /// If `n` is zero, nothing reflects, a surface has no area or a shape names a material that is not there.
+    /// If `n` is zero, nothing reflects, a surface has no area, a shape names a material that is not there, or the scene
+    /// has surfaces that are not Lambertian or lights that are no surfaces ([`Description::radiosity_suits`]).
     pub fn new(scene: &Description, n: usize) -> Result<Self, SceneError> {
         if n == 0 {
             return Err(SceneError::new("a mesh of 0 patches cannot hold anything").help("ask for at least one patch"));
@@ -129,10 +130,19 @@ impl Patches {
         if listed.is_empty() {
             return Err(SceneError::new("the scene has no surface").help("add a shape"));
         }
+        if !scene.lights.is_empty() {
+            let e = SceneError::new("a radiosity matrix holds light from surfaces only").key("lights");
+            return Err(e.help("leave the radiosity world out"));
+        }
         for &(s, p) in &listed {
             let shape = &scene.shapes[s];
             if shape.material >= scene.materials.len() {
                 return Err(SceneError::new(format!("material {} does not exist", shape.material)).key(&shape.name));
+            }
+            let material = &scene.materials[shape.material];
+            if material.lambertian().is_none() {
+                let e = SceneError::new("a radiosity matrix holds Lambertian surfaces of one colour only");
+                return Err(e.key(format!("materials.{}", material.name)).help("leave the radiosity world out"));
             }
             if !(p.area() > 0.0 && p.area().is_finite()) {
                 let what = format!("a surface of {} has the area {}", shape.name, p.area());
@@ -174,7 +184,7 @@ impl Patches {
                         patches.list.push(Patch {
                             area: free * cell.area,
                             primitive: number,
-                            reflectance: scene.materials[shape.material].reflectance,
+                            reflectance: scene.materials[shape.material].lambertian().unwrap_or_default(),
                             emission: if front { shape.emission } else { DVec3::ZERO },
                             ..geometry
                         });

@@ -7,34 +7,18 @@
 //! | uniform, p = 1/2π | 2ρ cos θ |
 //! | cosine, p = cos θ/π | ρ |
 
+use super::Sampling;
 use crate::math::{
     Rgb,
     direction::{cosine_hemisphere, uniform_hemisphere},
 };
 use glam::Vec3;
-use std::f32::consts::{FRAC_1_PI, TAU};
 
-/// How directions are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Sampling {
-    /// Uniform over the hemisphere.
-    Uniform,
-    /// Proportional to the cosine.
-    Cosine,
-    /// Whatever suits the surface; the cosine for a Lambertian one.
-    #[default]
-    Bsdf,
-}
-
-impl Sampling {
-    /// Density of a direction with this cosine, sr⁻¹.
-    #[inline(always)]
-    pub fn pdf(self, cosine: f32) -> f32 {
-        match self {
-            Self::Uniform => 1.0 / TAU,
-            Self::Cosine | Self::Bsdf => cosine * FRAC_1_PI,
-        }
-    }
+/// f = ρ/π.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Diffuse {
+    /// ρ.
+    pub reflectance: Rgb,
 }
 
 /// A direction about the normal, with the weight `f cos θ / p` and the density.

@@ -31,7 +31,7 @@ pub(super) fn mesh(c: &Cursor) -> Result<Geometry, SceneError> {
     if let Some(t) = transform(c)? {
         t.apply(&mut vertices, &mut faces)?;
     }
-    Ok(Geometry::Mesh { vertices, faces })
+    Ok(Geometry::Mesh { vertices, faces, uvs: vec![] })
 }
 
 /// True if a triangle has no area worth the name.

@@ -197,7 +197,7 @@ fn append_obj(c: &Cursor, material: Option<usize>, out: &mut Read) -> Result<(),
     if let Some(t) = transform(c)? {
         model.pieces.iter_mut().try_for_each(|p| t.apply(&mut p.vertices, &mut p.faces))?;
     }
-    let mesh = |p: &obj::Piece| Geometry::Mesh { vertices: p.vertices.clone(), faces: p.faces.clone() };
+    let mesh = |p: &obj::Piece| Geometry::Mesh { vertices: p.vertices.clone(), faces: p.faces.clone(), uvs: vec![] };
     let total = model.pieces.iter().map(|p| area(&mesh(p))).sum();
     let given = emission(c, total)?;
     if let (Some(_), None) = (given, material) {
@@ -219,7 +219,7 @@ fn append_obj(c: &Cursor, material: Option<usize>, out: &mut Read) -> Result<(),
 
 /// The index of an MTL material among all materials. Equal ones of several files are one.
 fn intern(m: &obj::Surface, materials: &mut Vec<Material>) -> usize {
-    let material = Material { name: m.name.clone(), reflectance: m.reflectance, sides: Sides::Both };
+    let material = Material::diffuse(m.name.clone(), m.reflectance, Sides::Both);
     materials.iter().position(|o| *o == material).unwrap_or_else(|| {
         materials.push(material);
         materials.len() - 1

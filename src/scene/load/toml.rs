@@ -37,7 +37,7 @@ pub(super) fn read(root: &Node, file: &Path, framed: bool) -> Result<Draft, Scen
     let camera = camera::read(&camera, bounds)?;
     let expect = c.get("expect").map(|c| expect(&c)).transpose()?;
     let shapes::Read { shapes, materials, warnings, hints } = read;
-    Ok(Draft { description: Description { name, camera, materials, shapes, expect }, warnings, hints })
+    Ok(Draft { description: Description { name, camera, materials, shapes, lights: vec![], expect }, warnings, hints })
 }
 
 /// The name is also a folder: no separators, not `.` or `..`. Without one, the file is its name.
@@ -88,7 +88,7 @@ fn material(name: &str, c: &Cursor) -> Result<Material, SceneError> {
         Some(s) => s.choice("choice of sides", &[("both", Sides::Both), ("front", Sides::Front)])?,
         None => Sides::Both,
     };
-    Ok(Material { name: name.to_owned(), reflectance, sides })
+    Ok(Material::diffuse(name, reflectance, sides))
 }
 
 fn expect(c: &Cursor) -> Result<Expect, SceneError> {
