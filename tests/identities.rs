@@ -307,8 +307,8 @@ fn weights_of_the_two_techniques_sum_to_one() {
                 );
                 assert!(close(f64::from(c.pdf), light_density(&scene, &x, &y)), "{name}: {c:?}");
                 assert!(close(f64::from(c.other_pdf), cosine_density(&x, &y)), "{name}: {c:?}");
-                let w = Technique::Mis.weight(c.pdf, c.other_pdf);
-                let v = Technique::Mis.weight(c.other_pdf, c.pdf);
+                let w = Technique::Mis.connection(c.pdf, c.other_pdf);
+                let v = Technique::Mis.hit(c.other_pdf, c.pdf);
                 assert!((w + v - 1.0).abs() < 1e-6);
                 connections += 1;
             }

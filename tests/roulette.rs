@@ -55,7 +55,7 @@ fn follow<T: Transport>(t: &T, start: T::State, technique: Technique, key: Key, 
         if technique.connects()
             && let Some(c) = t.connect(&x, &mut rng(Purpose::Connect))
         {
-            stop.connect = c.weight * t.emission(&c.state) * technique.weight(c.pdf, c.other_pdf);
+            stop.connect = c.weight * t.emission(&c.state) * technique.connection(c.pdf, c.other_pdf);
         }
         let step = t.scatter(&x, &mut rng(Purpose::Scatter));
         stop.weight = step.map(|s| s.weight);
@@ -63,7 +63,7 @@ fn follow<T: Transport>(t: &T, start: T::State, technique: Technique, key: Key, 
         let Some(step) = step else { break };
         x = step.state;
         hit =
-            if technique.scatters() { t.emission(&x) * technique.weight(step.pdf, step.other_pdf) } else { Rgb::ZERO };
+            if technique.hits(t) { t.emission(&x) * technique.hit(step.pdf, step.other_pdf) } else { Rgb::ZERO };
     }
     path
 }

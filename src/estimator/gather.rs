@@ -70,11 +70,11 @@ impl<'s> TermEstimator<SceneTransport<'s>> for Gather<'_> {
             paths.add(0, sink);
             sink.rays(1, paths.n);
             paths.connect(t, 0);
-            paths.score(Technique::Mis, 1, sink);
+            paths.score_connections(Technique::Mis, 1, sink);
             sink.rays(read, paths.n);
             paths.scatter(t, 0);
             paths.emission(t);
-            paths.score(Technique::Mis, 1, sink);
+            paths.score_hits(Technique::Mis, 1, sink);
         }
         let at: Vec<Option<usize>> = (0..paths.n).map(|i| self.patch(&paths.state.get(i))).collect();
         let mut value = Columns::new(paths.n);

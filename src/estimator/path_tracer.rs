@@ -3,7 +3,7 @@
 //! ```text
 //! colour ← 0, α ← 1, x ← what the eye sees
 //! repeat
-//!     if emission counts here:          colour ← colour + α E(x)      (at the eye; on hits under scatter or MIS)
+//!     if emission counts here:          colour ← colour + α E(x)      (at the eye; after a delta vertex; on hits under scatter, MIS)
 //!     if light is sampled:              colour ← colour + α · connect
 //!     if a random number is below q:    stop
 //!     α ← α · weight / (1 − q),         x ← next
@@ -42,10 +42,10 @@ impl PathTracer {
                 rays += 1;
                 if let Some(light) = t.connect(&x, &mut numbers(vertex, Purpose::Connect)) {
                     colour +=
-                        alpha * light.weight * t.emission(&light.state) * technique.weight(light.pdf, light.other_pdf);
+                        alpha * light.weight * t.emission(&light.state) * technique.connection(light.pdf, light.other_pdf);
                 }
             }
-            if last(vertex + 1) && !technique.scatters() {
+            if last(vertex + 1) && !technique.hits(t) {
                 break;
             }
             // roulette: q is the probability of termination
@@ -61,8 +61,8 @@ impl PathTracer {
             let Some(next) = t.scatter(&x, &mut numbers(vertex, Purpose::Scatter)) else { break };
             alpha *= next.weight;
             x = next.state;
-            if technique.scatters() {
-                colour += alpha * t.emission(&x) * technique.weight(next.pdf, next.other_pdf);
+            if technique.hits(t) {
+                colour += alpha * t.emission(&x) * technique.hit(next.pdf, next.other_pdf);
             }
         }
         (colour, rays)

@@ -136,9 +136,16 @@ impl<W> Paths<W> {
         self.compact();
     }
 
-    /// Scores what the last batched call gave: weighted by the technique and by the throughput, into a slot.
-    pub fn score(&mut self, technique: Technique, slot: usize, sink: &mut impl TermSink) {
-        technique.weigh(&mut self.samples, self.n);
+    /// Scores emission on arrival: weighted by the technique and by the throughput, into a slot.
+    pub fn score_hits(&mut self, technique: Technique, slot: usize, sink: &mut impl TermSink) {
+        technique.weigh_hits(&mut self.samples, self.n);
+        self.samples.value.multiply(&self.through, self.n);
+        self.add(slot, sink);
+    }
+
+    /// Scores connections: weighted by the technique and by the throughput, into a slot.
+    pub fn score_connections(&mut self, technique: Technique, slot: usize, sink: &mut impl TermSink) {
+        technique.weigh_connections(&mut self.samples, self.n);
         self.samples.value.multiply(&self.through, self.n);
         self.add(slot, sink);
     }

@@ -48,6 +48,7 @@ pub(super) fn follow<T: Transport>(
     sink: &mut impl TermSink,
 ) {
     let technique = plan.technique;
+    let hits = technique.hits(t);
     let tail = plan.max_bounces + 1;
     for v in first.. {
         // the next term, or the tail; without roulette the tail would never end, and is left out
@@ -60,9 +61,9 @@ pub(super) fn follow<T: Transport>(
         if technique.connects() {
             sink.rays(slot, paths.n);
             paths.connect(t, v);
-            paths.score(technique, slot, sink);
+            paths.score_connections(technique, slot, sink);
         }
-        if v + 1 == tail - 1 && !technique.scatters() && !plan.roulette.ends() {
+        if v + 1 == tail - 1 && !hits && !plan.roulette.ends() {
             break;
         }
 
@@ -72,9 +73,9 @@ pub(super) fn follow<T: Transport>(
         // x_v → x_{v+1}, and its emission if hits count
         sink.rays(slot, paths.n);
         paths.scatter(t, v);
-        if technique.scatters() {
+        if hits {
             paths.emission(t);
-            paths.score(technique, slot, sink);
+            paths.score_hits(technique, slot, sink);
         }
     }
 }

@@ -60,14 +60,14 @@ impl<T: Transport> TermEstimator<T> for SingleTerm {
             if technique.connects() {
                 sink.rays(k, paths.n);
                 paths.connect(t, v);
-                paths.score(technique, k, sink);
+                paths.score_connections(technique, k, sink);
             }
-            if technique.scatters() {
+            if technique.hits(t) {
                 paths.roulette(t, v, roulette);
                 sink.rays(k, paths.n);
                 paths.scatter(t, v);
                 paths.emission(t);
-                paths.score(technique, k, sink);
+                paths.score_hits(technique, k, sink);
             }
         }
         if roulette.ends() {

@@ -1,58 +1,110 @@
-//! How light is found: by hitting it, by connecting to it, or both.
+//! How light is found: by hitting it, by connecting to it, or both. The emission rules of all estimators, in one place.
 //!
-//! | technique | term k ≥ 1 is scored | weight |
-//! |---|---|---|
-//! | `Scatter` | when the walk lands on an emitter at vertex k | 1 |
-//! | `Connect` | by next-event estimation from vertex k − 1 | 1 |
-//! | `Mis` | both | balance heuristic `p / (p + p°)` |
+//! Each way a path can be found gets a weight, and the weights of one path sum to 1. p is the density of the way that found
+//! it, p° that of the other, in one measure; p° = 0 says that the other way cannot find it at all: after a delta vertex,
+//! or where the light has no area.
 //!
-//! Term 0, emission seen directly, is always scored at vertex 0. Reference: Veach and Guibas, *Optimally Combining
-//! Sampling Techniques* (1995).
+//! | emission counts | `Scatter` | `Connect` | `Mis` | `Power` |
+//! |---|---|---|---|---|
+//! | at vertex 0, what the eye sees | 1 | 1 | 1 | 1 |
+//! | on a hit, p° > 0 | 1 | 0 | p/(p + p°) | p²/(p² + p°²) |
+//! | on a hit, p° = 0 (after a mirror) | 1 | 1 | 1 | 1 |
+//! | through a connection | 0 | 1 | p/(p + p°) | p²/(p² + p°²) |
+//! | through a connection, p° = 0 (a point light) | 0 | 1 | 1 | 1 |
+//!
+//! The fourth column is the balance heuristic, the fifth the power heuristic with exponent 2. `Scatter` alone breaks the rule, for
+//! lights without area: [`Transport::scatters_to_all`] says so, and nothing goes dark in silence.
+//! Reference: Veach and Guibas, *Optimally Combining Sampling Techniques* (1995).
 
 use crate::math::Columns;
-use crate::operator::Samples;
+use crate::operator::{Samples, Transport};
 
 /// How light is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Technique {
     /// Emission counts where the walk hits it.
     Scatter,
-    /// Emission counts through next-event estimation.
+    /// Emission counts through next-event estimation, and on hits only where that cannot find it.
     Connect,
-    /// Both, weighted so that each light path counts once.
+    /// Both, weighted by the balance heuristic.
     Mis,
+    /// Both, weighted by the power heuristic.
+    Power,
 }
 
 impl Technique {
-    /// Whether emission counts on hits.
-    pub fn scatters(self) -> bool {
-        self != Self::Connect
-    }
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Scatter, Self::Connect, Self::Mis, Self::Power];
 
     /// Whether there is next-event estimation.
     pub fn connects(self) -> bool {
         self != Self::Scatter
     }
 
-    /// Weight of a sample with density `p` where the other technique has density `other`, both in the same measure.
-    #[inline(always)]
-    pub fn weight(self, p: f32, other: f32) -> f32 {
-        if self == Self::Mis { p / (p + other) } else { 1.0 }
+    /// Whether emission can count on hits in this world: always, unless connecting finds all of it.
+    pub fn hits<T: Transport>(self, t: &T) -> bool {
+        self != Self::Connect || !t.connects_to_all()
     }
 
-    /// The weights of a wave, multiplied onto its values.
-    pub fn weigh(self, samples: &mut Samples, n: usize) {
-        if self == Self::Mis {
-            let (p, other) = (&samples.pdf[..n], &samples.other_pdf[..n]);
-            let Columns { x, y, z } = &mut samples.value;
-            let (x, y, z) = (&mut x[..n], &mut y[..n], &mut z[..n]);
-            for i in 0..n {
-                let w = self.weight(p[i], other[i]);
-                x[i] *= w;
-                y[i] *= w;
-                z[i] *= w;
-            }
+    /// Weight of emission on a hit that was found with density `p`, where connecting would have density `other`.
+    #[inline(always)]
+    pub fn hit(self, p: f32, other: f32) -> f32 {
+        match self {
+            Self::Scatter => 1.0,
+            Self::Connect => f32::from(u8::from(other == 0.0)),
+            Self::Mis => balance(p, other),
+            Self::Power => power(p, other),
         }
+    }
+
+    /// Weight of a connection that was found with density `p`, where scattering would have density `other`.
+    #[inline(always)]
+    pub fn connection(self, p: f32, other: f32) -> f32 {
+        match self {
+            Self::Scatter => 0.0,
+            Self::Connect => 1.0,
+            Self::Mis => balance(p, other),
+            Self::Power => power(p, other),
+        }
+    }
+
+    /// The weights of a wave of hits, multiplied onto its values.
+    pub fn weigh_hits(self, samples: &mut Samples, n: usize) {
+        if self != Self::Scatter {
+            multiply(samples, n, |p, other| self.hit(p, other));
+        }
+    }
+
+    /// The weights of a wave of connections, multiplied onto its values.
+    pub fn weigh_connections(self, samples: &mut Samples, n: usize) {
+        if self != Self::Connect {
+            multiply(samples, n, |p, other| self.connection(p, other));
+        }
+    }
+}
+
+#[inline(always)]
+fn balance(p: f32, other: f32) -> f32 {
+    p / (p + other)
+}
+
+/// By way of the ratio, whose square overflows only where the weight is 0.
+#[inline(always)]
+fn power(p: f32, other: f32) -> f32 {
+    let ratio = other / p;
+    1.0 / (1.0 + ratio * ratio)
+}
+
+#[inline(always)]
+fn multiply(samples: &mut Samples, n: usize, weight: impl Fn(f32, f32) -> f32) {
+    let (p, other) = (&samples.pdf[..n], &samples.other_pdf[..n]);
+    let Columns { x, y, z } = &mut samples.value;
+    let (x, y, z) = (&mut x[..n], &mut y[..n], &mut z[..n]);
+    for i in 0..n {
+        let w = weight(p[i], other[i]);
+        x[i] *= w;
+        y[i] *= w;
+        z[i] *= w;
     }
 }
 
@@ -62,6 +114,26 @@ impl std::fmt::Display for Technique {
             Self::Scatter => "scatter",
             Self::Connect => "connect",
             Self::Mis => "mis",
+            Self::Power => "mis-power",
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever the densities, the weights of the two ways to find a path sum to 1, but for what `Scatter` cannot see.
+    #[test]
+    fn weights_of_one_path_sum_to_one() {
+        for technique in Technique::ALL {
+            for (hit, connect) in [(1.0, 1.0), (1e-3, 70.0), (3e25, 2e-20), (1e-20, 4e30), (0.25, 0.75)] {
+                let sum = technique.hit(hit, connect) + technique.connection(connect, hit);
+                assert!((sum - 1.0).abs() < 1e-6, "{technique} {hit} {connect}: {sum}");
+            }
+            // after a mirror nobody connects, and to a point light nobody scatters
+            assert_eq!(technique.hit(0.5, 0.0), 1.0);
+            assert_eq!(technique.connection(0.5, 0.0), if technique == Technique::Scatter { 0.0 } else { 1.0 });
+        }
     }
 }

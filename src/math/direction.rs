@@ -38,6 +38,32 @@ pub fn about(n: Vec3, x: f32, y: f32, z: f32) -> Vec3 {
     )
 }
 
+/// The frame of [`about`], both ways.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    t: Vec3,
+    b: Vec3,
+    n: Vec3,
+}
+
+impl Frame {
+    /// The frame about a unit vector.
+    #[inline(always)]
+    pub fn new(n: Vec3) -> Self {
+        Self { t: about(n, 1.0, 0.0, 0.0), b: about(n, 0.0, 1.0, 0.0), n }
+    }
+    /// Coordinates of a direction: z along the normal.
+    #[inline(always)]
+    pub fn local(&self, d: Vec3) -> Vec3 {
+        Vec3::new(d.dot(self.t), d.dot(self.b), d.dot(self.n))
+    }
+    /// The direction with these coordinates.
+    #[inline(always)]
+    pub fn world(&self, d: Vec3) -> Vec3 {
+        self.t * d.x + self.b * d.y + self.n * d.z
+    }
+}
+
 /// A direction with density cos θ/π about `n`, and its cosine (never 0).
 #[inline(always)]
 pub fn cosine_hemisphere(n: Vec3, u: [f32; 2]) -> (Vec3, f32) {

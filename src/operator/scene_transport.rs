@@ -17,8 +17,10 @@ use super::form_factor::Visibility;
 use super::patches::SurfacePoint;
 use super::transport::{self, Samples, Sensor, Step, Transport, Wave};
 use crate::math::{Columns, Rgb, Rng, Streams};
-use crate::scene::bsdf::{Sampling, diffuse};
+use crate::math::direction::Frame;
+use crate::scene::bsdf::{Bsdf, Carried, Sampling, diffuse, diffuse::Diffuse};
 use crate::scene::{Camera, Rays, Scene, SurfaceSensor, Vertex, VertexWave, cosine_directions, numbers};
+use crate::scene::{connection, solid_angle};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
@@ -34,7 +36,6 @@ pub struct SceneTransport<'a> {
 /// Next-event estimation from x to the light point y, before visibility.
 #[derive(Clone, Copy)]
 pub(crate) struct Connection {
-    direction: Vec3,
     cos_x: f32,
     /// Density of y in solid angle at x.
     pdf: f32,
@@ -45,11 +46,11 @@ pub(crate) struct Connection {
 /// `f cos θ_x cos θ_y / (r² p_A)` with f = 1/π, by way of the density in solid angle.
 #[inline(always)]
 pub(crate) fn connect_to(x: Vec3, n: Vec3, y: Vec3, m: Vec3, density: f32) -> Connection {
-    let (direction, r2, cos_x, cos_y) = connection(x, n, y, m);
+    let (_, r2, cos_x, cos_y) = connection(x, n, y, m);
     let pdf = solid_angle(density, r2, cos_y);
     let factor = FRAC_1_PI * cos_x / pdf;
     let faces = (cos_x > 0.0) & (cos_y > 0.0);
-    Connection { direction, cos_x, pdf, factor: if faces { factor } else { 0.0 } }
+    Connection { cos_x, pdf, factor: if faces { factor } else { 0.0 } }
 }
 
 impl<'a> SceneTransport<'a> {
@@ -59,56 +60,85 @@ impl<'a> SceneTransport<'a> {
     }
 }
 
-/// The change of measure: a density per area at y, seen from a point at distance r, per solid angle.
-#[inline(always)]
-pub(crate) fn solid_angle(per_area: f32, r2: f32, cos_y: f32) -> f32 {
-    per_area * r2 / cos_y
-}
-
-/// A connection from x (normal n) to y (normal m): unit direction, distance squared, cosines at both ends.
-#[inline(always)]
-pub(crate) fn connection(x: Vec3, n: Vec3, y: Vec3, m: Vec3) -> (Vec3, f32, f32, f32) {
-    let d = y - x;
-    let r2 = d.x * d.x + d.y * d.y + d.z * d.z;
-    let d = d * (1.0 / r2.sqrt());
-    (d, r2, d.x * n.x + d.y * n.y + d.z * n.z, -(d.x * m.x + d.y * m.y + d.z * m.z))
+/// A direction at a vertex, before anybody has looked along it.
+struct Departure {
+    direction: Vec3,
+    /// The normal on the side it leaves by.
+    normal: Vec3,
+    weight: Rgb,
+    pdf: f32,
+    delta: bool,
 }
 
 impl SceneTransport<'_> {
-    /// A direction at a vertex: nothing where the surface is black.
+    /// A direction at a vertex: nothing where the sample is zero.
     #[inline(always)]
-    fn depart(&self, at: &Vertex, u: [f32; 4]) -> Option<(Vec3, Rgb, f32)> {
-        let albedo = self.scene.albedo(at.side);
-        (albedo != Rgb::ZERO).then(|| diffuse::sample(albedo, at.n, self.sampling, [u[0], u[1]]))
+    fn depart(&self, at: &Vertex, carried: Carried, u: [f32; 4]) -> Option<Departure> {
+        match self.scene.bsdf(at) {
+            Bsdf::Black => None,
+            Bsdf::Diffuse(Diffuse { reflectance }) => (reflectance != Rgb::ZERO).then(|| {
+                let (direction, weight, pdf) = diffuse::sample(reflectance, at.n, self.sampling, [u[0], u[1]]);
+                Departure { direction, normal: at.n, weight, pdf, delta: false }
+            }),
+            bsdf => {
+                let frame = Frame::new(at.n);
+                let s = bsdf.sample(frame.local(at.omega), self.sampling, carried, [u[0], u[1], u[2]])?;
+                let normal = if s.wi.z > 0.0 { at.n } else { -at.n };
+                Some(Departure { direction: frame.world(s.wi), normal, weight: s.weight, pdf: s.pdf, delta: s.delta })
+            }
+        }
+    }
+
+    /// f cos θ and the density of scattering, towards unit direction `to`; the normal on that side.
+    #[inline(always)]
+    fn towards(&self, at: &Vertex, to: Vec3, carried: Carried) -> Option<(Rgb, f32, Vec3)> {
+        let cos = at.n.dot(to);
+        match self.scene.bsdf(at) {
+            Bsdf::Black => None,
+            Bsdf::Diffuse(Diffuse { reflectance }) => {
+                (cos > 0.0).then(|| (reflectance * (FRAC_1_PI * cos), self.sampling.pdf(cos), at.n))
+            }
+            bsdf => {
+                let frame = Frame::new(at.n);
+                let (wo, wi) = (frame.local(at.omega), frame.local(to));
+                let f = bsdf.eval(wo, wi, carried) * wi.z.abs();
+                let normal = if wi.z > 0.0 { at.n } else { -at.n };
+                (f != Rgb::ZERO).then(|| (f, bsdf.pdf(wo, wi, self.sampling), normal))
+            }
+        }
     }
 
     /// The step that a ray from `from` makes when it arrives at `state`.
     #[inline(always)]
-    fn step(&self, from: Vec3, n: Vec3, state: Vertex, weight: Rgb, pdf: f32) -> Step<Vertex> {
-        let density = self.scene.light_density(state.side);
-        let other_pdf = if density > 0.0 {
-            let (_, r2, _, cos_y) = connection(from, n, state.p, state.n);
-            solid_angle(density, r2, cos_y)
-        } else {
-            0.0
-        };
+    fn step(&self, from: Vec3, state: Vertex, weight: Rgb, pdf: f32, delta: bool) -> Step<Vertex> {
+        let other_pdf = if delta { 0.0 } else { self.scene.light_pdf(from, &state) };
         Step { state, weight, pdf, other_pdf }
     }
 
-    /// A connection before anybody has looked whether it is blocked: nothing where a cosine or the albedo is 0.
+    /// A connection before anybody has looked whether it is blocked, and the normal on its side: nothing where it is zero.
     #[inline(always)]
-    fn propose(&self, at: &Vertex, u: [f32; 4]) -> Option<Step<Vertex>> {
-        let albedo = self.scene.albedo(at.side);
-        if albedo == Rgb::ZERO || self.scene.lights.is_empty() {
+    fn propose(&self, at: &Vertex, u: [f32; 4]) -> Option<(Step<Vertex>, Vec3)> {
+        if self.scene.lights.is_empty() || !at.on_surface() {
             return None;
         }
-        let light = self.scene.light_point(u);
-        let c = connect_to(at.p, at.n, light.p, light.n, light.density);
-        if c.factor <= 0.0 {
+        let light = self.scene.sample_light(at.p, u);
+        if !(light.pdf > 0.0) {
             return None;
         }
-        let state = Vertex { p: light.p, n: light.n, omega: -c.direction, side: light.side };
-        Some(Step { state, weight: albedo * c.factor, pdf: c.pdf, other_pdf: self.sampling.pdf(c.cos_x) })
+        let (weight, scatter_pdf, normal) = match self.scene.bsdf(at) {
+            // the same products in the same order as in a wave
+            Bsdf::Diffuse(Diffuse { reflectance }) => {
+                let cos = light.to.dot(at.n);
+                let weight = reflectance * (FRAC_1_PI * cos / light.pdf);
+                (cos > 0.0 && reflectance != Rgb::ZERO).then(|| (weight, self.sampling.pdf(cos), at.n))?
+            }
+            _ => {
+                let (f, pdf, normal) = self.towards(at, light.to, Carried::Radiance)?;
+                (f * (1.0 / light.pdf), pdf, normal)
+            }
+        };
+        let other_pdf = if light.delta { 0.0 } else { scatter_pdf };
+        Some((Step { state: light.state, weight, pdf: light.pdf, other_pdf }, normal))
     }
 }
 
@@ -148,28 +178,42 @@ impl Transport for SceneTransport<'_> {
 
     #[inline(always)]
     fn emission(&self, at: &Vertex) -> Rgb {
-        self.scene.emission(at.side)
+        self.scene.light(at)
     }
 
     #[inline(always)]
     fn scatter(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
-        let (d, weight, pdf) = self.depart(at, rng.four())?;
-        let state = self.scene.trace(self.scene.lift(at.p, at.n), d)?;
-        Some(self.step(at.p, at.n, state, weight, pdf))
+        let d = self.depart(at, Carried::Radiance, rng.four())?;
+        let state = self.scene.look(self.scene.lift(at.p, d.normal), d.direction)?;
+        Some(self.step(at.p, state, d.weight, d.pdf, d.delta))
     }
 
     #[inline(always)]
     fn connect(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
-        let step = self.propose(at, rng.four())?;
-        (!self.scene.blocked(at.p, at.n, step.state.p, step.state.n)).then_some(step)
+        let (step, normal) = self.propose(at, rng.four())?;
+        (!self.scene.blocked(at.p, normal, step.state.p, step.state.n)).then_some(step)
     }
 
     #[inline(always)]
     fn albedo(&self, at: &Vertex) -> Rgb {
-        self.scene.albedo(at.side)
+        match self.scene.bsdf(at) {
+            Bsdf::Diffuse(Diffuse { reflectance }) => reflectance,
+            bsdf => bsdf.albedo(Frame::new(at.n).local(at.omega)),
+        }
+    }
+
+    fn connects_to_all(&self) -> bool {
+        !self.scene.any_delta_surface()
+    }
+
+    fn scatters_to_all(&self) -> bool {
+        !self.scene.lights.any_delta()
     }
 
     fn emission_wave(&self, wave: &mut VertexWave, n: usize, value: &mut Columns) {
+        if !self.scene.in_packets() {
+            return (0..n).for_each(|i| value.set(i, self.scene.light(&wave.get(i))));
+        }
         for (i, &side) in wave.side[..n].iter().enumerate() {
             value.set(i, self.scene.emission(side));
         }
@@ -221,7 +265,7 @@ impl Transport for SceneTransport<'_> {
         self.scene.trace_packets(rays, n, |i, state| {
             let albedo = self.scene.albedo(side[i]);
             if albedo != Rgb::ZERO {
-                let s = self.step(p.get(i), normals.get(i), state, albedo, self.sampling.pdf(cosine[i]));
+                let s = self.step(p.get(i), state, albedo, self.sampling.pdf(cosine[i]), false);
                 p.set(i, state.p);
                 normals.set(i, state.n);
                 omega.set(i, state.omega);
@@ -266,7 +310,7 @@ impl Sensor<SceneTransport<'_>> for Camera {
     #[inline(always)]
     fn start(&self, t: &SceneTransport, pixel: u32, rng: &mut Rng) -> Option<Vertex> {
         let u = rng.four();
-        t.scene.trace(self.origin, self.direction(pixel, [u[0], u[1]]))
+        t.scene.look(self.origin, self.direction(pixel, [u[0], u[1]]))
     }
     fn start_wave(&self, t: &SceneTransport, wave: &mut VertexWave, streams: Streams, alive: &mut Vec<u32>) {
         if !t.scene.in_packets() {

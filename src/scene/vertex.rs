@@ -3,8 +3,12 @@
 use crate::math::{Columns, columns};
 use glam::Vec3;
 
-/// One side of one primitive: `2·primitive`, plus 1 for the back.
+/// One side of one primitive: `2·primitive`, plus 1 for the back. From [`LIGHT`] on there is no surface.
 pub type Side = u32;
+/// `LIGHT + i` is light i, where it is a point or a direction.
+pub const LIGHT: Side = 1 << 31;
+/// The ray has left the scene: what comes from there is the sky's.
+pub const ESCAPED: Side = u32::MAX;
 
 /// A surface point with the direction radiance leaves in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -15,8 +19,21 @@ pub struct Vertex {
     pub n: Vec3,
     /// Unit direction ω away from the surface, towards whoever asks.
     pub omega: Vec3,
-    /// Which side of which primitive.
+    /// Which side of which primitive, or which light without a surface, or [`ESCAPED`].
     pub side: Side,
+}
+
+impl Vertex {
+    /// Where a ray in unit direction `d` leaves the scene.
+    pub(crate) fn escaped(p: Vec3, d: Vec3) -> Self {
+        Self { p, n: -d, omega: -d, side: ESCAPED }
+    }
+
+    /// Whether it lies on a surface.
+    #[inline(always)]
+    pub fn on_surface(&self) -> bool {
+        self.side < LIGHT
+    }
 }
 
 /// A wave of vertices as columns, with room for the rays between them.

@@ -80,8 +80,10 @@ pub enum Bsdf {
 impl Bsdf {
     /// The side of a surface: `back` is the side the normal points away from.
     pub fn new(description: &BsdfDescription, back: bool) -> Self {
-        let _ = (description, back);
-        Self::Black
+        match description {
+            BsdfDescription::Diffuse { reflectance: super::description::Colour::Uniform(r) } => Self::Diffuse(diffuse::Diffuse { reflectance: r.as_vec3() }),
+            _ => { let _ = back; Self::Black }
+        }
     }
 
     /// The same with another reflectance where a texture gives it: that of the diffuse part.
@@ -115,6 +117,7 @@ impl Bsdf {
 
     /// The largest albedo of any direction: the local bound on ‖K‖₁.
     pub fn max_albedo(&self) -> Rgb {
+        if let Self::Diffuse(d) = self { return d.reflectance; }
         Rgb::ZERO
     }
 

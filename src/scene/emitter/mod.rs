@@ -1,52 +1,156 @@
-//! Choosing a point on the lights: a light uniformly, then a point uniformly by area.
+//! Lights: which one, which point of it, and with what density.
 //!
-//! `p_A = 1 / (number of lights · area of the light)`; the change to solid angle is in
-//! [`connect`](crate::operator::scene_transport), and nowhere else.
+//! A light is a shape that emits (a mesh is one light, and its triangles share its area), a point, a direction, or the sky.
 //!
-//! A light is a shape that emits; a mesh is one light, and its triangles share its area.
+//! | notation | meaning | place |
+//! |---|---|---|
+//! | P_i | probability of light i: 1/n, or Φ_i/ΣΦ | [`Selection`] |
+//! | p_A = P_i/A_i | density on a surface, m⁻² | [`Lights::density`] |
+//! | p_ω | density in solid angle at the receiver: p_A r²/cos θ_y; of a sphere, P_i over its solid angle ([`cone`]) | `LightSample::pdf` |
+//! | Φ | power, W: π A L, 4π I, π R² H, 4π² R² L̄ (R the radius of the scene) | `power` |
+//!
+//! Powers are compared by luminance. Reference: Shirley, Wang, Zimmerman, *Monte Carlo Techniques for Direct Lighting
+//! Calculations* (1996); Pharr, Jakob, Humphreys, *Physically Based Rendering* (4th ed. 2023), ch. 12.
 
-use super::description::Description;
+pub mod cone;
+pub mod environment;
+
+use super::description::{Description, Geometry, LightDescription};
 use super::primitive::Primitive;
+use crate::math::Rgb;
+use environment::Environment;
+use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
 
+/// How a light is selected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Selection {
+    /// Every light with the same probability.
+    #[default]
+    Uniform,
+    /// In proportion to its power.
+    Power,
+}
+
+impl std::fmt::Display for Selection {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(if *self == Self::Uniform { "uniform" } else { "power" })
+    }
+}
+
+/// A light.
 #[derive(Clone, Debug)]
-struct Light {
-    prims: Vec<u32>,
-    /// Cumulative share of the light's area, ending in 1.
-    cdf: Vec<f32>,
+pub(crate) enum Light {
+    /// Primitives with cumulative shares of the area, ending in 1.
+    Surface { prims: Vec<u32>, cdf: Vec<f32> },
+    /// A whole sphere that emits outwards.
+    Ball { prim: u32, center: Vec3, radius: f32 },
+    /// From a point; W/sr.
+    Point { position: Vec3, intensity: Rgb },
+    /// Along a unit direction; W/m².
+    Directional { direction: Vec3, irradiance: Rgb },
+    /// From the sky.
+    Environment,
 }
 
 /// All lights of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
-    lights: Vec<Light>,
-    /// p_A in m⁻² by primitive; 0 for what does not emit.
+    pub(crate) lights: Vec<Light>,
+    power: Vec<f64>,
+    selection: Selection,
+    /// P_i, and their sums.
+    probability: Vec<f64>,
+    cdf: Vec<f32>,
+    /// By primitive: its light, and p_A in m⁻²; 0 for what does not emit.
+    of_prim: Vec<u32>,
+    area: Vec<f64>,
     pub(crate) density: Vec<f32>,
+    /// The sky, and its number among the lights.
+    pub(crate) environment: Option<(Environment, u32)>,
+}
+
+const NONE: u32 = u32::MAX;
+
+fn luminance(c: DVec3) -> f64 {
+    c.dot(DVec3::new(0.2126, 0.7152, 0.0722))
 }
 
 impl Lights {
-    pub(crate) fn new(description: &Description, prims: &[(usize, Primitive)]) -> Self {
-        let emits = |shape: usize| description.shapes[shape].emission.max_element() > 0.0;
-        let mut lights = vec![];
-        let mut areas = vec![];
-        for shape in (0..description.shapes.len()).filter(|&s| emits(s)) {
-            let mine: Vec<u32> = (0..prims.len()).filter(|&i| prims[i].0 == shape).map(|i| i as u32).collect();
+    /// `radius` is that of the scene.
+    pub(crate) fn new(description: &Description, prims: &[(usize, Primitive)], radius: f64) -> Self {
+        let mut all = Self { of_prim: vec![NONE; prims.len()], ..Self::default() };
+        for (s, shape) in description.shapes.iter().enumerate() {
+            if shape.emission.max_element() <= 0.0 {
+                continue;
+            }
+            let mine: Vec<u32> = (0..prims.len()).filter(|&i| prims[i].0 == s).map(|i| i as u32).collect();
+            mine.iter().for_each(|&i| all.of_prim[i as usize] = all.lights.len() as u32);
             let area: f64 = mine.iter().map(|&i| prims[i as usize].1.area()).sum();
             let mut up_to = 0.0;
             let cdf = mine.iter().map(|&i| {
                 up_to += prims[i as usize].1.area() / area;
                 up_to as f32
             });
-            let cdf = cdf.collect();
-            lights.push(Light { prims: mine, cdf });
-            areas.push(area);
+            let light = match shape.geometry {
+                Geometry::Sphere { center, radius, z, inward: false } if z == [-1.0, 1.0] => {
+                    Light::Ball { prim: mine[0], center: center.as_vec3(), radius: radius as f32 }
+                }
+                _ => Light::Surface { cdf: cdf.collect(), prims: mine },
+            };
+            all.push(light, PI * area * luminance(shape.emission), area);
         }
-        let mut density = vec![0.0; prims.len()];
-        for (light, area) in lights.iter().zip(&areas) {
-            for &i in &light.prims {
-                density[i as usize] = (1.0 / (lights.len() as f64 * area)) as f32;
+        for light in &description.lights {
+            match light {
+                LightDescription::Point { position, intensity } => {
+                    let light = Light::Point { position: position.as_vec3(), intensity: intensity.as_vec3() };
+                    all.push(light, 4.0 * PI * luminance(*intensity), 0.0);
+                }
+                LightDescription::Directional { direction, irradiance } => {
+                    let direction = direction.normalize().as_vec3();
+                    let light = Light::Directional { direction, irradiance: irradiance.as_vec3() };
+                    all.push(light, PI * radius * radius * luminance(*irradiance), 0.0);
+                }
+                LightDescription::Environment { sky, rotate, scale } => {
+                    let sky = Environment::new(sky, *rotate, *scale);
+                    let power = 4.0 * PI * PI * radius * radius * luminance(sky.mean());
+                    all.environment = Some((sky, all.lights.len() as u32));
+                    all.push(Light::Environment, power, 0.0);
+                }
             }
         }
-        Self { lights, density }
+        all.select(Selection::Uniform);
+        all
+    }
+
+    fn push(&mut self, light: Light, power: f64, area: f64) {
+        self.lights.push(light);
+        self.power.push(power);
+        self.area.push(area);
+    }
+
+    /// Chooses lights in another way.
+    pub(crate) fn select(&mut self, selection: Selection) {
+        let (n, total) = (self.lights.len() as f64, self.power.iter().sum::<f64>());
+        let uniform = selection == Selection::Uniform || total <= 0.0;
+        self.selection = selection;
+        self.probability = self.power.iter().map(|p| if uniform { 1.0 / n } else { p / total }).collect();
+        let sums = self.probability.iter().scan(0.0, |sum, p| {
+            *sum += p;
+            Some(*sum as f32)
+        });
+        self.cdf = sums.collect();
+        let density = |&light: &u32| match light {
+            NONE => 0.0,
+            i if uniform => (1.0 / (n * self.area[i as usize])) as f32,
+            i => (self.probability[i as usize] / self.area[i as usize]) as f32,
+        };
+        self.density = self.of_prim.iter().map(density).collect();
+    }
+
+    /// How lights are selected.
+    pub fn selection(&self) -> Selection {
+        self.selection
     }
 
     /// Number of lights.
@@ -59,20 +163,61 @@ impl Lights {
         self.lights.is_empty()
     }
 
-    /// The emitting primitive, if there is only one.
+    /// P_i.
+    #[inline(always)]
+    pub(crate) fn probability(&self, light: u32) -> f32 {
+        self.probability[light as usize] as f32
+    }
+
+    /// Power of each light by luminance, W.
+    pub fn powers(&self) -> &[f64] {
+        &self.power
+    }
+
+    /// Whether some light has no area, so that no ray hits it.
+    pub fn any_delta(&self) -> bool {
+        self.lights.iter().any(|l| matches!(l, Light::Point { .. } | Light::Directional { .. }))
+    }
+
+    /// The emitting primitive, if there is only one and nothing else emits.
     pub(crate) fn only(&self) -> Option<u32> {
         match self.lights.as_slice() {
-            [light] if light.prims.len() == 1 => Some(light.prims[0]),
+            [Light::Surface { prims, .. }] if prims.len() == 1 => Some(prims[0]),
             _ => None,
         }
     }
 
-    /// The light and the primitive on it that two uniform numbers choose.
+    /// The sphere light that a primitive is.
     #[inline(always)]
-    pub(crate) fn choose(&self, u: [f32; 2]) -> u32 {
+    pub(crate) fn ball(&self, prim: u32) -> Option<(Vec3, f32, f32)> {
+        let light = self.of_prim[prim as usize];
+        match self.lights.get(light as usize) {
+            Some(&Light::Ball { center, radius, .. }) => Some((center, radius, self.probability(light))),
+            _ => None,
+        }
+    }
+
+    /// The light that a uniform number selects.
+    #[inline(always)]
+    pub(crate) fn choose(&self, u: f32) -> u32 {
         let n = self.lights.len();
-        let light = &self.lights[((u[0] * n as f32) as usize).min(n - 1)];
-        let i = if light.prims.len() == 1 { 0 } else { light.cdf.partition_point(|&c| c <= u[1]) };
-        light.prims[i.min(light.prims.len() - 1)]
+        let i = match self.selection {
+            Selection::Uniform => (u * n as f32) as usize,
+            Selection::Power => self.cdf.partition_point(|&c| c <= u),
+        };
+        i.min(n - 1) as u32
+    }
+
+    /// The primitive of a light that a uniform number selects, if the light has any.
+    #[inline(always)]
+    pub(crate) fn primitive(&self, light: u32, u: f32) -> Option<u32> {
+        match &self.lights[light as usize] {
+            Light::Surface { prims, cdf } => {
+                let i = if prims.len() == 1 { 0 } else { cdf.partition_point(|&c| c <= u) };
+                Some(prims[i.min(prims.len() - 1)])
+            }
+            Light::Ball { prim, .. } => Some(*prim),
+            _ => None,
+        }
     }
 }

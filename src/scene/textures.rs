@@ -1,0 +1,67 @@
+//! Reflectance from images: which primitive has which, and where on it a point lies.
+//!
+//! (u, v) runs along the edges of a parallelogram; on a triangle it is interpolated with the areas of the three parts.
+
+use super::description::{BsdfDescription, Colour, Description, Geometry};
+use super::primitive::Primitive;
+use super::raster::Raster;
+use super::shape::Shape;
+use crate::math::Rgb;
+use glam::Vec3;
+use std::sync::Arc;
+
+pub(crate) struct Textures {
+    images: Vec<Arc<Raster>>,
+    /// By primitive: which image, and the coordinates of a triangle's corners.
+    of_prim: Vec<Option<(usize, [[f32; 2]; 3])>>,
+}
+
+impl Textures {
+    /// Nothing if no material has a texture.
+    pub(crate) fn new(description: &Description, prims: &[(usize, Primitive)]) -> Option<Self> {
+        let mut all = Self { images: vec![], of_prim: vec![None; prims.len()] };
+        let mut first = 0;
+        for (number, shape) in description.shapes.iter().enumerate() {
+            let count = prims[first..].iter().take_while(|(s, _)| *s == number).count();
+            let colour = match &description.materials[shape.material].bsdf {
+                BsdfDescription::Diffuse { reflectance }
+                | BsdfDescription::Plastic { reflectance, .. }
+                | BsdfDescription::Phong { reflectance, .. } => Some(reflectance),
+                _ => None,
+            };
+            if let Some(Colour::Texture(image)) = colour {
+                let known = all.images.iter().position(|i| Arc::ptr_eq(i, image));
+                let image = known.unwrap_or_else(|| {
+                    all.images.push(image.clone());
+                    all.images.len() - 1
+                });
+                for i in 0..count {
+                    let uvs = match &shape.geometry {
+                        Geometry::Mesh { uvs, .. } if !uvs.is_empty() => uvs[i].map(|uv| uv.as_vec2().to_array()),
+                        _ => [[0.0; 2]; 3],
+                    };
+                    all.of_prim[first + i] = Some((image, uvs));
+                }
+            }
+            first += count;
+        }
+        (!all.images.is_empty()).then_some(all)
+    }
+
+    /// The image's value at a point of a primitive that has one.
+    pub(crate) fn reflectance(&self, prim: u32, shape: &Shape, p: Vec3) -> Option<Rgb> {
+        let (image, [a, b, c]) = self.of_prim[prim as usize]?;
+        let w = shape.coordinates(p);
+        let uv = match shape {
+            Shape::Triangle(_) => [0, 1].map(|i| a[i] * w[0] + b[i] * w[1] + c[i] * w[2]),
+            _ => [w[0], w[1]],
+        };
+        Some(self.images[image].bilinear(uv))
+    }
+
+    /// The largest value per channel of a primitive's image.
+    pub(crate) fn brightest(&self, prim: usize) -> Option<Rgb> {
+        let (image, _) = self.of_prim[prim]?;
+        Some(self.images[image].texels.iter().fold(Rgb::ZERO, |a, &b| a.max(b)))
+    }
+}
