@@ -7,12 +7,17 @@
 //! |---|---|---|
 //! | single | each X_k from a path of its own | [`single_term`] |
 //! | prefix | all X_k from one path, by its prefixes | [`prefix`] |
+//! | light | all X_k from one particle, walked from the light | [`light_tracer`] |
+//! | bidirectional | every way to find each path from both ends, weighted | [`bidirectional`] |
 //! | path tracer | the sum alone, independent code | [`path_tracer`] |
 //! | gather | the matrix solution, read through one sampled application of T | [`gather`] |
 //!
 //! Slots of the result: k = 0..=K for the terms, K + 1 for the tail; the path tracer has one slot.
 
+pub mod bidirectional;
+pub mod densities;
 pub mod gather;
+pub mod light_tracer;
 pub mod path_tracer;
 pub mod paths;
 pub mod prefix;
@@ -21,7 +26,9 @@ pub mod roulette;
 pub mod single_term;
 pub mod technique;
 
+pub use bidirectional::{Bidirectional, Pyramid};
 pub use gather::Gather;
+pub use light_tracer::LightTracer;
 pub use path_tracer::PathTracer;
 pub use paths::{Batch, Paths};
 pub use prefix::Prefix;
@@ -55,6 +62,10 @@ pub struct Plan {
 pub trait TermEstimator<T: Transport>: Sync {
     /// Number of slots a sample has.
     fn slots(&self) -> usize;
+    /// Whether samples add to pixels other than their own.
+    fn splats(&self) -> bool {
+        false
+    }
     /// One sample per path of the batch into the sink.
     fn sample(
         &self,

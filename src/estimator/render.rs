@@ -5,7 +5,7 @@
 //! thread, so the sums are the same bits for any number of threads.
 
 use super::{Batch, Paths, TermEstimator, TermSink};
-use crate::math::{Columns, Key};
+use crate::math::{Columns, Key, Rgb};
 use crate::operator::{Sensor, Transport};
 use crate::terms::film::{BLOCK, FilmBlock, Shape, TermFilm};
 use rayon::prelude::*;
@@ -111,6 +111,9 @@ fn pass<T: Transport>(
         watch.paths(samples.len() as u64 * u64::from(pixels.end - pixels.start));
         (block.rays, block.non_finite)
     };
+    if estimator.splats() {
+        return splat(t, sensor, estimator, key, samples, film, watch, stop);
+    }
     let totals = sums
         .zip(counts)
         .enumerate()
@@ -118,4 +121,66 @@ fn pass<T: Transport>(
         .reduce(|| (vec![0; shape.slots], 0), |a, b| (a.0.iter().zip(&b.0).map(|(a, b)| a + b).collect(), a.1 + b.1));
     film.rays.iter_mut().zip(totals.0).for_each(|(all, more): (&mut u64, u64)| *all += more);
     film.non_finite += totals.1;
+}
+
+/// What one job adds to the film, wherever.
+#[derive(Default)]
+struct Splats {
+    /// Slot, pixel, sample, value.
+    list: Vec<(u32, u32, u32, Rgb)>,
+    rays: Vec<u64>,
+}
+
+impl TermSink for Splats {
+    fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
+        for i in 0..pixel.len() {
+            let v = value.get(i);
+            if v != Rgb::ZERO {
+                self.list.push((slot as u32, pixel[i], sample[i], v));
+            }
+        }
+    }
+    fn rays(&mut self, slot: usize, rays: usize) {
+        self.rays[slot] += rays as u64;
+    }
+}
+
+/// Blocks whose splats are held at once.
+const AT_ONCE: usize = 32;
+
+/// A pass of an estimator that adds to any pixel: blocks run side by side, and their splats are added in the order of the blocks.
+#[allow(clippy::too_many_arguments)] // as its caller
+fn splat<T: Transport>(
+    t: &T,
+    sensor: &impl Sensor<T>,
+    estimator: &impl TermEstimator<T>,
+    key: Key,
+    samples: std::ops::Range<u32>,
+    film: &mut TermFilm,
+    watch: &(impl Watch + ?Sized),
+    stop: &AtomicBool,
+) {
+    let (shape, pixels) = (film.shape, film.shape.pixels() as u32);
+    let blocks: Vec<u32> = (0..pixels).step_by(BLOCK).collect();
+    // a pass that is left half-way would darken every pixel, so that a pass is all or nothing but for whole samples
+    for sample in samples {
+        if sample > 0 && stop.load(Ordering::Relaxed) {
+            return;
+        }
+        for some in blocks.chunks(AT_ONCE) {
+            let job = |paths: &mut Paths<T::Wave>, &first: &u32| {
+                let mut splats = Splats { rays: vec![0; shape.slots], ..Splats::default() };
+                let pixels = first..(first + BLOCK as u32).min(pixels);
+                watch.paths(u64::from(pixels.end - pixels.start));
+                estimator.sample(t, sensor, &Batch { key, pixels, samples: sample..sample + 1 }, paths, &mut splats);
+                splats
+            };
+            let done: Vec<Splats> = some.par_iter().map_init(Paths::default, job).collect();
+            for splats in done {
+                splats.list.iter().for_each(|&(slot, pixel, sample, v)| film.splat(slot, pixel, sample, v));
+                film.rays.iter_mut().zip(&splats.rays).for_each(|(all, more)| *all += more);
+            }
+        }
+        film.samples.iter_mut().for_each(|n| *n += 1);
+    }
 }

@@ -35,6 +35,24 @@ impl SingleTerm {
     }
 }
 
+impl SingleTerm {
+    /// Everything beyond K, from paths of its own; nothing where no roulette ends them.
+    pub(super) fn tail<T: Transport>(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        batch: &Batch,
+        paths: &mut Paths<T::Wave>,
+        sink: &mut impl TermSink,
+    ) {
+        let max_bounces = self.0.max_bounces;
+        if self.0.roulette.ends() {
+            self.walk(t, sensor, batch, max_bounces + 1, max_bounces, paths, sink);
+            prefix::follow(t, &self.0, max_bounces, paths, sink);
+        }
+    }
+}
+
 impl<T: Transport> TermEstimator<T> for SingleTerm {
     fn slots(&self) -> usize {
         self.0.max_bounces + 2
@@ -70,9 +88,6 @@ impl<T: Transport> TermEstimator<T> for SingleTerm {
                 paths.score_hits(technique, k, sink);
             }
         }
-        if roulette.ends() {
-            self.walk(t, sensor, batch, max_bounces + 1, max_bounces, paths, sink);
-            prefix::follow(t, &self.0, max_bounces, paths, sink);
-        }
+        self.tail(t, sensor, batch, paths, sink);
     }
 }

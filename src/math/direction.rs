@@ -72,6 +72,15 @@ pub fn cosine_hemisphere(n: Vec3, u: [f32; 2]) -> (Vec3, f32) {
     (about(n, r * c, r * s, z), z)
 }
 
+/// A direction with density 1/4π.
+#[inline(always)]
+pub fn uniform_sphere(u: [f32; 2]) -> Vec3 {
+    let (c, s) = cos_sin_turn(u[1]);
+    let z = 1.0 - 2.0 * u[0];
+    let r = 2.0 * (u[0] * (1.0 - u[0])).sqrt();
+    Vec3::new(r * c, r * s, z)
+}
+
 /// A direction with density 1/2π about `n`, and its cosine (never 0).
 #[inline(always)]
 pub fn uniform_hemisphere(n: Vec3, u: [f32; 2]) -> (Vec3, f32) {

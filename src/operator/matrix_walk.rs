@@ -13,7 +13,8 @@
 //! | E | `emission` | one per row and channel |
 //! | c_j | `1/(number of emitting rows)` | density of next-event estimation |
 
-use super::transport::{Sensor, Step, Transport};
+use super::adjoint::{Adjoint, Role, Toward, Walk};
+use super::transport::{Seen, Sensor, Step, Transport};
 use crate::math::{Rgb, Rng};
 
 /// A random walk on the rows of T = diag(ρ) F.
@@ -21,8 +22,9 @@ use crate::math::{Rgb, Rng};
 pub struct MatrixWalk {
     n: usize,
     rows: Vec<f64>,
-    /// Partial sums along each row.
+    /// Partial sums along each row, and down each column.
     cdf: Vec<f64>,
+    down: Vec<f64>,
     rho: Vec<Rgb>,
     emission: Vec<Rgb>,
     emitters: Vec<usize>,
@@ -44,8 +46,10 @@ impl MatrixWalk {
             sums.collect::<Vec<f64>>()
         };
         let cdf = rows.chunks(n).flat_map(partial).collect();
+        let column = |j: usize| (0..n).map(|i| rows[i * n + j]).collect::<Vec<_>>();
+        let down = (0..n).flat_map(|j| partial(&column(j))).collect();
         let emitters = (0..n).filter(|&i| emission[i] != Rgb::ZERO).collect();
-        Self { n, rows, cdf, rho, emission, emitters }
+        Self { n, rows, cdf, down, rho, emission, emitters }
     }
 
     /// The exact terms `T^k E`, k = 0..=`k_max`, one vector of rows each.
@@ -104,6 +108,82 @@ impl Transport for MatrixWalk {
     }
 }
 
+impl MatrixWalk {
+    /// The exact `((T*)^k W)_j`, k = 0..=`k_max`, for an importance W of rows; T* is the transpose.
+    pub fn adjoint_powers(&self, importance: &[glam::DVec3], k_max: usize) -> Vec<Vec<glam::DVec3>> {
+        let mut terms = vec![importance.to_vec()];
+        for k in 0..k_max {
+            let column = |j: usize| {
+                (0..self.n).map(|i| terms[k][i] * self.rho[i].as_dvec3() * self.rows[i * self.n + j]).sum()
+            };
+            let next = (0..self.n).map(column).collect();
+            terms.push(next);
+        }
+        terms
+    }
+
+    fn column(&self, j: u32) -> &[f64] {
+        &self.down[j as usize * self.n..(j as usize + 1) * self.n]
+    }
+}
+
+/// From row j light goes to i with probability F_ij over the column's sum.
+impl Adjoint for MatrixWalk {
+    fn emit(&self, rng: &mut Rng) -> Option<(u32, f32)> {
+        let count = self.emitters.len();
+        let j = self.emitters.get(((rng.one() * count as f32) as usize).min(count.saturating_sub(1)))?;
+        Some((*j as u32, 1.0 / count as f32))
+    }
+
+    fn emit_density(&self, &j: &u32) -> f32 {
+        if self.emission[j as usize] == Rgb::ZERO { 0.0 } else { 1.0 / self.emitters.len() as f32 }
+    }
+
+    fn connect_density(&self, _: &u32, at: &u32) -> f32 {
+        self.emit_density(at)
+    }
+
+    fn walk(&self, at: &u32, role: Role, rng: &mut Rng) -> Option<Walk<u32>> {
+        if role == Role::Radiance {
+            let s = self.scatter(at, rng)?;
+            return Some(Walk { state: s.state, weight: s.weight, density: s.pdf, delta: None });
+        }
+        let (u, column) = (rng.four(), self.column(*at));
+        let sum = *column.last()?;
+        let u = (f64::from(u[0]) + f64::from(u[1]) / 16_777_216.0) * sum;
+        let i = column.partition_point(|&c| c <= u);
+        let go = self.toward(at, &(i as u32), role);
+        (i < self.n).then(|| Walk { state: i as u32, weight: go.value * sum as f32, density: go.density, delta: None })
+    }
+
+    fn toward(&self, &at: &u32, &to: &u32, role: Role) -> Toward {
+        let (i, j) = (at as usize, to as usize);
+        if i >= self.n || j >= self.n {
+            return Toward::default();
+        }
+        let sum = self.column(at)[self.n - 1];
+        match role {
+            Role::Radiance => Toward { value: self.rho[i], density: self.rows[i * self.n + j] as f32 },
+            _ => Toward {
+                value: if role == Role::Flux { self.rho[i] } else { self.emission[i] },
+                density: if sum > 0.0 { (self.rows[j * self.n + i] / sum) as f32 } else { 0.0 },
+            },
+        }
+    }
+
+    fn delta_density(&self, _: &u32, _: &u32, choice: f32) -> f32 {
+        choice
+    }
+
+    fn facing(&self, at: &u32, _: &u32) -> u32 {
+        *at
+    }
+
+    fn link(&self, &eye: &u32, &light: &u32) -> f32 {
+        self.rows[eye as usize * self.n + light as usize] as f32
+    }
+}
+
 /// Pixel i asks for row i.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows(pub u32);
@@ -114,5 +194,8 @@ impl Sensor<MatrixWalk> for Rows {
     }
     fn start(&self, _: &MatrixWalk, pixel: u32, _: &mut Rng) -> Option<u32> {
         Some(pixel)
+    }
+    fn project(&self, _: &MatrixWalk, &at: &u32) -> Option<Seen<u32>> {
+        Some(Seen { pixel: at, eye: at, importance: 1.0, density: 1.0 })
     }
 }

@@ -8,13 +8,16 @@
 //!
 //! Sampling is the trait [`Transport`]; applying is [`matrix::LinearOperator`].
 
+pub mod adjoint;
 pub mod form_factor;
 pub mod matrix;
 pub mod matrix_walk;
 pub mod patches;
+mod scene_adjoint;
 pub mod scene_transport;
 pub mod transport;
 
+pub use adjoint::{Adjoint, Role};
 pub use matrix_walk::MatrixWalk;
 pub use scene_transport::SceneTransport;
-pub use transport::{Samples, Sensor, Step, Transport, Wave};
+pub use transport::{Samples, Seen, Sensor, Step, Transport, Wave};

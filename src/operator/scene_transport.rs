@@ -15,7 +15,7 @@
 
 use super::form_factor::Visibility;
 use super::patches::SurfacePoint;
-use super::transport::{self, Samples, Sensor, Step, Transport, Wave};
+use super::transport::{self, Samples, Seen, Sensor, Step, Transport, Wave};
 use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::math::direction::Frame;
 use crate::scene::bsdf::{Bsdf, Carried, Sampling, diffuse, diffuse::Diffuse};
@@ -61,19 +61,19 @@ impl<'a> SceneTransport<'a> {
 }
 
 /// A direction at a vertex, before anybody has looked along it.
-struct Departure {
-    direction: Vec3,
+pub(super) struct Departure {
+    pub(super) direction: Vec3,
     /// The normal on the side it leaves by.
-    normal: Vec3,
-    weight: Rgb,
-    pdf: f32,
-    delta: bool,
+    pub(super) normal: Vec3,
+    pub(super) weight: Rgb,
+    pub(super) pdf: f32,
+    pub(super) delta: bool,
 }
 
 impl SceneTransport<'_> {
     /// A direction at a vertex: nothing where the sample is zero.
     #[inline(always)]
-    fn depart(&self, at: &Vertex, carried: Carried, u: [f32; 4]) -> Option<Departure> {
+    pub(super) fn depart(&self, at: &Vertex, carried: Carried, u: [f32; 4]) -> Option<Departure> {
         match self.scene.bsdf(at) {
             Bsdf::Black => None,
             Bsdf::Diffuse(Diffuse { reflectance }) => (reflectance != Rgb::ZERO).then(|| {
@@ -91,7 +91,7 @@ impl SceneTransport<'_> {
 
     /// f cos θ and the density of scattering, towards unit direction `to`; the normal on that side.
     #[inline(always)]
-    fn towards(&self, at: &Vertex, to: Vec3, carried: Carried) -> Option<(Rgb, f32, Vec3)> {
+    pub(super) fn towards(&self, at: &Vertex, to: Vec3, carried: Carried) -> Option<(Rgb, f32, Vec3)> {
         let cos = at.n.dot(to);
         match self.scene.bsdf(at) {
             Bsdf::Black => None,
@@ -311,6 +311,15 @@ impl Sensor<SceneTransport<'_>> for Camera {
     fn start(&self, t: &SceneTransport, pixel: u32, rng: &mut Rng) -> Option<Vertex> {
         let u = rng.four();
         t.scene.look(self.origin, self.direction(pixel, [u[0], u[1]]))
+    }
+    fn project(&self, t: &SceneTransport, at: &Vertex) -> Option<Seen<Vertex>> {
+        self.see(t, at)
+    }
+    fn density(&self, t: &SceneTransport, at: &Vertex) -> f32 {
+        self.start_density(t, at)
+    }
+    fn sees(&self, t: &SceneTransport, at: &Vertex) -> bool {
+        self.unhidden(t, at)
     }
     fn start_wave(&self, t: &SceneTransport, wave: &mut VertexWave, streams: Streams, alive: &mut Vec<u32>) {
         if !t.scene.in_packets() {

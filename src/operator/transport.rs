@@ -158,12 +158,37 @@ impl Samples {
     }
 }
 
+/// A state as a sensor sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen<S> {
+    /// By which pixel.
+    pub pixel: u32,
+    /// Stands for the sensor where a state's neighbour is asked for.
+    pub eye: S,
+    /// W over the cosine at the state, with the geometry between.
+    pub importance: f32,
+    /// Density with which a path of that pixel starts there, in the measure of the state.
+    pub density: f32,
+}
+
 /// Where paths start, over any transport: one state per (pixel, sample), or nothing where radiance is zero.
 pub trait Sensor<T: Transport>: Sync {
     /// Width and height; pixels are numbered row by row.
     fn size(&self) -> [u32; 2];
     /// The start of one path.
     fn start(&self, t: &T, pixel: u32, rng: &mut Rng) -> Option<T::State>;
+    /// The pixel that sees a state, were nothing between; nothing for a sensor that light cannot be led to.
+    fn project(&self, _t: &T, _at: &T::State) -> Option<Seen<T::State>> {
+        None
+    }
+    /// Density with which a path of the pixel that sees it starts at a state, in the measure of the state.
+    fn density(&self, t: &T, at: &T::State) -> f32 {
+        self.project(t, at).map_or(0.0, |seen| seen.density)
+    }
+    /// Whether nothing stands between the sensor and a state that it projects to a pixel.
+    fn sees(&self, _t: &T, _at: &T::State) -> bool {
+        true
+    }
     /// The starts of a wave; indices of those that exist are pushed to `alive`, ascending.
     fn start_wave(&self, t: &T, wave: &mut T::Wave, streams: Streams, alive: &mut Vec<u32>) {
         start_one_by_one(self, t, wave, streams, alive);

@@ -313,14 +313,82 @@ impl Scene {
         if density == 0.0 {
             return 0.0;
         }
-        if let Some((center, radius, probability)) = self.lights.ball(at.side / 2) {
-            let pdf = cone::pdf(x, center, radius);
-            if pdf > 0.0 {
-                return pdf * probability;
-            }
+        if let Some(pdf) = self.cone_pdf(x, at) {
+            return pdf;
         }
         let (_, r2, _, cos) = connection(x, Vec3::ZERO, at.p, at.n);
         solid_angle(density, r2, cos)
+    }
+
+    /// The light without a surface that a vertex stands for.
+    #[inline(always)]
+    pub(crate) fn light_of(&self, at: &Vertex) -> Option<&Light> {
+        match at.side {
+            side if side < LIGHT => None,
+            ESCAPED => self.lights.environment.as_ref().map(|(_, light)| &self.lights.lights[*light as usize]),
+            side => self.lights.lights.get((side - LIGHT) as usize),
+        }
+    }
+
+    /// Where light starts, as four uniform numbers choose, and the density in the measure of the state: m⁻² on a surface,
+    /// sr⁻¹ for the sky, a probability for a point or a direction.
+    pub(crate) fn emit(&self, u: [f32; 4]) -> Option<(Vertex, f32)> {
+        if self.lights.is_empty() {
+            return None;
+        }
+        let light = self.lights.choose(u[0]);
+        let probability = self.lights.probability(light);
+        Some(match self.lights.lights[light as usize] {
+            Light::Point { position, .. } => {
+                (Vertex { p: position, n: Vec3::ZERO, omega: Vec3::ZERO, side: LIGHT + light }, probability)
+            }
+            Light::Directional { direction, .. } => {
+                let state = Vertex::escaped(self.beyond(self.center, -direction), -direction);
+                (Vertex { n: Vec3::ZERO, side: LIGHT + light, ..state }, probability)
+            }
+            Light::Environment => {
+                let (d, density) = self.sky_sample([u[2], u[3]]);
+                (Vertex::escaped(self.beyond(self.center, d), d), density * probability)
+            }
+            Light::Surface { .. } | Light::Ball { .. } => {
+                let prim = self.lights.primitive(light, u[1])?;
+                let shape = &self.accel.shapes[prim as usize];
+                let p = shape.point([u[2], u[3]]);
+                let n = shape.normal(p);
+                (Vertex { p, n, omega: n, side: 2 * prim }, self.lights.density[prim as usize])
+            }
+        })
+    }
+
+    /// The density of [`Self::emit`] at a state.
+    pub(crate) fn emit_density(&self, at: &Vertex) -> f32 {
+        match (at.side, &self.lights.environment) {
+            (side, _) if side < LIGHT => self.light_density(side),
+            (ESCAPED, Some((sky, light))) => sky.pdf(-at.omega) * self.lights.probability(*light),
+            (ESCAPED, None) => 0.0,
+            (side, _) => self.lights.probability(side - LIGHT),
+        }
+    }
+
+    /// Centre of a sphere around everything.
+    pub(crate) fn center(&self) -> Vec3 {
+        self.center
+    }
+
+    /// Its radius, metres.
+    pub(crate) fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// The same where it is a sphere that is sampled by solid angle.
+    #[inline(always)]
+    pub(crate) fn cone_pdf(&self, x: Vec3, at: &Vertex) -> Option<f32> {
+        if !at.on_surface() || at.side & 1 == 1 {
+            return None;
+        }
+        let (center, radius, probability) = self.lights.ball(at.side / 2)?;
+        let pdf = cone::pdf(x, center, radius);
+        (pdf > 0.0).then_some(pdf * probability)
     }
 
     /// A point outside the scene in direction `d` from `x`.

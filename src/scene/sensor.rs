@@ -40,6 +40,22 @@ impl Camera {
         }
     }
 
+    /// The pixel that a unit direction goes through, if it is in the picture, and the density per solid angle with which its paths take it: the
+    /// inverse of the solid angle of the pixel there, `l³/|pixel|²` with l the length of the direction to the plane at 1.
+    pub(crate) fn pixel(&self, d: Vec3) -> Option<(Option<u32>, f32)> {
+        let pixel = self.across.length();
+        let (right, down) = (self.across / pixel, self.down / pixel);
+        let along = d.dot(right.cross(down));
+        if along <= 0.0 {
+            return None;
+        }
+        let q = d / along - self.corner;
+        let (x, y) = ((q.dot(right) / pixel).floor(), (q.dot(down) / pixel).floor());
+        let inside = x >= 0.0 && y >= 0.0 && x < self.size[0] as f32 && y < self.size[1] as f32;
+        let per_angle = 1.0 / (along * along * along * pixel * pixel);
+        Some((inside.then(|| y as u32 * self.size[0] + x as u32), per_angle))
+    }
+
     /// Unit direction through a point of a pixel, `u` in [0, 1)² from its top left corner.
     #[inline(always)]
     pub fn direction(&self, pixel: u32, u: [f32; 2]) -> Vec3 {

@@ -16,7 +16,7 @@
 //!
 //! Memory: `pixels · R · slots · 24` bytes. Sums are `f64`; nothing is clamped, and non-finite samples are counted and left in.
 
-use crate::math::Columns;
+use crate::math::{Columns, Rgb};
 use glam::DVec3;
 
 /// Extent of a film.
@@ -104,6 +104,17 @@ impl TermFilm {
     pub fn new(shape: Shape) -> Self {
         let sums = vec![0.0; shape.pixels() * shape.per_pixel()];
         Self { shape, samples: vec![0; shape.pixels()], rays: vec![0; shape.slots], non_finite: 0, sums }
+    }
+
+    /// Adds to any pixel, on behalf of sample number `sample`.
+    pub(crate) fn splat(&mut self, slot: u32, pixel: u32, sample: u32, value: Rgb) {
+        let first = pixel as usize / BLOCK * BLOCK;
+        let pixels = BLOCK.min(self.samples.len() - first);
+        let (replicates, pixel) = (self.shape.replicates, pixel as usize - first);
+        let at = first * self.shape.per_pixel()
+            + place(slot as usize, sample as usize % replicates, pixel, replicates, pixels);
+        (0..3).for_each(|c| self.sums[at + c] += f64::from(value[c]));
+        self.non_finite += u64::from(!(value.x + value.y + value.z).is_finite());
     }
 
     /// Sum of the samples of one pixel, replicate and slot.

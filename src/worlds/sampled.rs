@@ -2,7 +2,7 @@
 
 use super::{Observer, Settings};
 use crate::estimator::render::{Amount, Watch, render};
-use crate::estimator::{PathTracer, Plan, Prefix, SingleTerm, TermEstimator};
+use crate::estimator::{Bidirectional, LightTracer, PathTracer, Plan, Prefix, SingleTerm, TermEstimator};
 use crate::math::Key;
 use crate::operator::{SceneTransport, Sensor, Transport};
 use crate::scene::Scene;
@@ -21,11 +21,20 @@ pub enum Estimator {
     Single,
     /// All terms from the prefixes of one path.
     Prefix,
+    /// All terms from one particle, walked from the light.
+    Light,
+    /// All terms from walks from both ends.
+    Bidirectional,
 }
 
 impl fmt::Display for Estimator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if *self == Self::Single { "single" } else { "prefix" })
+        f.write_str(match self {
+            Self::Single => "single",
+            Self::Prefix => "prefix",
+            Self::Light => "light",
+            Self::Bidirectional => "bidirectional",
+        })
     }
 }
 
@@ -69,6 +78,8 @@ pub fn terms(
     let film = match estimator {
         Estimator::Prefix => render(&t, &scene.camera, &Prefix(plan), amount, &mut run, stop),
         Estimator::Single => render(&t, &scene.camera, &SingleTerm(plan), amount, &mut run, stop),
+        Estimator::Light => render(&t, &scene.camera, &LightTracer(plan), amount, &mut run, stop),
+        Estimator::Bidirectional => render(&t, &scene.camera, &Bidirectional(plan), amount, &mut run, stop),
     };
     let mut result = run.finish(&film, World::Terms, format!("{estimator}, {}", settings.technique));
     if !settings.roulette.ends() {

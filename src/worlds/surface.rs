@@ -35,7 +35,8 @@ pub fn norms(
     let mut watch = Advance(observer);
     let plan = settings.plan();
     let film = match estimator {
-        Estimator::Prefix => render(&t, &strip, &Prefix(plan), amount, &mut watch, stop),
+        // walks from the light cannot be led to this sensor
+        Estimator::Prefix | Estimator::Light | Estimator::Bidirectional => render(&t, &strip, &Prefix(plan), amount, &mut watch, stop),
         Estimator::Single => render(&t, &strip, &SingleTerm(plan), amount, &mut watch, stop),
     };
     image_replicates(&film)

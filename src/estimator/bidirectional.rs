@@ -1,0 +1,225 @@
+//! Every way to find a path from both ends, weighted so that each path counts once.
+//!
+//! A path z_0 … z_k of term k can be found with s = 0, 1, …, k + 1 of its vertices walked from the light and t = k + 1 − s
+//! from the eye:
+//!
+//! | s | how | |
+//! |---|---|---|
+//! | 0 | the eye's walk hits the light | `scatter` |
+//! | 1 | the eye's walk connects to the light | `connect` |
+//! | 2 … k | the two walks are linked | |
+//! | k + 1 | the light's walk connects to the eye | a splat: [`light_tracer`](super::light_tracer) |
+//!
+//! ```text
+//! X_k = Σ_s w_s · α_{t−1} S(x_{t−1}) V S(y_{s−1}) β_{s−1}        w_s = p_s / Σ_r p_r,  the balance heuristic over all k + 2 ways
+//! ```
+//!
+//! The densities p_r are those of [`densities`](super::densities). Terms beyond K have paths of their own, walked from the eye.
+//! [`Pyramid`] keeps the strategies apart. Reference: Lafortune and Willems, *Bi-directional Path Tracing* (1993); Veach and
+//! Guibas, *Bidirectional Estimators for Light Transport* (1994); Veach (1997), ch. 10.
+
+use super::densities::{Node, PathDensities};
+use super::light_tracer::LIGHT_STREAM;
+use super::{Batch, Paths, Plan, SingleTerm, TermEstimator, TermSink};
+use crate::math::{Columns, Key, Purpose, Rgb, Rng};
+use crate::operator::{Adjoint, Role, Sensor};
+
+/// The bidirectional estimator. The technique of the plan is that of the tail; with `Power` the weights are squared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bidirectional(pub Plan);
+
+/// One way to find one path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// Vertices walked from the light.
+    pub s: usize,
+    /// The term.
+    pub k: usize,
+    /// Where it adds.
+    pub pixel: u32,
+    /// What it adds if it were the only way.
+    pub value: Rgb,
+    /// Its share.
+    pub weight: f32,
+}
+
+impl Bidirectional {
+    /// Everything that one pair of walks finds; `rays` gets the slot of each ray.
+    pub fn find<T: Adjoint>(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        (key, pixel, sample): (Key, u32, u32),
+        mut found: impl FnMut(Found),
+        mut rays: impl FnMut(usize),
+    ) {
+        let last = self.0.max_bounces;
+        let squared = self.0.technique == super::Technique::Power;
+        let [w, h] = sensor.size();
+        let share = 1.0 / (w * h) as f32;
+        let eye_numbers = |v: usize, purpose: Purpose| Rng::at(key, pixel, sample, v, purpose);
+        let light_key = key.branch(LIGHT_STREAM);
+        let light_numbers = |v: usize, purpose: Purpose| Rng::at(light_key, pixel, sample, v, purpose);
+
+        // the two walks
+        let mut eye = vec![];
+        rays(0);
+        if let Some(start) = sensor.start(t, pixel, &mut eye_numbers(0, Purpose::Start)) {
+            let density = sensor.density(t, &start) * share;
+            eye.push(Node::new(start, Rgb::ONE, density));
+            super::densities::walk(t, &mut eye, last, Role::Radiance, |v| eye_numbers(v, Purpose::Scatter), &mut rays);
+        }
+        let mut light = vec![];
+        if let Some((start, density)) = t.emit(&mut light_numbers(0, Purpose::Start)) {
+            light.push(Node::new(start, Rgb::splat(1.0 / density), density));
+            super::densities::walk(t, &mut light, last, Role::Emission, |v| light_numbers(v, Purpose::Scatter), &mut rays);
+        }
+
+        // s = 0: the eye's walk is on a light
+        for (k, x) in eye.iter().enumerate() {
+            let e = t.emission(&x.state);
+            if e != Rgb::ZERO {
+                let weight = PathDensities::new(t, &eye[..=k], &[], None).weight(squared);
+                found(Found { s: 0, k, pixel, value: x.through * e, weight });
+            }
+        }
+        // s = 1: it connects to a light, chosen anew
+        for (v, x) in eye.iter().take(last).enumerate() {
+            rays(v + 1);
+            if let Some(c) = t.connect(&x.state, &mut eye_numbers(v, Purpose::Connect)) {
+                let y = Node::new(c.state, Rgb::ONE, t.emit_density(&c.state));
+                let weight = PathDensities::new(t, &eye[..=v], std::slice::from_ref(&y), None).weight(squared);
+                found(Found { s: 1, k: v + 1, pixel, value: x.through * c.weight * t.emission(&c.state), weight });
+            }
+        }
+        // s = 2 … k: the walks are linked
+        for (i, x) in eye.iter().enumerate() {
+            for (j, y) in light.iter().enumerate().skip(1).take(last.saturating_sub(i + 1)) {
+                let k = i + j + 1;
+                let here = t.toward(&x.state, &y.state, Role::Radiance).value;
+                let there = t.toward(&y.state, &x.state, Role::Flux).value;
+                let value = x.through * here * there * y.through;
+                if value != Rgb::ZERO {
+                    rays(k);
+                    let link = t.link(&x.state, &y.state);
+                    if link > 0.0 {
+                        let weight = PathDensities::new(t, &eye[..=i], &light[..=j], None).weight(squared);
+                        found(Found { s: j + 1, k, pixel, value: value * link, weight });
+                    }
+                }
+            }
+        }
+        // s = k + 1: the light's walk connects to the eye
+        for (k, y) in light.iter().enumerate() {
+            let Some(seen) = sensor.project(t, &y.state) else { continue };
+            let role = if k == 0 { Role::Emission } else { Role::Flux };
+            let value = y.through * t.toward(&y.state, &seen.eye, role).value * seen.importance;
+            if value != Rgb::ZERO {
+                rays(k);
+                if sensor.sees(t, &y.state) {
+                    let first = (seen.eye, seen.density * share);
+                    let weight = PathDensities::new(t, &[], &light[..=k], Some(first)).weight(squared);
+                    found(Found { s: k + 1, k, pixel: seen.pixel, value: value * share, weight });
+                }
+            }
+        }
+    }
+
+    /// A batch, with each find put into the slot that `slot` names.
+    fn batch<T: Adjoint>(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        batch: &Batch,
+        sink: &mut impl TermSink,
+        slot: impl Fn(&Found) -> usize,
+        weigh: impl Fn(&Found) -> f32,
+    ) {
+        let mut value = Columns::new(1);
+        let mut count = vec![0; self.0.max_bounces + 1];
+        for sample in batch.samples.clone() {
+            for pixel in batch.pixels.clone() {
+                let found = |f: Found| {
+                    value.set(0, f.value * weigh(&f));
+                    sink.add(slot(&f), &[f.pixel], &[sample], &value);
+                };
+                self.find(t, sensor, (batch.key, pixel, sample), found, |k| count[k] += 1);
+            }
+        }
+        count.iter().enumerate().for_each(|(k, &n)| sink.rays(k, n));
+    }
+}
+
+impl<T: Adjoint> TermEstimator<T> for Bidirectional {
+    fn slots(&self) -> usize {
+        self.0.max_bounces + 2
+    }
+
+    fn splats(&self) -> bool {
+        true
+    }
+
+    fn sample(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        batch: &Batch,
+        paths: &mut Paths<T::Wave>,
+        sink: &mut impl TermSink,
+    ) {
+        self.batch(t, sensor, batch, sink, |f| f.k, |f| f.weight);
+        SingleTerm(self.0.clone()).tail(t, sensor, batch, paths, sink);
+    }
+}
+
+/// The strategies of the bidirectional estimator kept apart: slot (k, s) holds w_s times what strategy s found of term k, so
+/// that the slots of a term add up to it; or, unweighted, what the strategy would give alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pyramid {
+    /// Terms and heuristic.
+    pub plan: Plan,
+    /// Whether values carry their weights.
+    pub weighted: bool,
+}
+
+impl Pyramid {
+    /// The slot of strategy s of term k.
+    pub fn slot(k: usize, s: usize) -> usize {
+        // terms before k have 2 + 3 + … + (k + 1) strategies
+        k * (k + 3) / 2 + s
+    }
+
+    /// Every (k, s), in the order of the slots.
+    pub fn strategies(max_bounces: usize) -> impl Iterator<Item = (usize, usize)> {
+        (0..=max_bounces).flat_map(|k| (0..=k + 1).map(move |s| (k, s)))
+    }
+}
+
+impl<T: Adjoint> TermEstimator<T> for Pyramid {
+    fn slots(&self) -> usize {
+        Self::slot(self.plan.max_bounces + 1, 0)
+    }
+
+    fn splats(&self) -> bool {
+        true
+    }
+
+    fn sample(&self, t: &T, sensor: &impl Sensor<T>, batch: &Batch, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        let weigh = |f: &Found| if self.weighted { f.weight } else { 1.0 };
+        // rays of a strategy are not told apart
+        let mut quiet = Quiet(sink);
+        Bidirectional(self.plan.clone()).batch(t, sensor, batch, &mut quiet, |f| Self::slot(f.k, f.s), weigh);
+    }
+}
+
+/// A sink that counts every ray in slot 0.
+struct Quiet<'a, S>(&'a mut S);
+
+impl<S: TermSink> TermSink for Quiet<'_, S> {
+    fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
+        self.0.add(slot, pixel, sample, value);
+    }
+    fn rays(&mut self, _: usize, rays: usize) {
+        self.0.rays(0, rays);
+    }
+}

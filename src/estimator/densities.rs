@@ -1,0 +1,166 @@
+//! With which density each strategy finds a path, and the weight of the one that did.
+//!
+//! ```text
+//! p_s = Π_{i < t} p→(z_i) · Π_{i ≥ t} p←(z_i)          t = k + 1 − s
+//! ```
+//!
+//! | notation | meaning | place |
+//! |---|---|---|
+//! | p→(z_i) | density of z_i walked from the eye, given z_{i−1} and z_{i−2} | `from_eye` |
+//! | p←(z_i) | density of z_i walked from the light, given z_{i+1} and z_{i+2} | `from_light` |
+//! | c(z_k) | density of next-event estimation, which stands for p←(z_k) where s = 1 | `connect` |
+//!
+//! Three consecutive vertices fix a density, so a walk knows all of its own but the two next to the junction: [`Node`] keeps
+//! them, and `PathDensities::new` asks for the four that are missing. p_s = 0 where strategy s cannot find the path: at a
+//! delta vertex no two walks are linked, and a light without area is never hit.
+
+use crate::math::{Rgb, Rng};
+use crate::operator::{Adjoint, Role};
+
+/// A vertex of a walk.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<S> {
+    /// Where, asked from its predecessor.
+    pub state: S,
+    /// Throughput before this vertex scatters.
+    pub through: Rgb,
+    /// Density with which the walk came here.
+    pub forward: f32,
+    /// Density with which a walk from the other end would come here.
+    pub reverse: f32,
+    /// Whether it scattered by a delta part, and the probability of that.
+    pub delta: Option<f32>,
+}
+
+impl<S> Node<S> {
+    /// The start of a walk.
+    pub fn new(state: S, through: Rgb, forward: f32) -> Self {
+        Self { state, through, forward, reverse: 0.0, delta: None }
+    }
+}
+
+/// Continues a walk from its start to at most `last` steps; `first` is the role of the first vertex. `rays` gets the number
+/// of each step.
+pub fn walk<T: Adjoint>(
+    t: &T,
+    nodes: &mut Vec<Node<T::State>>,
+    last: usize,
+    first: Role,
+    numbers: impl Fn(usize) -> Rng,
+    mut rays: impl FnMut(usize),
+) {
+    let (role, other) = opposite(first);
+    for v in 0..last {
+        let Node { state, through, .. } = nodes[v];
+        rays(v + 1);
+        let Some(step) = t.walk(&state, if v == 0 { first } else { role }, &mut numbers(v)) else { break };
+        nodes[v].delta = step.delta;
+        if v > 0 {
+            let before = nodes[v - 1].state;
+            nodes[v - 1].reverse = match step.delta {
+                Some(choice) => t.delta_density(&state, &before, choice),
+                None => t.density(&step.state, &state, &before, other),
+            };
+        }
+        nodes.push(Node::new(step.state, through * step.weight, step.density));
+    }
+}
+
+/// The role of scattering in a walk, and in a walk from the other end.
+fn opposite(first: Role) -> (Role, Role) {
+    if first == Role::Radiance { (Role::Radiance, Role::Flux) } else { (Role::Flux, Role::Radiance) }
+}
+
+/// The densities of one path, by every strategy.
+#[derive(Clone, Debug)]
+pub struct PathDensities {
+    from_eye: Vec<f64>,
+    from_light: Vec<f64>,
+    connect: f64,
+    delta: Vec<bool>,
+    /// Vertices walked from the light by the strategy that found it.
+    s: usize,
+}
+
+impl PathDensities {
+    /// A path of the vertices `eye` and then `light` backwards. Without any from the eye, `seen` stands for the eye, with the
+    /// density of the path's start there.
+    pub fn new<T: Adjoint>(
+        t: &T,
+        eye: &[Node<T::State>],
+        light: &[Node<T::State>],
+        seen: Option<(T::State, f32)>,
+    ) -> Self {
+        let s = light.len();
+        let emits = |j: usize| if j == 0 { Role::Emission } else { Role::Flux };
+        let nodes = || eye.iter().chain(light.iter().rev());
+        let mut from_eye: Vec<f32> = eye.iter().map(|x| x.forward).collect();
+        from_eye.extend(light.iter().rev().map(|y| y.reverse));
+        let mut from_light: Vec<f32> = eye.iter().map(|x| x.reverse).collect();
+        from_light.extend(light.iter().rev().map(|y| y.forward));
+        let mut delta: Vec<bool> = nodes().map(|n| n.delta.is_some()).collect();
+        let states: Vec<T::State> = nodes().map(|n| n.state).collect();
+        let ends = eye.len(); // the first vertex walked from the light
+
+        // the two beyond the junction, walked from the eye
+        if s > 0 {
+            let y = &states[ends];
+            match (eye.last(), seen) {
+                (Some(x), _) => from_eye[ends] = t.toward(&x.state, y, Role::Radiance).density,
+                (None, Some((_, density))) => from_eye[ends] = density,
+                (None, None) => {}
+            }
+            delta[ends] = false;
+            if s > 1 {
+                let before = eye.last().map(|x| x.state).or(seen.map(|(eye, _)| eye));
+                from_eye[ends + 1] =
+                    before.map_or(0.0, |before| t.density(&before, y, &states[ends + 1], Role::Radiance));
+            }
+        }
+        // the two before the junction, walked from the light
+        if let Some(x) = eye.last() {
+            let i = ends - 1;
+            delta[i] = false;
+            from_light[i] = match light.last() {
+                Some(y) => t.toward(&y.state, &x.state, emits(s - 1)).density,
+                None => t.emit_density(&x.state),
+            };
+            if i > 0 {
+                from_light[i - 1] = match light.last() {
+                    Some(y) => t.density(&y.state, &x.state, &states[i - 1], Role::Flux),
+                    None => t.toward(&x.state, &states[i - 1], Role::Emission).density,
+                };
+            }
+        }
+        let k = states.len() - 1;
+        let connect = if k > 0 { f64::from(t.connect_density(&states[k - 1], &states[k])) } else { 0.0 };
+        let wide = |v: Vec<f32>| v.into_iter().map(f64::from).collect();
+        Self { from_eye: wide(from_eye), from_light: wide(from_light), connect, delta, s }
+    }
+
+    /// p_s.
+    pub fn density(&self, s: usize) -> f64 {
+        let t = self.delta.len() - s;
+        // at a delta vertex nothing is linked
+        let linked = t < self.delta.len() && (self.delta[t] || t > 0 && self.delta[t - 1]);
+        if linked {
+            return 0.0;
+        }
+        let (eye, light) = (&self.from_eye[..t], &self.from_light[t..]);
+        let light: f64 = match (s, t) {
+            (1, 1..) => self.connect,
+            _ => light.iter().product(),
+        };
+        eye.iter().product::<f64>() * light
+    }
+
+    /// The share of the strategy that found the path: p_s/Σ p_r, or the same of squares.
+    pub fn weight(&self, squared: bool) -> f32 {
+        let mine = self.density(self.s);
+        let ratio = |r: usize| {
+            let q = self.density(r) / mine;
+            if squared { q * q } else { q }
+        };
+        (1.0 / (0..=self.delta.len()).map(ratio).sum::<f64>()) as f32
+    }
+}

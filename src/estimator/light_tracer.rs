@@ -1,0 +1,106 @@
+//! Light tracing: `⟨(T*)^k W, E⟩`, all terms from one particle.
+//!
+//! ```text
+//! β_0 = 1/p(y_0)        β_{v+1} = β_v · weight_v / (1 − q_v)
+//! X_k = β_k · S(y_k → eye) · W(y_k)                        in the pixel that sees y_k
+//! ```
+//!
+//! y_0 is where light starts and S there is its emission, so that k = 0 is the light seen directly. Loop invariant: before
+//! the step at vertex v, every term k ≤ v has been splatted, and `through` is β_v.
+//!
+//! There are as many particles as there are camera paths, one for each (pixel, sample), and each may add to any pixel:
+//! a splat is divided by the number of pixels, and errors come from whole replicates. What the eye sees in a mirror or
+//! through glass no particle can reach, because no connection to the eye passes a delta vertex there: [`LightTracer::blind`].
+//! Reference: Arvo, *Backward Ray Tracing* (1986); Dutré, Lafortune, Willems, *Monte Carlo Light Tracing* (1993).
+
+use super::{Batch, Paths, Plan, TermEstimator, TermSink};
+use crate::math::{Columns, Key, Purpose, Rgb, Rng};
+use crate::operator::{Adjoint, Role, Sensor, Transport};
+
+/// The light tracer. [`Plan::technique`] has no part in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightTracer(pub Plan);
+
+/// Index of the stream that light is followed with.
+pub(super) const LIGHT_STREAM: u32 = 0x4c49_4748;
+
+impl LightTracer {
+    /// Whether there are terms that particles cannot see in this world.
+    pub fn blind<T: Transport>(t: &T) -> bool {
+        !t.connects_to_all()
+    }
+
+    /// One particle; gives each splat's slot, pixel and value to `splat`, and each ray's slot to `rays`.
+    fn particle<T: Adjoint>(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        (key, pixel, sample): (Key, u32, u32),
+        mut splat: impl FnMut(usize, u32, Rgb),
+        mut rays: impl FnMut(usize),
+    ) {
+        let Plan { max_bounces, ref roulette, .. } = self.0;
+        let numbers = |vertex: usize, purpose: Purpose| Rng::at(key, pixel, sample, vertex, purpose);
+        let Some((mut y, density)) = t.emit(&mut numbers(0, Purpose::Start)) else { return };
+        let (mut through, mut relative, mut role) = (Rgb::splat(1.0 / density), Rgb::ONE, Role::Emission);
+        for v in 0.. {
+            // term v, seen by the eye
+            let slot = v.min(max_bounces + 1);
+            if let Some(seen) = sensor.project(t, &y) {
+                let value = t.toward(&y, &seen.eye, role).value;
+                if value != Rgb::ZERO {
+                    rays(slot);
+                    if sensor.sees(t, &y) {
+                        splat(slot, seen.pixel, through * value * seen.importance);
+                    }
+                }
+            }
+            if v == max_bounces && !roulette.ends() {
+                break;
+            }
+            // roulette, once vertex v has been scored; light that has just started is never stopped
+            let q = if v == 0 { 0.0 } else { roulette.termination(v, relative, t.albedo(&y)) };
+            if q > 0.0 {
+                if numbers(v, Purpose::Roulette).one() < q {
+                    break;
+                }
+                (through, relative) = (through / (1.0 - q), relative / (1.0 - q));
+            }
+            // y_v → y_{v+1}
+            rays((v + 1).min(max_bounces + 1));
+            let Some(step) = t.walk(&y, role, &mut numbers(v, Purpose::Scatter)) else { break };
+            if role == Role::Flux {
+                relative *= step.weight;
+            }
+            (through, y, role) = (through * step.weight, step.state, Role::Flux);
+        }
+    }
+}
+
+impl<T: Adjoint> TermEstimator<T> for LightTracer {
+    fn slots(&self) -> usize {
+        self.0.max_bounces + 2
+    }
+
+    fn splats(&self) -> bool {
+        true
+    }
+
+    fn sample(&self, t: &T, sensor: &impl Sensor<T>, batch: &Batch, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        let [w, h] = sensor.size();
+        let share = 1.0 / (w * h) as f32;
+        let key = batch.key.branch(LIGHT_STREAM);
+        let mut value = Columns::new(1);
+        let mut count = vec![0; self.0.max_bounces + 2];
+        for sample in batch.samples.clone() {
+            for pixel in batch.pixels.clone() {
+                let splat = |slot: usize, seen: u32, v: Rgb| {
+                    value.set(0, v * share);
+                    sink.add(slot, &[seen], &[sample], &value);
+                };
+                self.particle(t, sensor, (key, pixel, sample), splat, |slot| count[slot] += 1);
+            }
+        }
+        count.iter().enumerate().for_each(|(slot, &n)| sink.rays(slot, n));
+    }
+}

@@ -1,0 +1,204 @@
+//! The scene from both ends: particles from its lights, and densities for paths found from either.
+//!
+//! | from | to | density per area of the next point y |
+//! |---|---|---|
+//! | surface that emits | Lambertian, cos θ/π | `cos θ/π · cos θ_y/r²` |
+//! | point | uniform, 1/4π | `1/4π · cos θ_y/r²` |
+//! | direction, sky | uniform on a disk of the scene's radius R | `cos θ_y/πR²` |
+//! | surface | that of the BSDF | `p_ω · cos θ_y/r²` |
+//!
+//! Reference: Veach (1997), ch. 8; Pharr, Jakob, Humphreys, *Physically Based Rendering* (3rd ed. 2016), ch. 16.
+
+use super::adjoint::{Adjoint, Role, Toward, Walk};
+use super::scene_transport::SceneTransport;
+use super::transport::Seen;
+use crate::math::direction::{about, cos_sin_turn, cosine_hemisphere, uniform_sphere};
+use crate::math::{Rgb, Rng};
+use crate::scene::{Camera, ESCAPED, Vertex, bsdf::Carried, emitter::Light};
+use glam::Vec3;
+use std::f32::consts::{FRAC_1_PI, PI};
+
+impl Role {
+    fn carried(self) -> Carried {
+        if self == Self::Radiance { Carried::Radiance } else { Carried::Flux }
+    }
+}
+
+impl SceneTransport<'_> {
+    /// Whether light comes from there in parallel.
+    fn parallel(&self, at: &Vertex) -> bool {
+        !at.on_surface() && !matches!(self.scene.light_of(at), Some(Light::Point { .. }))
+    }
+
+    /// Unit direction from one state to another.
+    fn direction(&self, at: &Vertex, to: &Vertex) -> Vec3 {
+        if self.parallel(to) {
+            -to.omega
+        } else if self.parallel(at) {
+            at.omega
+        } else {
+            (to.p - at.p).normalize()
+        }
+    }
+
+    /// Solid angle at `at` per unit of the measure of `to`; 0 for what no ray hits.
+    fn angle(&self, at: &Vertex, to: &Vertex, direction: Vec3) -> f32 {
+        match to.side {
+            ESCAPED => 1.0,
+            _ if to.on_surface() => to.n.dot(direction).abs() / (to.p - at.p).length_squared(),
+            _ => 0.0,
+        }
+    }
+}
+
+impl Adjoint for SceneTransport<'_> {
+    fn emit(&self, rng: &mut Rng) -> Option<(Vertex, f32)> {
+        self.scene.emit(rng.four())
+    }
+
+    fn emit_density(&self, at: &Vertex) -> f32 {
+        self.scene.emit_density(at)
+    }
+
+    fn connect_density(&self, from: &Vertex, at: &Vertex) -> f32 {
+        match self.scene.cone_pdf(from.p, at) {
+            Some(pdf) => pdf * self.angle(from, at, self.direction(from, at)),
+            None => self.scene.emit_density(at),
+        }
+    }
+
+    fn walk(&self, at: &Vertex, role: Role, rng: &mut Rng) -> Option<Walk<Vertex>> {
+        let u = rng.four();
+        if role == Role::Emission {
+            return self.shine(at, u);
+        }
+        let d = self.depart(at, role.carried(), u)?;
+        let o = self.scene.lift(at.p, d.normal);
+        let seen = if role == Role::Radiance { self.scene.look(o, d.direction) } else { self.scene.trace(o, d.direction) };
+        let state = seen?;
+        let delta = d.delta.then_some(d.pdf);
+        let density = match delta {
+            Some(choice) => self.delta_density(at, &state, choice),
+            None => d.pdf * self.angle(at, &state, d.direction),
+        };
+        Some(Walk { state, weight: d.weight, density, delta })
+    }
+
+    fn toward(&self, at: &Vertex, to: &Vertex, role: Role) -> Toward {
+        let direction = self.direction(at, to);
+        if role == Role::Emission {
+            let light = self.scene.light(at);
+            return match self.scene.light_of(at) {
+                None if at.on_surface() => {
+                    let cos = at.n.dot(direction).max(0.0);
+                    Toward { value: light * cos, density: cos * FRAC_1_PI * self.angle(at, to, direction) }
+                }
+                Some(Light::Point { .. }) => {
+                    Toward { value: light, density: 0.25 * FRAC_1_PI * self.angle(at, to, direction) }
+                }
+                _ => {
+                    let cos = if to.on_surface() { to.n.dot(direction).abs() } else { 0.0 };
+                    Toward { value: light, density: cos / self.disk() }
+                }
+            };
+        }
+        match self.towards(at, direction, role.carried()) {
+            Some((value, pdf, _)) => Toward { value, density: pdf * self.angle(at, to, direction) },
+            None => Toward::default(),
+        }
+    }
+
+    fn delta_density(&self, at: &Vertex, to: &Vertex, choice: f32) -> f32 {
+        let direction = self.direction(at, to);
+        // a delta function of projected solid angle is the same from both ends
+        choice * at.n.dot(direction).abs() * self.angle(at, to, direction)
+    }
+
+    fn facing(&self, at: &Vertex, other: &Vertex) -> Vertex {
+        if !at.on_surface() {
+            return *at;
+        }
+        let omega = self.direction(at, other);
+        if at.n.dot(omega) < 0.0 {
+            Vertex { n: -at.n, side: at.side ^ 1, omega, ..*at }
+        } else {
+            Vertex { omega, ..*at }
+        }
+    }
+
+    fn link(&self, eye: &Vertex, light: &Vertex) -> f32 {
+        let to = self.direction(eye, light);
+        let side = |v: &Vertex, d: Vec3| if v.n.dot(d) < 0.0 { -v.n } else { v.n };
+        let (q, r2) = if self.parallel(light) {
+            (self.scene.beyond(eye.p, to), 1.0)
+        } else {
+            (light.p, (light.p - eye.p).length_squared())
+        };
+        if self.scene.blocked(eye.p, side(eye, to), q, side(light, -to)) { 0.0 } else { 1.0 / r2 }
+    }
+}
+
+impl SceneTransport<'_> {
+    /// Area of the disk that parallel light starts from.
+    fn disk(&self) -> f32 {
+        PI * self.scene.radius() * self.scene.radius()
+    }
+
+    /// Light leaves its source: E cos θ/p is π E, 4π I, or πR² times what is parallel.
+    fn shine(&self, at: &Vertex, u: [f32; 4]) -> Option<Walk<Vertex>> {
+        let light = self.scene.light(at);
+        let (o, d, weight) = match self.scene.light_of(at) {
+            None if at.on_surface() => {
+                let (d, _) = cosine_hemisphere(at.n, [u[0], u[1]]);
+                (self.scene.lift(at.p, at.n), d, light * PI)
+            }
+            Some(Light::Point { .. }) => (at.p, uniform_sphere([u[0], u[1]]), light * (4.0 * PI)),
+            _ => {
+                let (c, s) = cos_sin_turn(u[1]);
+                let r = self.scene.radius() * u[0].sqrt();
+                let o = self.scene.center() + about(at.omega, r * c, r * s, 0.0);
+                (self.scene.beyond(o, -at.omega), at.omega, light * self.disk())
+            }
+        };
+        let state = self.scene.trace(o, d)?;
+        let density = self.toward(&Vertex { omega: at.omega, ..*at }, &state, Role::Emission).density;
+        (weight != Rgb::ZERO).then_some(Walk { state, weight, density, delta: None })
+    }
+}
+
+impl Camera {
+    /// The pixel that sees a state, before anybody looks whether something hides it.
+    pub(crate) fn see(&self, t: &SceneTransport, at: &Vertex) -> Option<Seen<Vertex>> {
+        let eye = self.eye();
+        // a point or a direction is never seen
+        if !at.on_surface() && at.side != ESCAPED {
+            return None;
+        }
+        let d = t.direction(&eye, at);
+        let (pixel, per_angle) = self.pixel(d)?;
+        let pixel = pixel?;
+        let r2 = if at.on_surface() { (at.p - self.origin).length_squared() } else { 1.0 };
+        Some(Seen { pixel, eye, importance: per_angle / r2, density: per_angle * t.angle(&eye, at, d) })
+    }
+
+    fn eye(&self) -> Vertex {
+        Vertex { p: self.origin, n: Vec3::ZERO, ..Vertex::default() }
+    }
+
+    /// Density with which a path starts at a state that some pixel sees, also where rounding puts it outside the picture.
+    pub(crate) fn start_density(&self, t: &SceneTransport, at: &Vertex) -> f32 {
+        let d = t.direction(&self.eye(), at);
+        self.pixel(d).map_or(0.0, |(_, per_angle)| per_angle * t.angle(&self.eye(), at, d))
+    }
+
+    /// Whether nothing stands between the eye and what it would see.
+    pub(crate) fn unhidden(&self, t: &SceneTransport, at: &Vertex) -> bool {
+        let (p, n) = if at.on_surface() {
+            let toward_eye = if at.n.dot(self.origin - at.p) < 0.0 { -at.n } else { at.n };
+            (at.p, toward_eye)
+        } else {
+            (t.scene.beyond(self.origin, -at.omega), Vec3::ZERO)
+        };
+        !t.scene.blocked(p, n, self.origin, Vec3::ZERO)
+    }
+}
