@@ -85,16 +85,16 @@ pub fn conductor(c: f32, eta: Rgb, k: Rgb) -> Rgb {
     0.5 * s * (1.0 + p)
 }
 
-/// F_out of a boundary to relative index η: R averaged over the hemisphere with the cosine, in closed form (Walsh). With
-/// |η − 1| below 10⁻⁸ it is 0 to the accuracy of `f32`.
+/// F_out of a boundary to relative index η: R averaged over the hemisphere with the cosine, in closed form (Walsh).
 pub fn hemispherical(eta: f64) -> f64 {
     if eta < 1.0 {
         // F_in of the reciprocal index
         return 1.0 - (1.0 - hemispherical(1.0 / eta)) * eta * eta;
     }
     let d = eta - 1.0;
-    if d < 1e-8 {
-        return 0.0;
+    if d < 1e-6 {
+        // the first term of the series, where the closed form cancels
+        return d / 3.0;
     }
     let n2 = eta * eta;
     let n4 = n2 * n2;
