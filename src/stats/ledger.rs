@@ -100,6 +100,12 @@ pub const ENTRIES: &[Entry] = &[
     entry("no_bounce_gains_energy", 768, 1e-8),
     entry("a_uniform_room_keeps_the_share_of_its_albedo", 144, 1e-8),
     entry("terms_do_not_depend_on_the_axes", 45, 1e-8),
+    // tests/bsdf.rs
+    entry("directions_have_the_density_they_claim", 1_000, 1e-8),
+    entry("a_million_directions_have_the_density_they_claim", 1_000, 1e-8),
+    entry("wrong_densities_are_found", 25, 1e-8),
+    entry("weights_average_to_the_albedo", 3_000, 1e-8),
+    entry("a_million_weights_average_to_the_albedo", 3_000, 1e-8),
 ];
 
 impl Entry {

@@ -13,12 +13,21 @@ use crate::math::{
     direction::{cosine_hemisphere, uniform_hemisphere},
 };
 use glam::Vec3;
+use std::f32::consts::FRAC_1_PI;
 
 /// f = ρ/π.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse {
     /// ρ.
     pub reflectance: Rgb,
+}
+
+impl Diffuse {
+    /// f, sr⁻¹.
+    #[inline(always)]
+    pub fn eval(&self, wi: Vec3) -> Rgb {
+        if wi.z > 0.0 { self.reflectance * FRAC_1_PI } else { Rgb::ZERO }
+    }
 }
 
 /// A direction about the normal, with the weight `f cos θ / p` and the density.

@@ -1,0 +1,120 @@
+//! A Lambertian base under a dielectric coat, smooth or rough.
+//!
+//! ```text
+//! f = f_coat + T(ω_o) T(ω_i) ρ/(π η² (1 − ρ F_in))        1 − F_in = T̄/η²
+//! ```
+//!
+//! | notation | meaning | place |
+//! |---|---|---|
+//! | f_coat | reflection at the coat, a delta if it is smooth | [`Coat::eval`] |
+//! | T, T̄ | what enters through the coat: 1 − F and 1 − F_out if it is smooth | [`super::coat`] |
+//! | ρ | albedo of the base | [`Plastic::new`] |
+//! | F_in | share of the light from the base that the coat sends back to it | [`Plastic::new`] |
+//! | β | T̄ρ/(η² (1 − ρ F_in)): share of what enters that comes out again; 1 if ρ is | [`Plastic::out`] |
+//! | p | probability of the coat, E/(E + Tβ) of the largest channel | [`Plastic::p_coat`] |
+//!
+//! The factor 1/(1 − ρ F_in) sums the reflections between base and coat; 1/η² is the solid angle gained outside. The
+//! albedo is E(ω_o) + T(ω_o) β: with a white base exactly 1, and f is reciprocal because it is a product.
+//!
+//! References: Wolff, *Diffuse-reflectance model for smooth dielectric surfaces* (JOSA A 11(11), 1994), with the sum of
+//! Saunderson, *Calculation of the Color of Pigmented Plastics* (JOSA 32, 1942); the rough coat enters as the albedo of
+//! Kelemen and Szirmay-Kalos in [`super::coat`].
+
+use super::coat::Coat;
+use super::ggx::{Microfacets, half, reflect};
+use super::mirror::reflection;
+use super::{BsdfSample, Sampling};
+use crate::math::Rgb;
+use crate::scene::description::Ggx;
+use glam::Vec3;
+use std::f32::consts::FRAC_1_PI;
+
+/// A coated base.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plastic {
+    /// The boundary.
+    pub coat: Coat,
+    /// β/(π T̄), sr⁻¹.
+    base: Rgb,
+    /// β.
+    out: Rgb,
+}
+
+impl Plastic {
+    /// A base of albedo ρ under a coat of relative index `ior`.
+    pub fn new(reflectance: Rgb, ior: f64, rough: Option<Ggx>) -> Self {
+        Self { coat: Coat::new(ior, rough.map(Microfacets::new)), base: Rgb::ZERO, out: Rgb::ZERO }
+            .with_reflectance(reflectance)
+    }
+
+    /// The same with another ρ.
+    #[must_use]
+    pub fn with_reflectance(self, reflectance: Rgb) -> Self {
+        // η² (1 − ρ F_in)
+        let kept = self.coat.interface.eta2() * (1.0 - reflectance) + reflectance * self.coat.mean;
+        let escape = reflectance / kept;
+        Self { base: escape * FRAC_1_PI, out: escape * self.coat.mean, ..self }
+    }
+
+    /// p(ω_o): 1 if nothing else comes out.
+    #[inline(always)]
+    fn p_coat(&self, wo: Vec3) -> f32 {
+        let t = self.coat.transmittance(wo.z);
+        let base = t * self.out.max_element();
+        if base > 0.0 { (1.0 - t) / (1.0 - t + base) } else { 1.0 }
+    }
+
+    /// f without the delta of a smooth coat, sr⁻¹.
+    #[inline(always)]
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        if wi.z <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let base = self.base * (self.coat.transmittance(wo.z) * self.coat.transmittance(wi.z));
+        base + self.coat.eval(wo, wi)
+    }
+
+    /// Density of [`Self::sample`] without delta directions, sr⁻¹.
+    #[inline(always)]
+    pub fn pdf(&self, wo: Vec3, wi: Vec3, sampling: Sampling) -> f32 {
+        if wi.z <= 0.0 {
+            return 0.0;
+        }
+        let p = self.p_coat(wo);
+        match self.coat.facets() {
+            None => (1.0 - p) * sampling.pdf(wi.z),
+            Some(_) if sampling != Sampling::Bsdf => sampling.pdf(wi.z),
+            Some(facets) => p * 0.25 * facets.visible(wo.z, half(wo, wi).0) + (1.0 - p) * sampling.pdf(wi.z),
+        }
+    }
+
+    /// The coat if `u[2]` < p, the base otherwise; a rough coat only if `sampling` asks for it. None below the surface.
+    #[inline(always)]
+    pub fn sample(&self, wo: Vec3, sampling: Sampling, u: [f32; 3]) -> Option<BsdfSample> {
+        let p = self.p_coat(wo);
+        let coat = u[2] < p;
+        let wi = match self.coat.facets() {
+            None if coat => {
+                let weight = Rgb::splat(self.coat.albedo(wo.z) / p);
+                return Some(BsdfSample { wi: reflection(wo), weight, pdf: p, delta: true });
+            }
+            Some(facets) if coat && sampling == Sampling::Bsdf => reflect(wo, facets.sample(wo, [u[0], u[1]])),
+            _ => sampling.direction([u[0], u[1]]),
+        };
+        BsdfSample::of(wi, self.eval(wo, wi), self.pdf(wo, wi, sampling))
+    }
+
+    /// E + Tβ: exact under a smooth coat, an upper bound under a rough one.
+    #[inline(always)]
+    pub fn albedo(&self, wo: Vec3) -> Rgb {
+        let t = self.coat.transmittance(wo.z);
+        Rgb::splat(1.0 - t) + t * self.out
+    }
+
+    /// Its largest value: where the coat reflects most.
+    #[inline(always)]
+    pub fn max_albedo(&self) -> Rgb {
+        let e = self.coat.max_albedo();
+        Rgb::splat(e) + (1.0 - e) * self.out
+    }
+}

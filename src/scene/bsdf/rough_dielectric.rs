@@ -1,0 +1,121 @@
+//! Rough glass: every microfacet reflects and refracts like smooth glass.
+//!
+//! ```text
+//! reflection     f = F D G/(4 |cos θ_o| |cos θ_i|)                                          h ∝ ω_o + ω_i
+//! transmission   f = (1 − F) D G η² e (ω_o·h) |ω_i·h|/(|ω_o + η ω_i|² |cos θ_o| |cos θ_i|)   h ∝ ±(ω_o + η ω_i)
+//! densities      p D_ωo(h)/(4 ω_o·h)        (1 − p) D_ωo(h) η² |ω_i·h|/|ω_o + η ω_i|²
+//! ```
+//!
+//! | notation | meaning | place |
+//! |---|---|---|
+//! | η, F, p, e | as for smooth glass, at the micronormal | [`super::dielectric`] |
+//! | h | micronormal, on the side of ω_o | [`RoughDielectric::facet`] |
+//! | D, G, D_ωo | microfacets | [`super::ggx`] |
+//! | η² abs(ω_i·h)/abs(ω_o + η ω_i)² | dh/dω_i of a refraction | [`Facet::jacobian`] |
+//!
+//! Reference: Walter, Marschner, Li and Torrance, *Microfacet Models for Refraction through Rough Surfaces* (EGSR 2007),
+//! with the visible normals of [`super::ggx`]. Both quotients f |cos θ_i|/p are those of smooth glass times G/G₁(ω_o).
+
+use super::dielectric::Odds;
+use super::fresnel::Interface;
+use super::ggx::{Microfacets, half, reflect};
+use super::{BsdfSample, Carried};
+use crate::math::Rgb;
+use glam::Vec3;
+
+/// A rough boundary between two dielectrics, seen from one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoughDielectric {
+    /// The indices.
+    pub interface: Interface,
+    /// How a side is chosen at each micronormal.
+    pub odds: Odds,
+    /// The microfacets.
+    pub facets: Microfacets,
+}
+
+/// The micronormal that takes ω_o to ω_i.
+#[derive(Clone, Copy, Debug)]
+struct Facet {
+    h: Vec3,
+    /// ω_o·h.
+    cosine: f32,
+    /// dh/dω_i.
+    jacobian: f32,
+    /// F, or 1 − F.
+    share: f32,
+    /// p, or 1 − p.
+    probability: f32,
+}
+
+impl RoughDielectric {
+    /// The only h that takes ω_o to ω_i, if there is one.
+    #[inline(always)]
+    fn facet(&self, wo: Vec3, wi: Vec3) -> Option<Facet> {
+        if wi.z > 0.0 {
+            let (h, cosine) = half(wo, wi);
+            let share = self.interface.reflectance(cosine);
+            let probability = self.odds.of_reflection(share);
+            return Some(Facet { h, cosine, jacobian: 0.25 / cosine, share, probability });
+        }
+        let sum = wo + self.interface.eta * wi;
+        let length = sum.length();
+        let h = if sum.z > 0.0 { sum } else { -sum } / length;
+        let (co, ci) = (wo.dot(h), -wi.dot(h));
+        let f = if co > 0.0 { self.interface.reflectance(co) } else { 1.0 };
+        if wi.z == 0.0 || ci <= 0.0 || f == 1.0 {
+            return None;
+        }
+        let jacobian = self.interface.eta2() * ci / (length * length);
+        Some(Facet { h, cosine: co, jacobian, share: 1.0 - f, probability: 1.0 - self.odds.of_reflection(f) })
+    }
+
+    /// e for this pair.
+    #[inline(always)]
+    fn squeezed(&self, wi: Vec3, carried: Carried) -> f32 {
+        if wi.z > 0.0 { 1.0 } else { carried.squeezed(self.interface.eta2()) }
+    }
+
+    /// f, sr⁻¹.
+    #[inline(always)]
+    pub fn eval(&self, wo: Vec3, wi: Vec3, carried: Carried) -> Rgb {
+        let Some(m) = self.facet(wo, wi) else { return Rgb::ZERO };
+        let seen = 4.0 * self.facets.seen(wo.z, wi.z.abs()) * m.cosine;
+        Rgb::splat(m.share * self.facets.d(m.h) * seen * m.jacobian * self.squeezed(wi, carried))
+    }
+
+    /// Density of [`Self::sample`], sr⁻¹.
+    #[inline(always)]
+    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        self.facet(wo, wi).map_or(0.0, |m| self.density(wo, &m))
+    }
+
+    #[inline(always)]
+    fn density(&self, wo: Vec3, m: &Facet) -> f32 {
+        m.probability * self.facets.visible(wo.z, m.h) * m.cosine * m.jacobian
+    }
+
+    /// A normal seen from ω_o; reflects there if `u[2]` < p, refracts otherwise. None where that leads to the wrong side.
+    #[inline(always)]
+    pub fn sample(&self, wo: Vec3, carried: Carried, u: [f32; 3]) -> Option<BsdfSample> {
+        let h = self.facets.sample(wo, [u[0], u[1]]);
+        let c = wo.dot(h);
+        if c <= 0.0 {
+            return None;
+        }
+        let p = self.odds.of_reflection(self.interface.reflectance(c));
+        let wi = match self.interface.refracted(c) {
+            Some(g) if u[2] >= p => (((c - g) * h - wo) / self.interface.eta).normalize(),
+            _ => reflect(wo, h),
+        };
+        let reflected = u[2] < p;
+        if (wi.z > 0.0) != reflected {
+            return None;
+        }
+        // from the pair of directions, as eval and pdf see it
+        let m = self.facet(wo, wi)?;
+        let pdf = self.density(wo, &m);
+        let weight = m.share / m.probability * self.facets.lit(wo.z, wi.z.abs()) * self.squeezed(wi, carried);
+        (pdf > 0.0).then_some(BsdfSample { wi, weight: Rgb::splat(weight), pdf, delta: false })
+    }
+}
