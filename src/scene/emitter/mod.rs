@@ -5,6 +5,10 @@
 //!
 //! A light is a shape that emits; a mesh is one light, and its triangles share its area.
 
+pub mod cone;
+pub mod environment;
+mod mirror_ball;
+
 use super::description::Description;
 use super::primitive::Primitive;
 
