@@ -5,6 +5,7 @@
 
 pub mod columns;
 pub mod direction;
+pub mod distribution;
 pub mod random;
 
 pub use columns::Columns;

@@ -94,6 +94,12 @@ pub const ENTRIES: &[Entry] = &[
     entry("roulette_on_a_sphere_has_its_variance", 18, 1e-8),
     entry("terms_of_one_path_have_their_covariance", 300, 1e-8),
     entry("roulette_and_uniform_directions_have_their_variance_term_by_term", 100, 1e-8),
+    // tests/lights.rs
+    entry("skies_are_sampled_as_their_density_says", 9, 1e-8),
+    entry("skies_give_their_mean", 48, 1e-8),
+    entry("a_quadratic_sky_lights_a_surface_in_closed_form", 15, 1e-8),
+    entry("spheres_are_sampled_uniformly_in_solid_angle", 7, 1e-8),
+    entry("a_sphere_above_the_horizon_is_a_point_light", 18, 1e-8),
     // tests/roulette.rs
     entry("no_term_moves_under_roulette", 75, 1e-8),
     // tests/scene_properties.rs

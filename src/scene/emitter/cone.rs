@@ -1,4 +1,64 @@
-//! stub
+//! A sphere as a light, seen from outside: directions uniform in the cone it fills.
+//!
+//! ```text
+//! p(ω) = 1 / 2πm      m = 1 − cos θ_max = sin²θ_max / (1 + cos θ_max)      sin θ_max = r/d
+//! ```
+//!
+//! | symbol | meaning |
+//! |---|---|
+//! | r, d | radius; distance from the point to the centre |
+//! | θ | angle at the point, between ω and the centre: 1 − cos θ = um, u uniform |
+//! | θ_max | of the cone: where ω is tangent |
+//! | β | at the near point of the sphere on the ray, between its normal and −ω: sin β = sin θ / sin θ_max |
+//! | α = β − θ | at the centre, between the normal and the point |
+//!
+//! With sin²θ = um(2 − um) and sin²θ_max = m(2 − m), numerator and denominator share what vanishes:
+//!
+//! ```text
+//! sin²β = u (2 − um)/(2 − m)      cos²β = (1 − u)(2 − m(1 + u))/(2 − m)
+//! ```
+//!
+//! so no digits are lost, neither far away (m → 0) nor at the surface (m → 1, where d² − r² = (d − r)(d + r)). Computed
+//! in `f64` from the `f32` positions, whose difference is exact there.
+//!
+//! References: Changyaw Wang, *Physically correct direct lighting for distribution ray tracing*, Graphics Gems III
+//! (1992); Matt Pharr, Wenzel Jakob and Greg Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 6.2.4.
+
+use crate::math::direction::{about, cos_sin_turn};
 use glam::Vec3;
-pub fn sample(_from: Vec3, _center: Vec3, _radius: f32, _u: [f32; 2]) -> Option<(Vec3, f32)> { None }
-pub fn pdf(_from: Vec3, _center: Vec3, _radius: f32) -> f32 { 0.0 }
+use std::f64::consts::TAU;
+
+/// Unit vector from the centre to the point, and m; nothing from inside the sphere or on it.
+fn cone(from: Vec3, center: Vec3, radius: f32) -> Option<(Vec3, f64)> {
+    let away = from.as_dvec3() - center.as_dvec3();
+    let (d, r) = (away.length(), f64::from(radius));
+    if d <= r || r <= 0.0 {
+        return None;
+    }
+    let (sin, cos) = (r / d, ((d - r) * (d + r)).sqrt() / d);
+    Some(((away / d).as_vec3(), sin * sin / (1.0 + cos)))
+}
+
+/// A point on the near side of the sphere, its direction uniform in solid angle, and the density in sr⁻¹; nothing from
+/// inside the sphere or on it.
+pub fn sample(from: Vec3, center: Vec3, radius: f32, u: [f32; 2]) -> Option<(Vec3, f32)> {
+    let (axis, m) = cone(from, center, radius)?;
+    let v = f64::from(u[0]);
+    let (x, rest) = (v * m, 2.0 - m);
+    let (cos_theta, sin_theta) = (1.0 - x, (x * (2.0 - x)).sqrt());
+    let (cos_beta, sin_beta) = (((1.0 - v) * (2.0 - m * (1.0 + v)) / rest).sqrt(), (v * (2.0 - x) / rest).sqrt());
+    let cos_alpha = cos_beta * cos_theta + sin_beta * sin_theta;
+    let sin_alpha = sin_beta * cos_theta - cos_beta * sin_theta;
+    let (c, s) = cos_sin_turn(u[1]);
+    let normal = about(axis, sin_alpha as f32 * c, sin_alpha as f32 * s, cos_alpha as f32);
+    Some((center + radius * normal, density(m)))
+}
+
+/// Density in sr⁻¹ with which [`sample`] chooses any direction that meets the sphere; 0 from inside it or on it.
+pub fn pdf(from: Vec3, center: Vec3, radius: f32) -> f32 {
+    cone(from, center, radius).map_or(0.0, |(_, m)| density(m))
+}
+
+fn density(m: f64) -> f32 {
+    (1.0 / (TAU * m)) as f32
+}

@@ -1,20 +1,136 @@
-//! stub
-use crate::math::Rgb;
-use crate::scene::description::Sky;
+//! Light from every direction at infinity, sampled where it is bright.
+//!
+//! ```text
+//! u = ½ + (φ + α)/2π      φ = atan2(x, −z)      v = θ/π      cos θ = y
+//! p(ω) = P / Ω      P ∝ Y Ω      Ω = (2π/w)(cos θ_j − cos θ_{j+1}) = (4π/w)(s_{j+1} − s_j)
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | θ, φ | angle from +y; azimuth from −z towards +x | – |
+//! | α | rotation of the sky about the vertical, counter-clockwise seen from +y | `turn`, in turns |
+//! | (i, j) | texel ⌊uw⌋, ⌊vh⌋ of a w × h image; radiance is constant in it | [`Environment::radiance`] |
+//! | s = sin²(θ/2) | (1 − cos θ)/2, without its loss of digits at the pole | `heights`, at the edges of rows |
+//! | Ω | solid angle of a texel, exact | – |
+//! | Y | luminance (Rec. 709) | – |
+//! | P, p | probability of a texel; density, sr⁻¹ | [`Environment::pdf`] |
+//!
+//! A row, a column of it, then s and φ uniform in the texel, which is uniform in solid angle up to the poles: a sky of one
+//! texel is sampled uniformly over the sphere. Texels without light are never chosen. P differs from YΩ/Σ by the rounding of
+//! [`crate::math::distribution`], which is in p, too.
+//!
+//! **The texel of a sampled direction is the texel that was chosen**, in [`Environment::radiance`] and
+//! [`Environment::pdf`]: otherwise a direction drawn for a dark texel could land on the sun beside it. Angles are computed
+//! in `f64` and positions kept 2⁻²¹ rad inside the edges, eight times what rounding the direction to `f32` can move it.
+//! The angle to the pole is atan2(√(x² + z²), y), which keeps its digits there.
+//!
+//! References: Paul Debevec, *Rendering synthetic objects into real scenes*, SIGGRAPH 1998; Matt Pharr, Wenzel Jakob and
+//! Greg Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 12.5 (infinite area lights).
+
+use super::mirror_ball::lat_long;
+use crate::math::{Rgb, distribution::Table};
+use crate::scene::{description::Sky, raster::Raster};
 use glam::{DVec3, Vec3};
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// How far inside the edges of their texel sampled directions are kept, rad.
+const INSIDE: f64 = 1.0 / (1 << 21) as f64;
+
+/// A sky ready for rays.
 #[derive(Clone, Debug)]
-pub struct Environment(Rgb);
+pub struct Environment {
+    image: Arc<Raster>,
+    scale: f32,
+    /// α/2π, in [0, 1).
+    turn: f64,
+    table: Table,
+    /// s at the h + 1 edges of rows, from 0 to 1.
+    heights: Vec<f64>,
+    mean: DVec3,
+}
+
 impl Environment {
-    pub fn new(sky: &Sky, _rotate: f64, scale: f64) -> Self {
-        Self(match sky { Sky::Constant(c) => (*c * scale).as_vec3(), _ => Rgb::ZERO })
+    /// A sky, rotated by degrees counter-clockwise seen from +y, its radiance multiplied by `scale`. One that is black
+    /// everywhere is sampled uniformly.
+    ///
+    /// # Panics
+    /// If a texel is negative or not finite.
+    pub fn new(sky: &Sky, rotate_degrees: f64, scale: f64) -> Self {
+        let single = |colour: Rgb| Arc::new(Raster::new([1, 1], vec![colour]));
+        let image = match sky {
+            Sky::Constant(colour) => single(colour.as_vec3()),
+            Sky::LatLong(image) => image.clone(),
+            Sky::MirrorBall(photo) => Arc::new(lat_long(photo)),
+        };
+        let bad = image.texels.iter().find(|t| !t.is_finite() || t.min_element() < 0.0);
+        assert!(bad.is_none(), "a sky of radiance {bad:?}");
+        let black = image.texels.iter().all(|t| *t == Rgb::ZERO);
+        let image = if black { single(Rgb::ZERO) } else { image };
+        let [w, h] = image.size;
+        let heights: Vec<f64> = (0..=h).map(|j| (0.5 * PI * f64::from(j) / f64::from(h)).sin().powi(2)).collect();
+        let share = |row: u32| (heights[row as usize + 1] - heights[row as usize]) / f64::from(w);
+        let weight = |column, row| if black { 1.0 } else { luminance(image.texel(column, row)) * share(row) };
+        let Some(table) = Table::new([w, h], weight) else { unreachable!("one texel at least is not black") };
+        let row_sum = |row| (0..w).map(|column| image.texel(column, row).as_dvec3()).sum::<DVec3>();
+        let mean = (0..h).map(|row| share(row) * row_sum(row)).sum::<DVec3>() * f64::from(scale as f32);
+        Self { turn: (rotate_degrees / 360.0).rem_euclid(1.0), scale: scale as f32, mean, table, heights, image }
     }
-    pub fn radiance(&self, _d: Vec3) -> Rgb { self.0 }
+
+    /// The texel `[column, row]` seen in direction `d`.
+    fn texel(&self, d: Vec3) -> [u32; 2] {
+        let [w, h] = self.image.size;
+        if [w, h] == [1, 1] {
+            return [0, 0];
+        }
+        let d = d.as_dvec3();
+        let u = 0.5 + self.turn + d.x.atan2(-d.z) / TAU;
+        let v = (d.x * d.x + d.z * d.z).sqrt().atan2(d.y) / PI;
+        let cell = |x: f64, n: u32| ((x * f64::from(n)) as u32).min(n - 1);
+        [cell(u - u.floor(), w), cell(v, h)]
+    }
+
+    /// Radiance from the unit direction `d`, W·sr⁻¹·m⁻².
+    pub fn radiance(&self, d: Vec3) -> Rgb {
+        let [column, row] = self.texel(d);
+        self.image.texel(column, row) * self.scale
+    }
+
+    /// A unit direction towards the sky, and its density in sr⁻¹ (never 0).
     pub fn sample(&self, u: [f32; 2]) -> (Vec3, f32) {
-        let z = 1.0 - 2.0 * u[0];
-        let r = (1.0 - z * z).max(0.0).sqrt();
-        let (c, s) = crate::math::direction::cos_sin_turn(u[1]);
-        (Vec3::new(r * c, r * s, z), self.pdf(Vec3::Z))
+        let [w, h] = self.image.size;
+        let ([column, row], rest) = self.table.sample(u);
+        // the middle of the step of 2⁻²⁴ that the number stands for
+        let [across, down] = rest.map(|t| f64::from(t) + 0.5 / f64::from(1 << 24));
+        let inside = |x: f64, cell: u32, step: f64| {
+            x.max(f64::from(cell) * step + INSIDE).min(f64::from(cell + 1) * step - INSIDE)
+        };
+        let (low, high) = (self.heights[row as usize], self.heights[row as usize + 1]);
+        let theta = inside(2.0 * (low + (high - low) * down).sqrt().asin(), row, PI / f64::from(h));
+        let step = TAU / f64::from(w);
+        let phi = inside((f64::from(column) + across) * step, column, step) - TAU * (0.5 + self.turn);
+        let ((sin, cos), (x, minus_z)) = (theta.sin_cos(), phi.sin_cos());
+        (DVec3::new(sin * x, cos, -sin * minus_z).as_vec3(), self.density([column, row]))
     }
-    pub fn pdf(&self, _d: Vec3) -> f32 { 0.25 * std::f32::consts::FRAC_1_PI }
-    pub fn mean(&self) -> DVec3 { self.0.as_dvec3() }
+
+    /// Density with which [`Self::sample`] chooses `d`, sr⁻¹.
+    pub fn pdf(&self, d: Vec3) -> f32 {
+        self.density(self.texel(d))
+    }
+
+    fn density(&self, [column, row]: [u32; 2]) -> f32 {
+        let height = self.heights[row as usize + 1] - self.heights[row as usize];
+        let solid_angle = 2.0 * TAU * height / f64::from(self.image.size[0]);
+        (f64::from(self.table.probability([column, row])) / solid_angle) as f32
+    }
+
+    /// Mean radiance over the sphere, (1/4π) ∫ L dω: exact, texel by texel.
+    pub fn mean(&self) -> DVec3 {
+        self.mean
+    }
+}
+
+/// Y of linear Rec. 709; positive unless all components are 0.
+fn luminance(c: Rgb) -> f64 {
+    c.as_dvec3().dot(DVec3::new(0.2126, 0.7152, 0.0722))
 }

@@ -14,8 +14,9 @@
 
 pub mod cone;
 pub mod environment;
+mod mirror_ball;
 
-use super::description::{Description, Geometry, LightDescription};
+use super::description::Description;
 use super::primitive::Primitive;
 use crate::math::Rgb;
 use environment::Environment;
