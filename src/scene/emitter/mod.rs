@@ -16,7 +16,7 @@ pub mod cone;
 pub mod environment;
 mod mirror_ball;
 
-use super::description::Description;
+use super::description::{Description, Geometry, LightDescription};
 use super::primitive::Primitive;
 use crate::math::Rgb;
 use environment::Environment;
