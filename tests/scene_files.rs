@@ -296,7 +296,10 @@ fn overrides_replace_values() {
     ])
     .unwrap()
     .description;
-    assert_eq!((d.materials[0].lambertian().unwrap(), d.materials[0].sides), (DVec3::new(0.25, 0.5, 0.75), Sides::Front));
+    assert_eq!(
+        (d.materials[0].lambertian().unwrap(), d.materials[0].sides),
+        (DVec3::new(0.25, 0.5, 0.75), Sides::Front)
+    );
     assert_eq!(d.shapes[1].emission, DVec3::new(4.0, 5.0, 6.0));
     assert!(matches!(d.shapes[2].geometry, Geometry::Sphere { inward: false, .. }));
     assert_eq!((d.camera.size, d.camera.fov, d.name.as_str()), ([16, 6], 60.0, "other"));
