@@ -273,10 +273,19 @@ fn commands_end_as_they_say() {
     let desk = Desk::new();
     let said = desk.ok("info");
     insta::assert_snapshot!(said.out, @r#"
-    cornell    a Cornell box of quads and two blocks, colours bleeding
-    furnace    a closed box where every surface glows and reflects half: T^k E = 0.5^k everywhere
-    sphere     an integrating sphere lit by its own cap: every term from k = 1 on is constant
-    shells     two concentric spheres: pointwise exact terms of a 2 by 2 operator, with occlusion
+    cornell         a Cornell box of quads and two blocks, colours bleeding
+    furnace         a closed box where every surface glows and reflects half: T^k E = 0.5^k everywhere
+    sphere          an integrating sphere lit by its own cap: every term from k = 1 on is constant
+    shells          two concentric spheres: pointwise exact terms of a 2 by 2 operator, with occlusion
+    cornell-spheres the Cornell box with a mirror sphere and a glass sphere: caustics from k = 2 and 3 on
+    veach-mis       four glossy plates under spheres of equal power and unequal size: why techniques are combined
+    veach-ajar      a room lit only through a door ajar: a long series, the lamp out of sight
+    env-ggx         gold, copper and plastic under a sky and a point light: GGX at four widths
+    caustic         a glass sphere focuses a small lamp: easy from the light, fireflies from the eye
+    glass-furnace   a glass ball in a sky of radiance 1: every pixel sums to 1, terms known
+    mirror-corridor two parallel mirrors of 0.9: T^k E decays slowly
+    sky-bowl        part of a sphere open to a sky of radiance 1: every term is constant
+    many-lights     96 lamps from 0.01 to 10 W: choosing lights by power or uniformly
     "#);
     let said = desk.ok("info furnace");
     insta::assert_snapshot!(said.out, @r#"

@@ -1,12 +1,17 @@
 //! Scene files: what is wrong is refused at its line and key, what is right is what the file says.
 #![allow(clippy::unwrap_used)]
 
-use fredholm::scene::{
-    Primitive, SceneError, builtin,
-    description::{Geometry, Sides},
-    load::{Loaded, Options, scene, toml},
+use fredholm::{
+    math::Rgb,
+    report::picture::srgb,
+    scene::{
+        Primitive, SceneError, builtin,
+        description::{BsdfDescription, Choice, Colour, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky},
+        load::{Loaded, Options, scene, toml},
+        raster::Raster,
+    },
 };
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use proptest::{
     prelude::*,
     test_runner::{Config, RngAlgorithm, TestRng, TestRunner},
@@ -132,9 +137,9 @@ const REFUSED: &[(&str, &str, usize, &str, &str)] = &[
     ("name = \"good\"", "name = \"../up\"", 1, "name", "`../up` cannot be the name of a folder"),
     ("name = \"good\"", "name = \" \"", 1, "name", "the string is empty"),
     ("[camera]", "[kamera]", 3, "kamera", "unknown key `kamera`"),
-    ("[expect]", "[[lights]]\ntype = \"point\"\n[expect]", 55, "lights[0]", "point lights are not supported yet"),
-    ("[expect]", "[[lights]]\ntype = \"lamp\"\n[expect]", 55, "lights[0]", "unknown light type `lamp`"),
-    ("[expect]", "[lights]\n[expect]", 55, "lights", "[[lights]] are not supported yet"),
+    ("[expect]", "[[lights]]\ntype = \"lamp\"\n[expect]", 56, "lights[0].type", "`lamp` is no type of light"),
+    ("[expect]", "[[lights]]\n[expect]", 55, "lights[0].type", "missing key `type`"),
+    ("[expect]", "[lights]\n[expect]", 55, "lights", "expected an array of tables, [[lights]], found a table"),
     // the camera
     ("up = [0, 1, 0]\n", "", 3, "camera.up", "missing key `up`"),
     ("fov = 40", "fovv = 40", 7, "camera.fovv", "unknown key `fovv`"),
@@ -160,9 +165,8 @@ const REFUSED: &[(&str, &str, usize, &str, &str)] = &[
     ("[0.6, 0.1, 0.1]", "0.6", 16, "materials.left.reflectance", "expected 3 numbers, found a number"),
     ("sides = \"front\"", "sides = \"fornt\"", 17, "materials.left.sides", "`fornt` is no choice of sides"),
     ("sides = \"front\"", "side = \"front\"", 17, "materials.left.side", "unknown key `side`"),
-    ("sides = \"front\"", "texture = \"a.png\"", 17, "materials.left.texture", "textures are not supported yet"),
-    ("type = \"diffuse\"\nreflectance = [0.6", "type = \"mirror\"\nreflectance = [0.6", 15, "materials.left.type", "material type `mirror` is not supported yet"),
-    ("type = \"diffuse\"\nreflectance = [0.6", "type = \"diffus\"\nreflectance = [0.6", 15, "materials.left.type", "unknown material type `diffus`"),
+    ("sides = \"front\"", "texture = \"a.png\"", 17, "materials.left.texture", "reflectance and texture are both given"),
+    ("type = \"diffuse\"\nreflectance = [0.6", "type = \"diffus\"\nreflectance = [0.6", 15, "materials.left.type", "`diffus` is no type of material"),
     // light
     ("emission = [1, 2, 3]", "emission = [1, -2, 3]", 25, "shapes[0].emission", "emission -2 is negative"),
     ("emission = [1, 2, 3]", "emission = [1, 1e31, 3]", 25, "shapes[0].emission", "emission 1e31 is too large"),
@@ -193,7 +197,10 @@ const REFUSED: &[(&str, &str, usize, &str, &str)] = &[
     ("[0, 3, 2]]", "[0, 1, 1]]", 52, "shapes[4].faces[1]", "the triangle [0, 1, 1] has no area"),
     ("[0, 3, 2]]", "[0, 1, 2, 3]]", 52, "shapes[4].faces[1]", "expected 3 vertex indices, found 4"),
     ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = []", 52, "shapes[4].faces", "the mesh has no faces"),
-    ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\nuvs = [[0, 0]]", 53, "shapes[4].uvs", "uvs are not supported yet"),
+    ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\nuvs = [[0, 0]]", 53, "shapes[4].uvs", "1 uvs for 4 vertices"),
+    ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\nuvs = [[0, 0], [0, 1], [1, 1], [1]]", 53, "shapes[4].uvs[3]", "expected 2 numbers, found 1"),
+    ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\nuvs = [[0, 0], [0, nan], [1, 1], [1, 0]]", 53, "shapes[4].uvs[1][1]", "NaN is not finite"),
+    ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\nuvs = [[0, 0], [0, 1e6], [1, 1], [1, 0]]", 53, "shapes[4].uvs[1]", "the texture coordinate [0, 1000000] is too far out"),
     ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\ntransform = [[1, 0, 0, 0], [0, 1, 0, 0], [1, 1, 0, 0]]", 53, "shapes[4].transform", "the transform flattens the shape, its determinant is zero"),
     ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\ntransform = [[1, 0, 0], [0, 1, 0], [1, 1, 0]]", 53, "shapes[4].transform[0]", "expected 4 numbers, found 3"),
     ("type = \"disk\"", "type = \"obj\"\nfile = \"no.obj\"", 45, "shapes[3].center", "unknown key `center`"),
@@ -207,14 +214,368 @@ const REFUSED: &[(&str, &str, usize, &str, &str)] = &[
     ("source = \"by hand\"", "", 55, "expect.source", "missing key `source`"),
 ];
 
+/// Each edit of `good`, read as if it lay in `folder`, is refused as the row says.
+fn refusals(good: &str, file: &Path, rows: &[(&str, &str, usize, &str, &str)]) {
+    for &(from, to, line, key, what) in rows {
+        assert_eq!(good.matches(from).count(), 1, "{from:?} is not one place of the scene");
+        let e = toml(&good.replace(from, to), file, &Options::default()).expect_err(to);
+        assert_eq!((e.what.as_str(), e.line, e.key.as_deref()), (what, Some(line), Some(key)), "{to:?}");
+        assert_eq!(e.file.as_deref(), Some(file));
+        assert!(e.help.is_some_and(|h| h.len() > 5), "{what} has no help");
+    }
+}
+
 #[test]
 fn what_is_wrong_is_refused_at_its_line_and_key() {
-    for &(from, to, line, key, what) in REFUSED {
-        assert_eq!(GOOD.matches(from).count(), 1, "{from:?} is not one place of GOOD");
-        let e = parse(&GOOD.replace(from, to)).expect_err(to);
-        assert_eq!((e.what.as_str(), e.line, e.key.as_deref()), (what, Some(line), Some(key)), "{to:?}");
-        assert_eq!(e.file.as_deref(), Some(Path::new("bad.toml")));
-        assert!(e.help.is_some_and(|h| h.len() > 5), "{what} has no help");
+    refusals(GOOD, Path::new("bad.toml"), REFUSED);
+}
+
+// ------------------------------------------------------------------------------------------------ materials and lights
+
+/// One of every material and light.
+const RICH: &str = r#"[camera]
+origin = [0, 0, 4]
+target = [0, 0, 0]
+up = [0, 1, 0]
+fov = 40
+size = [8, 6]
+
+[materials.wall]
+type = "diffuse"
+texture = "wall.png"
+
+[materials.silver]
+type = "mirror"
+reflectance = [0.9, 0.8, 0.7]
+sides = "front"
+
+[materials.gold]
+type = "conductor"
+eta = [0.143, 0.375, 1.442]
+k = [3.98, 2.39, 1.6]
+alpha = 0.1
+masking = "separable"
+
+[materials.chrome]
+type = "conductor"
+reflectance = [0.5, 0.6, 0.7]
+
+[materials.glass]
+type = "dielectric"
+ior = 1.5
+ior_outside = 1.33
+choice = 0.25
+alpha = 0.3
+
+[materials.cup]
+type = "plastic"
+reflectance = [0.4, 0.5, 0.6]
+alpha = 0.2
+
+[materials.lacquer]
+type = "phong"
+reflectance = [0.7, 0.6, 0.5]
+specular = [0.3, 0.3, 0.3]
+exponent = 50
+
+[[shapes]]
+type = "quad"
+origin = [0, 0, 0]
+edge_u = [1, 0, 0]
+edge_v = [0, 1, 0]
+material = "wall"
+
+[[shapes]]
+type = "sphere"
+center = [0, 0, 0]
+radius = 1
+material = "gold"
+
+[[shapes]]
+type = "mesh"
+vertices = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [2, 0, 0]]
+faces = [[0, 1, 2], [0, 3, 2]]
+uvs = [[0, 0], [1, 0], [1, 1], [2, 0]]
+material = "glass"
+
+[[lights]]
+type = "point"
+position = [0, 3, 0]
+intensity = [10, 20, 30]
+
+[[lights]]
+type = "environment"
+file = "sky.hdr"
+mapping = "latlong"
+rotate = 90
+scale = 2
+
+[[lights]]
+type = "directional"
+direction = [0, -2, 0]
+irradiance = [1, 2, 3]
+"#;
+
+/// (text of RICH, its replacement, line, key, what)
+#[rustfmt::skip]
+const RICH_REFUSED: &[(&str, &str, usize, &str, &str)] = &[
+    // keys that belong elsewhere or are missing
+    ("sides = \"front\"", "alpha = 0.1", 15, "materials.silver.alpha", "unknown key `alpha`"),
+    ("sides = \"front\"", "texture = \"wall.png\"", 15, "materials.silver.texture", "unknown key `texture`"),
+    ("reflectance = [0.9, 0.8, 0.7]\n", "", 12, "materials.silver.reflectance", "missing key `reflectance`"),
+    ("texture = \"wall.png\"\n", "", 8, "materials.wall.reflectance", "missing key `reflectance`"),
+    ("[0.9, 0.8, 0.7]", "[0.9, 1.1, 0.7]", 14, "materials.silver.reflectance", "reflectance 1.1 is outside [0, 1]"),
+    ("reflectance = [0.5, 0.6, 0.7]\n", "", 24, "materials.chrome.eta", "missing key `eta`"),
+    ("k = [3.98, 2.39, 1.6]\n", "", 17, "materials.gold.k", "missing key `k`"),
+    ("eta = [0.143, 0.375, 1.442]\n", "", 17, "materials.gold.eta", "missing key `eta`"),
+    ("ior = 1.5\n", "", 28, "materials.glass.ior", "missing key `ior`"),
+    ("specular = [0.3, 0.3, 0.3]\n", "", 40, "materials.lacquer.specular", "missing key `specular`"),
+    ("exponent = 50\n", "", 40, "materials.lacquer.exponent", "missing key `exponent`"),
+    // metals
+    ("masking = \"separable\"", "reflectance = [0.5, 0.5, 0.5]", 22, "materials.gold.reflectance", "eta, k and reflectance are both given"),
+    ("eta = [0.143, 0.375, 1.442]", "eta = [0, 0.375, 1.442]", 19, "materials.gold.eta", "eta 0 is outside [0.001, 100]"),
+    ("k = [3.98, 2.39, 1.6]", "k = [3.98, -2.39, 1.6]", 20, "materials.gold.k", "k -2.39 is outside [0, 100]"),
+    // roughness
+    ("alpha = 0.1\n", "alpha = 0\n", 21, "materials.gold.alpha", "alpha 0 is below 0.001"),
+    ("alpha = 0.1\n", "alpha = -0.1\n", 21, "materials.gold.alpha", "alpha -0.1 is below 0.001"),
+    ("alpha = 0.1\n", "alpha = 1.1\n", 21, "materials.gold.alpha", "alpha 1.1 is above 1"),
+    ("alpha = 0.1\n", "alpha = nan\n", 21, "materials.gold.alpha", "NaN is not finite"),
+    ("alpha = 0.1\n", "", 21, "materials.gold.masking", "masking without alpha"),
+    ("masking = \"separable\"", "masking = \"smith\"", 22, "materials.gold.masking", "`smith` is no kind of masking"),
+    // glass
+    ("ior = 1.5", "ior = 0.9", 30, "materials.glass.ior", "ior 0.9 is outside [1, 10]"),
+    ("ior_outside = 1.33", "ior_outside = 11", 31, "materials.glass.ior_outside", "ior_outside 11 is outside [1, 10]"),
+    ("ior_outside = 1.33", "ior_outside = 1.5", 33, "materials.glass.alpha", "alpha between indices 1.5 and 1.5, which hardly differ"),
+    ("choice = 0.25", "choice = 0", 32, "materials.glass.choice", "choice 0 is outside (0, 1)"),
+    ("choice = 0.25", "choice = 1", 32, "materials.glass.choice", "choice 1 is outside (0, 1)"),
+    ("choice = 0.25", "choice = \"fresnell\"", 32, "materials.glass.choice", "`fresnell` is no choice of reflection"),
+    ("choice = 0.25", "choice = true", 32, "materials.glass.choice", "expected a number, found a boolean"),
+    ("choice = 0.25", "sides = \"both\"", 32, "materials.glass.sides", "a dielectric has no sides"),
+    // plastic and phong
+    ("alpha = 0.2", "ior = 0.5", 38, "materials.cup.ior", "ior 0.5 is outside [1, 10]"),
+    ("specular = [0.3, 0.3, 0.3]", "specular = [0.31, 0.3, 0.3]", 43, "materials.lacquer.specular", "reflectance 0.7 and specular 0.31 exceed 1 together"),
+    ("specular = [0.3, 0.3, 0.3]", "specular = [-0.3, 0.3, 0.3]", 43, "materials.lacquer.specular", "specular -0.3 is outside [0, 1]"),
+    ("exponent = 50", "exponent = -1", 44, "materials.lacquer.exponent", "exponent -1 is outside [0, 1e6]"),
+    ("reflectance = [0.7, 0.6, 0.5]\nspecular", "texture = \"wall.png\"\nspecular", 43, "materials.lacquer.specular", "reflectance 1 and specular 0.3 exceed 1 together"),
+    // textures
+    ("texture = \"wall.png\"", "texture = 3", 10, "materials.wall.texture", "expected a string, found an integer"),
+    ("texture = \"wall.png\"", "texture = \"wall.tga\"", 10, "materials.wall.texture", "`DIR/wall.tga` is no image this program reads"),
+    ("texture = \"wall.png\"", "texture = \"bright.exr\"", 10, "materials.wall.texture", "the texel in column 1, row 0 of `DIR/bright.exr` reflects 1.5, more than it receives"),
+    ("material = \"gold\"", "material = \"wall\"", 57, "shapes[1].material", "material `wall` has a texture, this sphere has no texture coordinates"),
+    ("uvs = [[0, 0], [1, 0], [1, 1], [2, 0]]\nmaterial = \"glass\"", "material = \"wall\"", 63, "shapes[2].material", "material `wall` has a texture, this mesh has no texture coordinates"),
+    // lights
+    ("type = \"directional\"\ndirection = [0, -2, 0]\nirradiance = [1, 2, 3]", "type = \"environment\"\nradiance = [1, 1, 1]", 79, "lights[2].type", "a second environment"),
+    ("position = [0, 3, 0]\n", "", 66, "lights[0].position", "missing key `position`"),
+    ("position = [0, 3, 0]", "power = [0, 3, 0]", 68, "lights[0].power", "unknown key `power`"),
+    ("intensity = [10, 20, 30]", "intensity = [10, -20, 30]", 69, "lights[0].intensity", "intensity -20 is negative"),
+    ("intensity = [10, 20, 30]", "intensity = [10, 2e30, 30]", 69, "lights[0].intensity", "intensity 2e30 is too large"),
+    ("direction = [0, -2, 0]", "direction = [0, 0, 0]", 80, "lights[2].direction", "the direction has zero length"),
+    ("irradiance = [1, 2, 3]", "irradiance = [1, 2]", 81, "lights[2].irradiance", "expected 3 numbers, found 2"),
+    ("file = \"sky.hdr\"", "radiance = [1, 1, 1]", 74, "lights[1].mapping", "mapping without file"),
+    ("file = \"sky.hdr\"\nmapping = \"latlong\"", "radiance = [1, 1, -1]", 73, "lights[1].radiance", "radiance -1 is negative"),
+    ("file = \"sky.hdr\"", "radiance = [1, 1, 1]\nfile = \"sky.hdr\"", 74, "lights[1].file", "radiance and file are both given"),
+    ("file = \"sky.hdr\"\nmapping = \"latlong\"\n", "", 71, "lights[1].radiance", "missing key `radiance`"),
+    ("mapping = \"latlong\"", "mapping = \"cube\"", 74, "lights[1].mapping", "`cube` is no mapping of a sky"),
+    ("mapping = \"latlong\"", "mapping = \"mirror-ball\"", 73, "lights[1].file", "the photograph of a mirror sphere is 3×2 pixels, not square"),
+    ("rotate = 90", "rotate = inf", 75, "lights[1].rotate", "inf is not finite"),
+    ("scale = 2", "scale = -2", 76, "lights[1].scale", "scale -2 is outside [0, 1e30]"),
+    ("scale = 2", "scale = 1e30", 76, "lights[1].scale", "the radiance 2.000e30 is too large"),
+    ("file = \"sky.hdr\"", "file = \"nan.exr\"", 73, "lights[1].file", "the texel in column 1, row 1 of `DIR/nan.exr` is [0.5, NaN, 0.5]"),
+    ("file = \"sky.hdr\"", "file = \"negative.exr\"", 73, "lights[1].file", "the texel in column 0, row 1 of `DIR/negative.exr` is [0.5, 0.5, -1]"),
+    ("file = \"sky.hdr\"", "file = \"clear.png\"", 73, "lights[1].file", "cannot read `DIR/clear.png`: it has transparent texels"),
+];
+
+/// Texels of the images below, linear.
+const SKY: [[f32; 3]; 6] =
+    [[0.0, 0.25, 0.5], [1.0, 2.0, 0.5], [0.0, 0.0, 0.0], [0.5, 0.5, 0.5], [0.125, 1.0, 0.75], [2.0, 0.5, 0.25]];
+
+/// A folder with the images that scenes of these tests name.
+fn gallery() -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    let exr = |name: &str, texels: &[[f32; 3]]| {
+        let at = |x: usize, y: usize| texels[2 * y + x].into();
+        exr::prelude::write_rgb_file(dir.path().join(name), 2, 2, at).unwrap();
+    };
+    let grey = [0.5; 3];
+    exr("sky.exr", &SKY[..4]);
+    exr("bright.exr", &[grey, [0.5, 1.5, 0.5], grey, grey]);
+    exr("nan.exr", &[grey, grey, grey, [0.5, f32::NAN, 0.5]]);
+    exr("negative.exr", &[grey, grey, [0.5, 0.5, -1.0], grey]);
+    let sky = image::Rgb32FImage::from_fn(3, 2, |x, y| image::Rgb(SKY[(3 * y + x) as usize]));
+    sky.save(dir.path().join("sky.hdr")).unwrap();
+    let wall = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb([[0, 10, 11], [128, 188, 255]][x as usize]));
+    wall.save(dir.path().join("wall.png")).unwrap();
+    let deep = image::ImageBuffer::<image::Rgb<u16>, _>::from_pixel(1, 1, image::Rgb([32768, 0, 65535]));
+    deep.save(dir.path().join("deep.png")).unwrap();
+    image::RgbImage::from_pixel(8, 8, image::Rgb([128, 128, 128])).save(dir.path().join("flat.jpg")).unwrap();
+    image::RgbaImage::from_pixel(1, 1, image::Rgba([1, 2, 3, 255])).save(dir.path().join("solid.png")).unwrap();
+    image::RgbaImage::from_pixel(1, 1, image::Rgba([1, 2, 3, 254])).save(dir.path().join("clear.png")).unwrap();
+    std::fs::write(dir.path().join("broken.png"), b"\x89PNG\r\n\x1a\n nothing").unwrap();
+    std::fs::write(dir.path().join("broken.exr"), b"\x76\x2f\x31\x01 nothing").unwrap();
+    std::fs::write(dir.path().join("broken.jpg"), b"").unwrap();
+    dir
+}
+
+#[test]
+fn wrong_materials_and_lights_are_refused_at_their_line_and_key() {
+    let dir = gallery();
+    let rows = RICH_REFUSED.iter().map(|&(a, b, n, k, w)| (a, b, n, k, w.replace("DIR", dir.path().to_str().unwrap())));
+    let rows: Vec<_> = rows.collect();
+    let rows: Vec<_> = rows.iter().map(|(a, b, n, k, w)| (*a, *b, *n, *k, w.as_str())).collect();
+    refusals(RICH, &dir.path().join("rich.toml"), &rows);
+    for (file, says) in [
+        ("none.png", "No such file"),
+        ("broken.png", "cannot read"),
+        ("broken.exr", "cannot read"),
+        ("broken.jpg", "cannot read"),
+    ] {
+        let text = RICH.replace("sky.hdr", file);
+        let e = toml(&text, &dir.path().join("rich.toml"), &Options::default()).unwrap_err();
+        assert!(e.what.contains(says) && e.what.contains(file), "{e}");
+        assert_eq!((e.line, e.key.as_deref()), (Some(73), Some("lights[1].file")));
+        assert!(e.help.is_some());
+    }
+}
+
+#[test]
+fn the_rich_scene_is_read_as_written() {
+    let dir = gallery();
+    let read = |text: &str| toml(text, &dir.path().join("rich.toml"), &Options::default()).unwrap().description;
+    let d = read(RICH);
+    let ggx = |alpha, masking| Some(Ggx { alpha, masking });
+    let bsdf = |name: &str| d.materials.iter().find(|m| m.name == name).unwrap().bsdf.clone();
+    let silver = d.materials.iter().find(|m| m.name == "silver").unwrap();
+    assert_eq!(silver.sides, Sides::Front);
+    assert_eq!(silver.bsdf, BsdfDescription::Mirror { reflectance: DVec3::new(0.9, 0.8, 0.7) });
+    let metal = Metal::Fresnel { eta: DVec3::new(0.143, 0.375, 1.442), k: DVec3::new(3.98, 2.39, 1.6) };
+    assert_eq!(bsdf("gold"), BsdfDescription::Conductor { metal, rough: ggx(0.1, Masking::Separable) });
+    let metal = Metal::Reflectance(DVec3::new(0.5, 0.6, 0.7));
+    assert_eq!(bsdf("chrome"), BsdfDescription::Conductor { metal, rough: None });
+    let rough = ggx(0.3, Masking::HeightCorrelated);
+    let choice = Choice::Constant(0.25);
+    assert_eq!(bsdf("glass"), BsdfDescription::Dielectric { ior: 1.5, ior_outside: 1.33, choice, rough });
+    let reflectance = Colour::Uniform(DVec3::new(0.4, 0.5, 0.6));
+    let rough = ggx(0.2, Masking::HeightCorrelated);
+    assert_eq!(bsdf("cup"), BsdfDescription::Plastic { reflectance, ior: 1.5, rough });
+    let reflectance = Colour::Uniform(DVec3::new(0.7, 0.6, 0.5));
+    assert_eq!(bsdf("lacquer"), BsdfDescription::Phong { reflectance, specular: DVec3::splat(0.3), exponent: 50.0 });
+    let Geometry::Mesh { uvs, .. } = &d.shapes[2].geometry else { panic!() };
+    assert_eq!(uvs[1], [DVec2::ZERO, DVec2::new(2.0, 0.0), DVec2::ONE]);
+    // lights in the order of the file
+    let [point, LightDescription::Environment { sky: Sky::LatLong(sky), rotate, scale }, sun] = d.lights.as_slice()
+    else {
+        panic!("{:?}", d.lights)
+    };
+    let (position, intensity) = (DVec3::new(0.0, 3.0, 0.0), DVec3::new(10.0, 20.0, 30.0));
+    assert_eq!(*point, LightDescription::Point { position, intensity });
+    let (direction, irradiance) = (DVec3::new(0.0, -2.0, 0.0), DVec3::new(1.0, 2.0, 3.0));
+    assert_eq!(*sun, LightDescription::Directional { direction, irradiance });
+    assert_eq!((*rotate, *scale, sky.size), (90.0, 2.0, [3, 2]));
+    assert_eq!(sky.texels, SKY.map(Rgb::from_array), "the values are exact in RGBE");
+
+    // defaults, and glass without a step of the index
+    let d = read(&RICH.replace("choice = 0.25\nalpha = 0.3", "").replace("ior_outside = 1.33", ""));
+    let glass = BsdfDescription::Dielectric { ior: 1.5, ior_outside: 1.0, choice: Choice::Fresnel, rough: None };
+    assert_eq!(d.materials[4].bsdf, glass);
+    read(
+        &RICH
+            .replace("choice = 0.25\nalpha = 0.3", "choice = \"fresnel\"")
+            .replace("ior_outside = 1.33", "ior_outside = 1.5"),
+    );
+    let constant = read(&RICH.replace("file = \"sky.hdr\"\nmapping = \"latlong\"\n", "radiance = [1, 2, 3]\n"));
+    let sky = Sky::Constant(DVec3::new(1.0, 2.0, 3.0));
+    assert_eq!(constant.lights[1], LightDescription::Environment { sky, rotate: 90.0, scale: 2.0 });
+}
+
+/// Every format, decoded: linear ones as they are, sRGB ones by the inverse of the curve that pictures are written with.
+#[test]
+fn images_are_linear() {
+    let dir = gallery();
+    let texels = |file: &str, mapping: &str| {
+        let text = RICH.replace("sky.hdr", file).replace("latlong", mapping);
+        let d = toml(&text, &dir.path().join("rich.toml"), &Options::default()).unwrap().description;
+        match d.lights[1].clone() {
+            LightDescription::Environment { sky: Sky::LatLong(r) | Sky::MirrorBall(r), .. } => r.texels.clone(),
+            l => panic!("{l:?}"),
+        }
+    };
+    assert_eq!(texels("sky.exr", "mirror-ball"), SKY[..4].iter().map(|t| Rgb::from_array(*t)).collect::<Vec<_>>());
+    let coded = |file: &str| {
+        texels(file, "latlong").iter().map(|t| t.to_array().map(|x| srgb(f64::from(x)))).collect::<Vec<_>>()
+    };
+    let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-7);
+    let wall = coded("wall.png");
+    assert!(near(wall[0], [0.0, 10.0 / 255.0, 11.0 / 255.0]) && near(wall[1], [128.0 / 255.0, 188.0 / 255.0, 1.0]));
+    assert!(near(coded("deep.png")[0], [32768.0 / 65535.0, 0.0, 1.0]));
+    assert!(near(coded("solid.png")[0], [1.0, 2.0, 3.0].map(|n| n / 255.0)));
+    assert_eq!(coded("flat.jpg").len(), 64);
+    assert!(coded("flat.jpg").iter().all(|t| near(*t, [128.0 / 255.0; 3])));
+}
+
+/// Lights and the contents of images are part of what is hashed.
+#[test]
+fn canonical_text_holds_lights_and_textures() {
+    let dir = gallery();
+    let canonical = |text: &str| toml(text, &dir.path().join("rich.toml"), &Options::default()).unwrap().canonical;
+    let own = canonical(RICH);
+    assert_eq!(own, canonical(RICH));
+    for (from, to) in [
+        ("intensity = [10, 20, 30]", "intensity = [10, 20, 31]"),
+        ("rotate = 90", "rotate = 91"),
+        ("sky.hdr", "sky.exr"),
+        ("wall.png", "deep.png"),
+        ("[2, 0]]\nmaterial", "[2, 1]]\nmaterial"),
+    ] {
+        assert_ne!(own, canonical(&RICH.replace(from, to)), "{to}");
+    }
+    let before = std::fs::read(dir.path().join("wall.png")).unwrap();
+    image::RgbImage::from_pixel(2, 1, image::Rgb([1, 2, 3])).save(dir.path().join("wall.png")).unwrap();
+    assert_ne!(own, canonical(RICH), "another image under the same name");
+    std::fs::write(dir.path().join("wall.png"), before).unwrap();
+    assert_eq!(own, canonical(RICH));
+}
+
+/// A light without a surface lights a scene; one that sends nothing does not.
+#[test]
+fn lights_light_a_scene() {
+    let dark = GOOD.replace("emission = [1, 2, 3]\n", "");
+    for (light, lit) in [
+        ("type = \"point\"\nposition = [0, 0, 1]\nintensity = [0, 0, 1]", true),
+        ("type = \"point\"\nposition = [0, 0, 1]\nintensity = [0, 0, 0]", false),
+        ("type = \"directional\"\ndirection = [0, 0, 1]\nirradiance = [0, 0, 1]", true),
+        ("type = \"directional\"\ndirection = [0, 0, 1]\nirradiance = [0, 0, 0]", false),
+        ("type = \"environment\"\nradiance = [0, 0, 1]", true),
+        ("type = \"environment\"\nradiance = [0, 0, 0]", false),
+        ("type = \"environment\"\nradiance = [0, 0, 1]\nscale = 0", false),
+    ] {
+        let text = format!("{dark}\n[[lights]]\n{light}\n");
+        match parse(&text) {
+            Ok(l) => assert!(lit && l.description.lights.len() == 1, "{light}"),
+            Err(e) => assert!(!lit && e.what == "nothing in the scene emits light", "{light}: {e}"),
+        }
+    }
+    let set = ["lights[0].position=[0, 2, 0]"];
+    let text = format!("{dark}\n[[lights]]\ntype = \"point\"\nposition = [0, 0, 1]\nintensity = [1, 1, 1]\n");
+    let d = toml(&text, Path::new("x.toml"), &options(&set, &[])).unwrap().description;
+    assert!(matches!(d.lights[0], LightDescription::Point { position: DVec3 { y: 2.0, .. }, .. }));
+}
+
+/// The corners of a face keep their place in the image when a mirroring transform reverses its winding.
+#[test]
+fn texture_coordinates_follow_their_corner() {
+    let uvs = "[[0, 0], [1, 0], [1, 1], [2, 0]]";
+    for (rows, mirrored) in [("[[1,0,0,0],[0,1,0,0],[0,0,1,0]]", false), ("[[-1,0,0,0],[0,1,0,0],[0,0,1,0]]", true)] {
+        let set = [format!("shapes[4].uvs={uvs}"), format!("shapes[4].transform={rows}")];
+        let d = with(&set.each_ref().map(String::as_str)).unwrap().description;
+        let Geometry::Mesh { vertices, faces, uvs } = &d.shapes[4].geometry else { panic!() };
+        assert_eq!(faces[0] == [0, 2, 1], mirrored);
+        for (face, uv) in faces.iter().zip(uvs) {
+            for (i, uv) in face.iter().zip(uv) {
+                let v = vertices[*i as usize];
+                // the coordinates above are x and y of the vertex
+                assert_eq!(*uv, DVec2::new(v.x.abs(), v.y));
+            }
+        }
     }
 }
 
@@ -265,7 +626,7 @@ fn names_of_scenes() {
     let e = scene("cornel", &Options::default()).unwrap_err();
     insta::assert_snapshot!(e, @r"
     error: `cornel` is neither a built-in scene nor a .toml or .obj file
-    help: did you mean `cornell`? built-in scenes: cornell, furnace, sphere, shells
+    help: did you mean `cornell`? built-in scenes: cornell, furnace, sphere, shells, cornell-spheres, veach-mis, veach-ajar, env-ggx, caustic, glass-furnace, mirror-corridor, sky-bowl, many-lights
     ");
     assert!(!scene("teapot", &Options::default()).unwrap_err().help.unwrap().contains("did you mean"));
     for missing in ["no/such.toml", "no/such.obj"] {
@@ -398,7 +759,9 @@ fn transforms_move_the_front_along() {
 
 #[test]
 fn built_ins_load_without_a_warning() {
-    assert_eq!(builtin::names(), ["cornell", "furnace", "sphere", "shells"]);
+    assert_eq!(builtin::names()[..5], ["cornell", "furnace", "sphere", "shells", "cornell-spheres"]);
+    let files = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")).unwrap();
+    assert_eq!(files.filter(|f| f.as_ref().unwrap().path().extension().is_some_and(|e| e == "toml")).count(), 13);
     let readme = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/README.md")).unwrap();
     for b in &builtin::ALL {
         let loaded = scene(b.name, &Options::default()).unwrap_or_else(|e| panic!("{e}"));
@@ -484,6 +847,22 @@ fn expected_terms_of_the_built_ins() {
         pair = [0.9 * pair[1], 0.6 * (pair[0] / 16.0 + pair[1] * 15.0 / 16.0)];
     }
     assert!(near(&expect("shells").terms, &shells));
+    let bowl: Vec<f64> = (0..9).map(|k| if k == 0 { 0.0 } else { 0.7 * 0.4 * 0.42f64.powi(k - 1) }).collect();
+    assert!(near(&expect("sky-bowl").terms, &bowl));
+    // the ball of glass covers a disk; midpoints of rings of equal area, R at each
+    let (rings, frame) = (100_000, 4.0 * 22.5f64.to_radians().tan().powi(2));
+    let mut glass = [0.0; 9];
+    for i in 0..rings {
+        let tan2 = (f64::from(i) + 0.5) / f64::from(rings) / 8.0;
+        let sin = 3.0 * (tan2 / (1.0 + tan2)).sqrt();
+        let (c, t) = ((1.0 - sin * sin).sqrt(), (1.0 - sin * sin / 2.25).sqrt());
+        let r = 0.5 * (((c - 1.5 * t) / (c + 1.5 * t)).powi(2) + ((1.5 * c - t) / (1.5 * c + t)).powi(2));
+        let terms = (1..9).map(|k| if k == 1 { r } else { (1.0 - r).powi(2) * r.powi(k - 2) });
+        glass[1..].iter_mut().zip(terms).for_each(|(sum, t)| *sum += t * PI / 8.0 / frame / f64::from(rings));
+    }
+    glass[0] = 1.0 - PI / 8.0 / frame;
+    let claimed = expect("glass-furnace").terms;
+    assert!(claimed.iter().zip(glass).all(|(a, b)| (a - b).abs() < 1e-6), "{claimed:?} {glass:?}");
 }
 
 // ------------------------------------------------------------------------------------------------ OBJ
@@ -527,6 +906,17 @@ fn wrong_obj_files_are_refused_at_their_line() {
         ("kd_above_one.obj", "kd_above_one.mtl", Some(3), Some("wall.Kd"), "reflectance 1.2 is outside [0, 1]"),
         ("negative_ke.obj", "negative_ke.mtl", Some(3), Some("wall.Ke"), "emission -1 is outside [0, 1e30]"),
         ("bad_kd.obj", "bad_kd.mtl", Some(2), Some("wall.Kd"), "`Kd 0.5 0.5` is not a colour"),
+        (
+            "vt_out_of_range.obj",
+            "vt_out_of_range.obj",
+            Some(5),
+            Some("f"),
+            "vt index 2 is out of range, the file has 1",
+        ),
+        ("bad_vt.obj", "bad_vt.obj", Some(4), Some("vt"), "`0 nan` is not a texture coordinate"),
+        ("negative_ks.obj", "negative_ks.mtl", Some(3), Some("wall.Ks"), "Ks -0.1 is outside [0, 1e30]"),
+        ("bad_ns.obj", "bad_ns.mtl", Some(3), Some("wall.Ns"), "`Ns many` is not a number from 0 on"),
+        ("d_above_one.obj", "d_above_one.mtl", Some(3), Some("wall.d"), "`d 1.5` is not a number from 0 to 1"),
         ("headless.obj", "headless.mtl", Some(1), Some("Kd"), "Kd before the first newmtl"),
         ("dark.obj", "dark.obj", None, None, "nothing in the scene emits light"),
     ] {
@@ -569,7 +959,8 @@ fn an_imperfect_obj_loads_with_warnings() {
         [
             ":10: material `ligth` is not defined, it is grey 0.5; did you mean `light`?",
             ":13: material `light` has no Kd, it is grey 0.5",
-            ":16: material `glossy` has Ks 0.5 0.5 0.5, map_Kd wood.png ignored, only Kd and Ke are read",
+            ":16: material `glossy` has map_Kd wood.png on polygons without vt, Kd is used",
+            ":16: material `glossy` has Ks but no Ns, it is diffuse",
             ": triangles without area, left out: 1",
         ]
     );
@@ -577,6 +968,131 @@ fn an_imperfect_obj_loads_with_warnings() {
     let distance = 1.0 / (39.3077f64.to_radians() / 2.0).tan() / 0.9;
     assert!((d.camera.origin - DVec3::new(1.0, 1.0, distance)).length() < 1e-12);
     assert_eq!((d.camera.target, d.camera.size, d.name.as_str()), (DVec3::new(1.0, 1.0, 0.0), [256, 256], "imperfect"));
+}
+
+/// The table of `scenes/README.md`: statements of an MTL, the material they become, and what is said about it.
+#[test]
+fn mtl_materials() {
+    let dir = gallery();
+    let (obj, mtl) = (dir.path().join("a.obj"), dir.path().join("a.mtl"));
+    let grey = |x: f64| Colour::Uniform(DVec3::splat(x));
+    let diffuse = |x: f64| BsdfDescription::Diffuse { reflectance: grey(x) };
+    let mirror = |x: f64| BsdfDescription::Mirror { reflectance: DVec3::splat(x) };
+    let phong = |kd: f64, ks: f64, exponent: f64| BsdfDescription::Phong {
+        reflectance: grey(kd),
+        specular: DVec3::splat(ks),
+        exponent,
+    };
+    let glass = |ior: f64| BsdfDescription::Dielectric { ior, ior_outside: 1.0, choice: Choice::Fresnel, rough: None };
+    // the two texels of wall.png, decoded
+    let wall = |factor: f64| {
+        let read = RICH.replace("sky.hdr", "wall.png");
+        let d = toml(&read, &dir.path().join("x.toml"), &Options::default()).unwrap().description;
+        let LightDescription::Environment { sky: Sky::LatLong(r), .. } = &d.lights[1] else { panic!() };
+        let texels = r.texels.iter().map(|t| (t.as_dvec3() * factor).as_vec3()).collect();
+        BsdfDescription::Diffuse { reflectance: Colour::Texture(Raster::new(r.size, texels).into()) }
+    };
+    for (statements, placed, wanted, said) in [
+        ("Kd 0.25", true, diffuse(0.25), &[][..]),
+        ("Kd 0.25\nKs 0\nNs 10\nillum 2\nNi 1.5\nd 1\nTr 0\nTf 1 1 1", true, diffuse(0.25), &[]),
+        ("", true, diffuse(0.5), &["has no Kd, it is grey 0.5"]),
+        // lobes
+        ("Kd 0.25\nKs 0.5\nNs 20", true, phong(0.25, 0.5, 20.0), &[]),
+        ("Kd 0\nKs 0.75\nNs 200\nillum 2", true, phong(0.0, 0.75, 200.0), &[]),
+        ("Kd 0.25\nKs 0.5", true, diffuse(0.25), &["has Ks but no Ns, it is diffuse"]),
+        ("Kd 0.25\nKs 0.5\nNs 20\nillum 1", true, diffuse(0.25), &["has Ks, which illum 1 leaves out"]),
+        (
+            "Kd 1\nKs 1\nNs 20",
+            true,
+            phong(0.5, 0.5, 20.0),
+            &["returns more than it receives, Kd + Ks reach 2: divided by that"],
+        ),
+        (
+            "Kd 0.25\nKs 0.5\nNs 20\nillum 3",
+            true,
+            phong(0.25, 0.5, 20.0),
+            &["mirrors in illum 3 beside its Kd: it is a lobe of exponent 20"],
+        ),
+        // mirrors
+        ("Ks 0.75\nillum 3", true, mirror(0.75), &[]),
+        ("Kd 0.01\nKs 0.95\nNs 1024\nillum 5", true, mirror(0.95), &["is a mirror, without its Kd"]),
+        ("Ks 2\nillum 3", true, mirror(1.0), &["returns more than it receives, Ks reaches 2: divided by that"]),
+        // glass
+        ("Kd 0\nNi 1.33\nillum 7", true, glass(1.33), &[]),
+        (
+            "Kd 0.01\nKs 0.3\nTf 0.1\nNs 1024\nNi 2.5\nillum 7",
+            true,
+            glass(2.5),
+            &["is clear glass, without its Kd, Tf"],
+        ),
+        ("d 0.5", true, glass(1.5), &["has no Ni, 1.5 is used"]),
+        ("Tr 0.5\nNi 1.2", true, glass(1.2), &[]),
+        ("d -halo 0.5\nNi 1", true, glass(1.0), &["has Ni 1 and d below 1, it is invisible"]),
+        ("d 0.5\nNi 0", true, glass(1.5), &["has Ni 0 outside [1, 10], 1.5 is used"]),
+        ("Kd 0.25\nd 1\nTr 1", true, diffuse(0.25), &["has d 1 and Tr 1, which contradict each other: d counts"]),
+        (
+            "Kd 0.25\nillum 4\nNi 1",
+            true,
+            diffuse(0.25),
+            &["has illum 4, but neither d below 1 nor Ni above 1: it is opaque"],
+        ),
+        // images
+        ("map_Kd wall.png # beside the MTL", true, wall(1.0), &[]),
+        ("Kd 0.5\nmap_Kd .\\wall.png", true, wall(0.5), &[]),
+        ("Kd 0.5\nmap_Kd wall.png", false, diffuse(0.5), &["has map_Kd wall.png on polygons without vt, Kd is used"]),
+        ("map_Kd -s 1 2 -clamp on wall.png", true, wall(1.0), &["has map_Kd options -s 1 2 -clamp on ignored"]),
+        ("Kd 0.5\nmap_Kd oak wood.png", true, diffuse(0.5), &["has map_Kd oak wood.png, which is missing, Kd is used"]),
+        (
+            "Kd 0.5\nmap_Kd a.mtl",
+            true,
+            diffuse(0.5),
+            &["has map_Kd a.mtl, which is no EXR, HDR, PNG or JPEG, Kd is used"],
+        ),
+        ("Kd 0\nmap_Kd wall.png", true, wall(0.0), &["has Kd 0, which makes its map_Kd black"]),
+        ("Kd 0.25\nbump b.png\nmap_d c.png", true, diffuse(0.25), &["has bump b.png, map_d c.png ignored"]),
+    ] {
+        std::fs::write(&mtl, format!("newmtl a\nKe 1\n{statements}\n")).unwrap();
+        let face = if placed { "f 1/1 2/2 3/3" } else { "f 1/1 2 3/3" };
+        let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
+        std::fs::write(&obj, format!("mtllib a.mtl\n{vertices}usemtl a\n{face}\n")).unwrap();
+        let Loaded { description: d, warnings, .. } = scene(obj.to_str().unwrap(), &Options::default()).unwrap();
+        assert_eq!(d.materials[0].bsdf, wanted, "{statements}");
+        let said: Vec<_> = said.iter().map(|w| format!("{}:8: material `a` {w}", obj.display())).collect();
+        assert_eq!(warnings, said, "{statements}");
+        let Geometry::Mesh { uvs, .. } = &d.shapes[0].geometry else { panic!() };
+        assert_eq!(*uvs, if placed { vec![[DVec2::ZERO, DVec2::X, DVec2::Y]] } else { vec![] });
+    }
+    // an image that is there but wrong is an error at its line
+    std::fs::write(&mtl, "newmtl a\nKe 1\nmap_Kd bright.exr\n").unwrap();
+    let e = scene(obj.to_str().unwrap(), &Options::default()).unwrap_err();
+    assert!(e.what.ends_with("reflects 1.5, more than it receives"), "{e}");
+    assert_eq!((e.file, e.line, e.key.as_deref()), (Some(mtl), Some(3), Some("a.map_Kd")));
+}
+
+/// One material with an image on two groups, one of them without vt: two materials, and one warning.
+#[test]
+fn images_go_where_texture_coordinates_are() {
+    let dir = gallery();
+    let obj = dir.path().join("a.obj");
+    std::fs::write(dir.path().join("a.mtl"), "newmtl a\nKe 1\nKd 0.5\nmap_Kd wall.png\n").unwrap();
+    let text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 2 0\nvt 2 1\nvt 0 1\nusemtl a\n\
+        g one\nf 1/-4 2/-3 3/-2 4/-1\ng two\nf 1 2 3\ng three\nf 1//1 2//1 3//1\ng four\nf 4/4 3/3 2/2\n";
+    std::fs::write(&obj, text).unwrap();
+    let Loaded { description: d, warnings, .. } = scene(obj.to_str().unwrap(), &Options::default()).unwrap();
+    assert_eq!(d.shapes.iter().map(|s| s.material).collect::<Vec<_>>(), [0, 1, 1, 0]);
+    assert!(d.materials[0].lambertian().is_none() && d.materials[1].lambertian() == Some(DVec3::splat(0.5)));
+    assert_eq!((d.materials.len(), warnings.len()), (2, 1), "{warnings:?}");
+    let Geometry::Mesh { uvs, .. } = &d.shapes[0].geometry else { panic!() };
+    let [a, b, c, e] = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]].map(DVec2::from);
+    assert_eq!(*uvs, [[a, b, c], [a, c, e]]);
+    // a textured material of the scene needs them everywhere
+    let text = RICH.replace(
+        "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"gold\"",
+        "type = \"obj\"\nfile = \"a.obj\"\nmaterial = \"wall\"",
+    );
+    let e = toml(&text, &dir.path().join("rich.toml"), &Options::default()).unwrap_err();
+    assert_eq!(e.what, "material `wall` has a texture, this obj has no texture coordinates");
+    assert_eq!((e.line, e.key.as_deref()), (Some(56), Some("shapes[1].material")));
 }
 
 /// The dart 0 1 2 3 with its reflex corner at 2 is star-shaped from 0; as 1 2 3 0 its fan overlaps itself.
@@ -650,7 +1166,11 @@ fn real_obj_files() {
     assert!((b - a).cross(c - a).y < 0.0, "the light shines down");
     let left = d.materials.iter().find(|m| m.name == "leftWall").unwrap();
     assert_eq!(left.lambertian().unwrap(), DVec3::new(0.63, 0.065, 0.05));
-    assert_eq!(cornell.warnings.len(), 2, "{:?}", cornell.warnings);
+    let tall = d.materials.iter().find(|m| m.name == "tallBox").unwrap();
+    let specular = DVec3::new(0.725, 0.71, 0.68);
+    let reflectance = Colour::Uniform(DVec3::ZERO);
+    assert_eq!(tall.bsdf, BsdfDescription::Phong { reflectance, specular, exponent: 200.0 });
+    assert_eq!(cornell.warnings, [""; 0]);
     let cow = scene(inputs.join("spot.obj").to_str().unwrap(), &options(&[], &["default=1,1,1"])).unwrap();
     assert_eq!((cow.description.primitives().len(), cow.warnings.len()), (5856, 0));
 }
@@ -719,16 +1239,19 @@ fn sound(l: &Loaded) {
     let d = &l.description;
     assert!(d.primitives().iter().all(|(_, p)| p.area() > 0.0 && p.area().is_finite()));
     assert!(d.shapes.iter().all(|s| s.material < d.materials.len() && s.emission.is_finite()));
-    assert!(d.shapes.iter().any(|s| s.emission.max_element() > 0.0));
+    assert!(d.shapes.iter().any(|s| s.emission.max_element() > 0.0) || !d.lights.is_empty());
     assert!(d.camera.origin.is_finite() && d.camera.size.iter().all(|&n| n > 0));
 }
 
 #[test]
 fn garbage_in_toml_never_panics() {
     let (good, refused) = (Cell::new(0), Cell::new(0));
+    let dir = gallery();
+    let file = dir.path().join("rich.toml");
     runner(2000)
-        .run(&edits(), |edits| {
-            match parse(&edited(GOOD, &edits)) {
+        .run(&(edits(), any::<bool>()), |(edits, rich)| {
+            let text = if rich { RICH } else { GOOD };
+            match toml(&edited(text, &edits), &file, &Options::default()) {
                 Ok(l) => {
                     sound(&l);
                     good.set(good.get() + 1);

@@ -9,7 +9,7 @@ use serde_json::json;
 /// Prints what is known, or lists the built-in scenes.
 pub fn run(args: &args::Info) -> Result<Ending, Failure> {
     let Some(name) = &args.scene else {
-        let lines: Vec<String> = builtin::ALL.iter().map(|s| format!("{:10} {}", s.name, s.summary)).collect();
+        let lines: Vec<String> = builtin::ALL.iter().map(|s| format!("{:15} {}", s.name, s.summary)).collect();
         super::say(&lines.join("\n"))?;
         return Ok(Ending::Ok);
     };

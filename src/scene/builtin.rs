@@ -12,7 +12,7 @@ pub struct Builtin {
 }
 
 /// Every built-in scene; the first is the default of the program.
-pub const ALL: [Builtin; 4] = [
+pub const ALL: [Builtin; 13] = [
     Builtin {
         name: "cornell",
         summary: "a Cornell box of quads and two blocks, colours bleeding",
@@ -32,6 +32,51 @@ pub const ALL: [Builtin; 4] = [
         name: "shells",
         summary: "two concentric spheres: pointwise exact terms of a 2 by 2 operator, with occlusion",
         source: include_str!("../../scenes/shells.toml"),
+    },
+    Builtin {
+        name: "cornell-spheres",
+        summary: "the Cornell box with a mirror sphere and a glass sphere: caustics from k = 2 and 3 on",
+        source: include_str!("../../scenes/cornell-spheres.toml"),
+    },
+    Builtin {
+        name: "veach-mis",
+        summary: "four glossy plates under spheres of equal power and unequal size: why techniques are combined",
+        source: include_str!("../../scenes/veach-mis.toml"),
+    },
+    Builtin {
+        name: "veach-ajar",
+        summary: "a room lit only through a door ajar: a long series, the lamp out of sight",
+        source: include_str!("../../scenes/veach-ajar.toml"),
+    },
+    Builtin {
+        name: "env-ggx",
+        summary: "gold, copper and plastic under a sky and a point light: GGX at four widths",
+        source: include_str!("../../scenes/env-ggx.toml"),
+    },
+    Builtin {
+        name: "caustic",
+        summary: "a glass sphere focuses a small lamp: easy from the light, fireflies from the eye",
+        source: include_str!("../../scenes/caustic.toml"),
+    },
+    Builtin {
+        name: "glass-furnace",
+        summary: "a glass ball in a sky of radiance 1: every pixel sums to 1, terms known",
+        source: include_str!("../../scenes/glass-furnace.toml"),
+    },
+    Builtin {
+        name: "mirror-corridor",
+        summary: "two parallel mirrors of 0.9: T^k E decays slowly",
+        source: include_str!("../../scenes/mirror-corridor.toml"),
+    },
+    Builtin {
+        name: "sky-bowl",
+        summary: "part of a sphere open to a sky of radiance 1: every term is constant",
+        source: include_str!("../../scenes/sky-bowl.toml"),
+    },
+    Builtin {
+        name: "many-lights",
+        summary: "96 lamps from 0.01 to 10 W: choosing lights by power or uniformly",
+        source: include_str!("../../scenes/many-lights.toml"),
     },
 ];
 

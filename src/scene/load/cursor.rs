@@ -7,7 +7,7 @@ use super::{
     tree::{Node, Place, Value},
 };
 use crate::scene::SceneError;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::path::Path;
 
 /// Positions and lengths live in (1e-12, 1e12) metres, so that their squares fit the `f32` of the rays.
@@ -16,6 +16,8 @@ pub(super) const LARGEST_LENGTH: f64 = 1e12;
 pub(super) const SMALLEST_LENGTH: f64 = 1e-12;
 /// Radiances and powers up to here fit `f32` with room for a path's weights.
 pub(super) const LARGEST_LIGHT: f64 = 1e30;
+/// Texture coordinates up to here keep a hundredth of the image in `f32`.
+pub(super) const LARGEST_UV: f64 = 1e5;
 
 /// A value of the scene with its key.
 #[derive(Clone, Debug)]
@@ -186,12 +188,59 @@ impl<'a> Cursor<'a> {
         Ok(face)
     }
 
-    /// An albedo per channel, each in [0, 1].
+    /// A number in `[low, high]`.
+    pub(super) fn within(&self, name: &str, low: f64, high: f64) -> Result<f64, SceneError> {
+        let x = self.number()?;
+        if (low..=high).contains(&x) {
+            return Ok(x);
+        }
+        let most = if high < 1e6 { high.to_string() } else { format!("{high:e}") };
+        Err(self.error(format!("{name} {x} is outside [{low}, {most}]")).help(format!("stay within {low} and {most}")))
+    }
+
+    /// Part of a complex index of refraction per channel, each in `[low, 100]`.
+    pub(super) fn index(&self, name: &str, low: f64) -> Result<DVec3, SceneError> {
+        let rgb = self.colour()?;
+        match rgb.to_array().into_iter().find(|x| !(low..=100.0).contains(x)) {
+            Some(x) => Err(self
+                .error(format!("{name} {x} is outside [{low}, 100]"))
+                .help("the index of refraction of the metal is eta + i k, measured at red, green and blue")),
+            None => Ok(rgb),
+        }
+    }
+
+    /// A texture coordinate.
+    pub(super) fn uv(&self) -> Result<DVec2, SceneError> {
+        let uv = DVec2::from(self.pair()?);
+        if uv.abs().max_element() <= LARGEST_UV {
+            return Ok(uv);
+        }
+        Err(self
+            .error(format!("the texture coordinate {uv} is too far out"))
+            .help("stay within 1e5 repeats of the image"))
+    }
+
+    /// True if this is a string.
+    pub(super) fn is_text(&self) -> bool {
+        matches!(self.node.value, Value::Text(_))
+    }
+
+    /// An error found in a file that this value names.
+    pub(super) fn place(&self, e: SceneError) -> SceneError {
+        self.error(e.what).help(e.help.unwrap_or_default())
+    }
+
+    /// The albedo of a surface per channel, each in [0, 1].
     pub(super) fn reflectance(&self) -> Result<DVec3, SceneError> {
+        self.albedo("reflectance")
+    }
+
+    /// An albedo per channel, each in [0, 1].
+    pub(super) fn albedo(&self, name: &str) -> Result<DVec3, SceneError> {
         let rgb = self.colour()?;
         match rgb.to_array().into_iter().find(|x| !(0.0..=1.0).contains(x)) {
             Some(x) => Err(self
-                .error(format!("reflectance {x} is outside [0, 1]"))
+                .error(format!("{name} {x} is outside [0, 1]"))
                 .help("a surface returns at most what it receives, or the Neumann series may diverge")),
             None => Ok(rgb),
         }

@@ -9,7 +9,7 @@
 
 use super::cursor::{Cursor, LARGEST_LENGTH, SMALLEST_LENGTH};
 use crate::scene::{SceneError, description::Geometry};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// A sine this small is parallel, a height this much smaller than the longest edge is flat.
 pub(super) const FLAT: f64 = 1e-9;
@@ -28,10 +28,23 @@ pub(super) fn mesh(c: &Cursor) -> Result<Geometry, SceneError> {
         let e = row.error(format!("the triangle {f:?} has no area"));
         return Err(e.help("its three corners must not lie on one line"));
     }
+    let mut uvs = uvs(c, vertices.len(), &faces)?;
     if let Some(t) = transform(c)? {
-        t.apply(&mut vertices, &mut faces)?;
+        t.apply(&mut vertices, &mut faces, &mut uvs)?;
     }
-    Ok(Geometry::Mesh { vertices, faces, uvs: vec![] })
+    Ok(Geometry::Mesh { vertices, faces, uvs })
+}
+
+/// The texture coordinates of the corners of each face, from one per vertex.
+fn uvs(c: &Cursor, vertices: usize, faces: &[[u32; 3]]) -> Result<Vec<[DVec2; 3]>, SceneError> {
+    let Some(list) = c.get("uvs") else { return Ok(Vec::new()) };
+    let rows = list.items("an array of pairs")?;
+    if rows.len() != vertices {
+        let e = list.error(format!("{} uvs for {vertices} vertices", rows.len()));
+        return Err(e.help("one pair [u, v] per vertex, origin at the bottom left of the image"));
+    }
+    let uvs = rows.iter().map(Cursor::uv).collect::<Result<Vec<_>, _>>()?;
+    Ok(faces.iter().map(|f| f.map(|i| uvs[i as usize])).collect())
 }
 
 /// True if a triangle has no area worth the name.
@@ -63,10 +76,16 @@ pub(super) fn transform<'a>(c: &Cursor<'a>) -> Result<Option<Transform<'a>>, Sce
 
 impl Transform<'_> {
     /// The front stays the image of the front: a mirroring transform reverses the winding of every face.
-    pub(super) fn apply(&self, vertices: &mut [DVec3], faces: &mut [[u32; 3]]) -> Result<(), SceneError> {
+    pub(super) fn apply(
+        &self,
+        vertices: &mut [DVec3],
+        faces: &mut [[u32; 3]],
+        uvs: &mut [[DVec2; 3]],
+    ) -> Result<(), SceneError> {
         vertices.iter_mut().for_each(|v| *v = self.linear * *v + self.shift);
         if self.linear.determinant() < 0.0 {
             faces.iter_mut().for_each(|f| f.swap(1, 2));
+            uvs.iter_mut().for_each(|t| t.swap(1, 2));
         }
         let far = vertices.iter().any(|v| v.abs().max_element() > LARGEST_LENGTH);
         if far || faces.iter().any(|f| flat(f.map(|i| vertices[i as usize]))) {

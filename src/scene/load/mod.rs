@@ -5,14 +5,19 @@
 //! ```
 //!
 //! `scenes/README.md` documents every key. Nothing is repaired in silence: what a scene cannot mean is a
-//! [`SceneError`] with its line and key, what a file of other origin says beyond Lambertian transport is a warning.
+//! [`SceneError`] with its line and key, what a file of other origin says beyond that is a warning.
 
 mod camera;
 mod cursor;
+mod image;
+mod lights;
+mod materials;
 mod mesh;
 mod mtl;
+mod mtl_bsdf;
 mod nearest;
 mod obj;
+mod obj_check;
 mod overrides;
 mod shapes;
 mod toml;
@@ -108,11 +113,13 @@ struct Draft {
 fn finish(mut draft: Draft, file: &Path, options: &Options) -> Result<Loaded, SceneError> {
     let scene = &mut draft.description;
     options.emit.iter().try_for_each(|e| emit(scene, e))?;
-    if scene.shapes.iter().all(|s| s.emission == DVec3::ZERO) {
+    if scene.shapes.iter().all(|s| s.emission == DVec3::ZERO) && scene.lights.iter().all(lights::dark) {
         let names = in_use(scene);
         let lamp = names.iter().find(|n| n.to_lowercase().contains("light")).or(names.first()).copied();
-        let general =
-            format!("write `emission` on a shape, Ke in an MTL, or pass --emit {}=1,1,1", lamp.unwrap_or("MATERIAL"));
+        let general = format!(
+            "write `emission` on a shape, a light in [[lights]], Ke in an MTL, or pass --emit {}=1,1,1",
+            lamp.unwrap_or("MATERIAL")
+        );
         let hint = draft.hints.first().unwrap_or(&general);
         let help = format!("{hint}; materials in use: {}", names.join(", "));
         return Err(SceneError::new("nothing in the scene emits light").file(file).help(help));

@@ -1,10 +1,11 @@
-//! MTL (Wavefront Technologies, The Advanced Visualizer): of each material the diffuse albedo `Kd` and the emitted radiance `Ke`, with their lines.
+//! MTL (Wavefront Technologies, The Advanced Visualizer): what each material says, statement by statement.
 //!
-//! `Ka` is kept only to explain a dark scene; what else would change the picture is remembered as ignored.
+//! What it means here is in [`mtl_bsdf`](super::mtl_bsdf). `Ka` is kept only to explain a dark scene; what else would
+//! change the picture is remembered as ignored.
 
 use crate::scene::SceneError;
 use glam::DVec3;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// One statement of an OBJ or MTL file.
 pub(super) struct Statement {
@@ -56,14 +57,47 @@ fn push(out: &mut Vec<Statement>, line: usize, text: &str) {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Entry {
     pub(super) name: String,
+    /// `Kd`
     pub(super) diffuse: Option<DVec3>,
+    /// `Ke`
     pub(super) emission: Option<DVec3>,
+    /// `Ka`
     pub(super) ambient: Option<DVec3>,
+    /// `Ks`
+    pub(super) specular: Option<DVec3>,
+    /// `Tf`
+    pub(super) filter: Option<DVec3>,
+    /// `Ns`
+    pub(super) exponent: Option<f64>,
+    /// `Ni`
+    pub(super) ior: Option<f64>,
+    /// `d`
+    pub(super) opacity: Option<f64>,
+    /// `Tr`
+    pub(super) transparency: Option<f64>,
+    /// `illum`
+    pub(super) illum: Option<u32>,
+    /// `map_Kd`
+    pub(super) texture: Option<Texture>,
     /// Statements that would change the picture if they could be transported.
     pub(super) ignored: Vec<String>,
 }
 
-/// Parses MTL text; `file` is only named in messages.
+/// A `map_Kd` and where it was said.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Texture {
+    pub(super) path: PathBuf,
+    pub(super) options: String,
+    pub(super) mtl: PathBuf,
+    pub(super) line: usize,
+}
+
+/// Statements that are read.
+const READ: [&str; 11] = ["Kd", "Ke", "Ka", "Ks", "Tf", "Ns", "Ni", "d", "Tr", "illum", "map_Kd"];
+/// Statements that would change the picture.
+const IGNORED: [&str; 9] = ["map_Ke", "map_Ks", "map_Ns", "map_d", "map_Bump", "map_bump", "bump", "norm", "disp"];
+
+/// Parses MTL text; `file` is named in messages, and images are beside it.
 pub(super) fn parse(text: &str, file: &Path) -> Result<Vec<Entry>, SceneError> {
     let mut entries: Vec<Entry> = Vec::new();
     for s in statements(text) {
@@ -75,7 +109,7 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<Vec<Entry>, SceneError> {
             entries.push(Entry { name: s.rest.clone(), ..Entry::default() });
             continue;
         }
-        if !["Kd", "Ke", "Ka", "Ks", "d", "Tr", "map_Kd", "map_Ke", "map_d"].contains(&s.key.as_str()) {
+        if !READ.contains(&s.key.as_str()) && !IGNORED.contains(&s.key.as_str()) {
             continue;
         }
         let Some(m) = entries.last_mut() else {
@@ -83,45 +117,91 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<Vec<Entry>, SceneError> {
                 SceneError::new(format!("{} before the first newmtl", s.key)).help("start with newmtl NAME")
             ));
         };
-        let at = |e: SceneError| e.at(file, s.line).key(format!("{}.{}", m.name, s.key));
-        match s.key.as_str() {
-            "Kd" => {
-                let rgb = rgb(&s).map_err(at)?;
-                if let Some(x) = rgb.to_array().into_iter().find(|x| !(0.0..=1.0).contains(x)) {
-                    let e = SceneError::new(format!("reflectance {x} is outside [0, 1]"));
-                    return Err(at(e.help("a surface returns at most what it receives: lower Kd")));
-                }
-                m.diffuse = Some(rgb);
-            }
-            "Ke" => {
-                let rgb = rgb(&s).map_err(at)?;
-                if let Some(x) = rgb.to_array().into_iter().find(|x| !(0.0..=1e30).contains(x)) {
-                    let e = SceneError::new(format!("emission {x} is outside [0, 1e30]"));
-                    return Err(at(e.help("Ke is the radiance leaving the front")));
-                }
-                m.emission = Some(rgb);
-            }
-            "Ka" => m.ambient = rgb(&s).ok(),
-            "Ks" if rgb(&s).is_ok_and(|x| x == DVec3::ZERO) => {}
-            "d" if first(&s) == Some(1.0) => {}
-            "Tr" if first(&s) == Some(0.0) => {}
-            _ => m.ignored.push(format!("{} {}", s.key, s.rest)),
-        }
+        let key = format!("{}.{}", m.name, s.key);
+        state(m, &s, file).map_err(|e| e.at(file, s.line).key(key))?;
     }
     Ok(entries)
 }
 
-fn first(s: &Statement) -> Option<f64> {
-    s.words().next()?.parse().ok()
+/// One statement about the material `m`.
+fn state(m: &mut Entry, s: &Statement, file: &Path) -> Result<(), SceneError> {
+    match s.key.as_str() {
+        "Kd" => m.diffuse = Some(rgb(s, "reflectance", 1.0, "a surface returns at most what it receives: lower Kd")?),
+        "Ke" => m.emission = Some(rgb(s, "emission", 1e30, "Ke is the radiance leaving the front")?),
+        "Ka" => m.ambient = rgb(s, "Ka", f64::MAX, "").ok(),
+        "Ks" => m.specular = Some(rgb(s, "Ks", 1e30, "it is an albedo, at least 0")?),
+        "Tf" => m.filter = rgb(s, "Tf", f64::MAX, "").ok(),
+        "Ns" => m.exponent = Some(number(s, f64::MAX)?),
+        "Ni" => m.ior = Some(number(s, f64::MAX)?),
+        "d" => m.opacity = Some(number(s, 1.0)?),
+        "Tr" => m.transparency = Some(number(s, 1.0)?),
+        "illum" => m.illum = Some(number(s, 10.0)? as u32),
+        "map_Kd" => m.texture = texture(s, file),
+        _ => m.ignored.push(format!("{} {}", s.key, s.rest)),
+    }
+    Ok(())
 }
 
-/// Three finite numbers; one stands for three.
-fn rgb(s: &Statement) -> Result<DVec3, SceneError> {
+/// A number from 0 on.
+fn number(s: &Statement, most: f64) -> Result<f64, SceneError> {
+    let word = s.words().find(|w| *w != "-halo");
+    let x = word.and_then(|w| w.parse().ok()).filter(|x| (0.0..=most).contains(x));
+    let upper = if most < 1e6 { format!(" to {most}") } else { " on".into() };
+    let help = format!("write a number from 0{upper}");
+    x.ok_or_else(|| SceneError::new(format!("`{} {}` is not a number from 0{upper}", s.key, s.rest)).help(help))
+}
+
+/// Three numbers in [0, most]; one stands for three.
+fn rgb(s: &Statement, name: &str, most: f64, help: &str) -> Result<DVec3, SceneError> {
     let fail = || SceneError::new(format!("`{} {}` is not a colour", s.key, s.rest)).help("write three finite numbers");
     let numbers = s.words().map(str::parse).collect::<Result<Vec<f64>, _>>().map_err(|_| fail())?;
-    match numbers[..] {
-        [x] if x.is_finite() => Ok(DVec3::splat(x)),
-        [r, g, b] if r.is_finite() && g.is_finite() && b.is_finite() => Ok(DVec3::new(r, g, b)),
-        _ => Err(fail()),
+    let rgb = match numbers[..] {
+        [x] if x.is_finite() => DVec3::splat(x),
+        [r, g, b] if r.is_finite() && g.is_finite() && b.is_finite() => DVec3::new(r, g, b),
+        _ => return Err(fail()),
+    };
+    match rgb.to_array().into_iter().find(|x| !(0.0..=most).contains(x)) {
+        Some(x) if most < 1e6 => Err(SceneError::new(format!("{name} {x} is outside [0, {most}]")).help(help)),
+        Some(x) => Err(SceneError::new(format!("{name} {x} is outside [0, {most:e}]")).help(help)),
+        None => Ok(rgb),
     }
+}
+
+/// Options with their number of words; of `-o`, `-s` and `-t` one to three numbers.
+const OPTIONS: [(&str, usize); 14] = [
+    ("-blendu", 1),
+    ("-blendv", 1),
+    ("-bm", 1),
+    ("-boost", 1),
+    ("-cc", 1),
+    ("-clamp", 1),
+    ("-colorspace", 1),
+    ("-imfchan", 1),
+    ("-mm", 2),
+    ("-texres", 1),
+    ("-type", 1),
+    ("-o", 3),
+    ("-s", 3),
+    ("-t", 3),
+];
+
+/// `map_Kd [options] name with spaces`
+fn texture(s: &Statement, file: &Path) -> Option<Texture> {
+    let (mut rest, mut options) = (s.rest.split(" #").next().unwrap_or("").trim(), Vec::new());
+    while let Some(&(_, words)) = OPTIONS.iter().find(|(o, _)| rest.split_whitespace().next() == Some(o)) {
+        for i in 0..=words {
+            let (word, tail) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+            if i > 1 && words == 3 && word.parse::<f64>().is_err() {
+                break;
+            }
+            options.push(word);
+            rest = tail.trim_start();
+        }
+    }
+    let folder = file.parent().unwrap_or(Path::new(""));
+    // names written on Windows
+    let path = [rest.to_owned(), rest.replace('\\', "/")].map(|name| folder.join(name));
+    let [written, slashed] = path;
+    let path = if written.is_file() { written } else { slashed };
+    (!rest.is_empty()).then(|| Texture { path, options: options.join(" "), mtl: file.to_owned(), line: s.line })
 }

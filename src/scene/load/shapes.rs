@@ -11,6 +11,7 @@
 use super::{
     beside,
     cursor::{Cursor, LARGEST_LIGHT, SMALLEST_LENGTH},
+    materials,
     mesh::{FLAT, mesh, transform},
     nearest::suggest,
     obj,
@@ -25,7 +26,7 @@ use std::f64::consts::PI;
 
 /// The kinds of shape with the keys of their geometry.
 pub(super) const KINDS: [(&str, &[&str]); 6] = [
-    ("mesh", &["vertices", "faces", "transform"]),
+    ("mesh", &["vertices", "faces", "uvs", "transform"]),
     ("obj", &["file", "transform"]),
     ("quad", &["origin", "edge_u", "edge_v"]),
     ("box", &["min", "max", "rotate_y", "inward"]),
@@ -51,9 +52,6 @@ pub(super) fn read(list: &Cursor, materials: Vec<Material>) -> Result<Read, Scen
         let at = c.require("type", "type = \"quad\"; types: mesh, obj, quad, box, sphere, disk")?;
         let kinds: Vec<(&str, (&str, &[&str]))> = KINDS.iter().map(|&(k, keys)| (k, (k, keys))).collect();
         let (kind, keys) = at.choice("type of shape", &kinds)?;
-        if let Some(uvs) = c.get("uvs").filter(|_| kind == "mesh") {
-            return Err(uvs.error("uvs are not supported yet").help("remove them: there are no textures to place"));
-        }
         c.only(&[&LIGHT_KEYS, keys].concat())?;
         if kind == "obj" {
             let material = c.get("material").map(|m| material(&m, &out.materials[..named])).transpose()?;
@@ -63,6 +61,7 @@ pub(super) fn read(list: &Cursor, materials: Vec<Material>) -> Result<Read, Scen
         let at = c.require("material", "material = \"…\", a name from [materials]")?;
         let material = material(&at, &out.materials[..named])?;
         let geometry = geometry(&c, kind)?;
+        placed(&at, &out.materials[material], &geometry, kind)?;
         let emission = emission(&c, area(&geometry))?.unwrap_or(DVec3::ZERO);
         out.shapes.push(Shape { name: c.key.clone(), geometry, material, emission });
     }
@@ -75,6 +74,24 @@ fn material(c: &Cursor, materials: &[Material]) -> Result<usize, SceneError> {
         let names: Vec<&str> = materials.iter().map(|m| m.name.as_str()).collect();
         c.error(format!("unknown material `{name}`")).help(suggest(name, "materials", &names))
     })
+}
+
+/// Refuses an image on a shape without texture coordinates.
+fn placed(at: &Cursor, material: &Material, geometry: &Geometry, kind: &str) -> Result<(), SceneError> {
+    let has_uv = match geometry {
+        Geometry::Quad { .. } => true,
+        Geometry::Mesh { uvs, .. } => !uvs.is_empty(),
+        _ => false,
+    };
+    if has_uv || !materials::texture_of(material) {
+        return Ok(());
+    }
+    let e = at.error(format!("material `{}` has a texture, this {kind} has no texture coordinates", material.name));
+    Err(e.help(match kind {
+        "mesh" => "add uvs = [[u, v], …] to the mesh, one pair per vertex",
+        "obj" => "every corner needs a vt, as in f 1/1 2/2 3/3; or use a material with reflectance",
+        _ => "textures go on quads, meshes with uvs and obj files with vt; or use a material with reflectance",
+    }))
 }
 
 /// Front area of a shape, m².
@@ -195,9 +212,12 @@ fn append_obj(c: &Cursor, material: Option<usize>, out: &mut Read) -> Result<(),
         _ => at.error(format!("cannot read `{}`", path.display())).help("paths are relative to the scene file"),
     })?;
     if let Some(t) = transform(c)? {
-        model.pieces.iter_mut().try_for_each(|p| t.apply(&mut p.vertices, &mut p.faces))?;
+        model.pieces.iter_mut().try_for_each(|p| t.apply(&mut p.vertices, &mut p.faces, &mut p.uvs))?;
     }
-    let mesh = |p: &obj::Piece| Geometry::Mesh { vertices: p.vertices.clone(), faces: p.faces.clone(), uvs: vec![] };
+    let mesh = |p: &obj::Piece| {
+        let (vertices, faces, uvs) = (p.vertices.clone(), p.faces.clone(), p.uvs.clone());
+        Geometry::Mesh { vertices, faces, uvs }
+    };
     let total = model.pieces.iter().map(|p| area(&mesh(p))).sum();
     let given = emission(c, total)?;
     if let (Some(_), None) = (given, material) {
@@ -207,7 +227,11 @@ fn append_obj(c: &Cursor, material: Option<usize>, out: &mut Read) -> Result<(),
     }
     for p in &model.pieces {
         let (material, emission) = match material {
-            Some(m) => (m, given.unwrap_or(DVec3::ZERO)),
+            Some(m) => {
+                let at = c.get("material").unwrap_or(c.clone());
+                placed(&at, &out.materials[m], &mesh(p), "obj")?;
+                (m, given.unwrap_or(DVec3::ZERO))
+            }
             None => (intern(&model.materials[p.material], &mut out.materials), model.materials[p.material].emission),
         };
         out.shapes.push(Shape { name: p.name.clone(), geometry: mesh(p), material, emission });
@@ -219,7 +243,7 @@ fn append_obj(c: &Cursor, material: Option<usize>, out: &mut Read) -> Result<(),
 
 /// The index of an MTL material among all materials. Equal ones of several files are one.
 fn intern(m: &obj::Surface, materials: &mut Vec<Material>) -> usize {
-    let material = Material::diffuse(m.name.clone(), m.reflectance, Sides::Both);
+    let material = Material { name: m.name.clone(), bsdf: m.bsdf.clone(), sides: Sides::Both };
     materials.iter().position(|o| *o == material).unwrap_or_else(|| {
         materials.push(material);
         materials.len() - 1

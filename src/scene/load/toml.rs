@@ -1,30 +1,21 @@
-//! The scene file as a whole: which tables there are, materials, and the closed forms it claims.
+//! The scene file as a whole: which tables there are, and the closed forms it claims.
 
-use super::{Draft, camera, cursor::Cursor, nearest::suggest, shapes, tree::Node};
-use crate::scene::{
-    Description, SceneError,
-    description::{Expect, Material, Sides},
-};
+use super::{Draft, camera, cursor::Cursor, lights, materials, shapes, tree::Node};
+use crate::scene::{Description, SceneError, description::Expect};
 use glam::DVec3;
 use std::path::Path;
 
-pub(super) const ROOT_KEYS: [&str; 5] = ["name", "camera", "materials", "shapes", "expect"];
-pub(super) const MATERIAL_KEYS: [&str; 3] = ["type", "reflectance", "sides"];
+pub(super) const ROOT_KEYS: [&str; 6] = ["name", "camera", "materials", "shapes", "lights", "expect"];
 pub(super) const EXPECT_KEYS: [&str; 3] = ["terms", "gamma", "source"];
-/// Reserved words of the schema that no world of this version can transport.
-pub(super) const LATER_MATERIALS: [&str; 5] = ["mirror", "conductor", "dielectric", "plastic", "phong"];
 
 /// Reads a whole scene. A `framed` scene may leave the camera's place to the program.
 pub(super) fn read(root: &Node, file: &Path, framed: bool) -> Result<Draft, SceneError> {
     let c = Cursor { file, key: String::new(), node: root };
-    if let Some(lights) = c.get("lights") {
-        return Err(unsupported_light(&lights));
-    }
     c.only(&ROOT_KEYS)?;
     let name = name(&c, file)?;
     let camera = c.require("camera", "a [camera] table with origin, target, up, fov and size")?;
     let materials = match c.get("materials") {
-        Some(table) => table.entries()?.iter().map(|(k, c)| material(k, c)).collect::<Result<_, _>>()?,
+        Some(table) => table.entries()?.iter().map(|(k, c)| materials::read(k, c)).collect::<Result<_, _>>()?,
         None => Vec::new(),
     };
     let example = "a [[shapes]] table with type and material";
@@ -35,9 +26,10 @@ pub(super) fn read(root: &Node, file: &Path, framed: bool) -> Result<Draft, Scen
     }
     let bounds = framed.then(|| bounds(&read.shapes));
     let camera = camera::read(&camera, bounds)?;
+    let lights = c.get("lights").map_or(Ok(Vec::new()), |c| lights::read(&c))?;
     let expect = c.get("expect").map(|c| expect(&c)).transpose()?;
     let shapes::Read { shapes, materials, warnings, hints } = read;
-    Ok(Draft { description: Description { name, camera, materials, shapes, lights: vec![], expect }, warnings, hints })
+    Ok(Draft { description: Description { name, camera, materials, shapes, lights, expect }, warnings, hints })
 }
 
 /// The name is also a folder: no separators, not `.` or `..`. Without one, the file is its name.
@@ -51,44 +43,6 @@ fn name(c: &Cursor, file: &Path) -> Result<String, SceneError> {
         return Err(e.help("use letters, digits, spaces, - and _"));
     }
     Ok(name.to_owned())
-}
-
-fn unsupported_light(lights: &Cursor) -> SceneError {
-    let help = "what emits in this version: a shape with `emission` or `power`";
-    let first = lights.items("an array of tables").ok().and_then(|l| l.into_iter().next()).unwrap_or(lights.clone());
-    match first.get("type").and_then(|t| t.text().ok().map(str::to_owned)) {
-        Some(kind) if ["point", "directional", "environment"].contains(&kind.as_str()) => {
-            first.error(format!("{kind} lights are not supported yet"))
-        }
-        Some(kind) => first.error(format!("unknown light type `{kind}`")),
-        None => first.error("[[lights]] are not supported yet"),
-    }
-    .help(help)
-}
-
-fn material(name: &str, c: &Cursor) -> Result<Material, SceneError> {
-    let at = c.require("type", "type = \"diffuse\"")?;
-    match at.text()? {
-        "diffuse" => {}
-        kind if LATER_MATERIALS.contains(&kind) => {
-            let e = at.error(format!("material type `{kind}` is not supported yet"));
-            return Err(e.help("supported in this version: diffuse"));
-        }
-        kind => {
-            let e = at.error(format!("unknown material type `{kind}`"));
-            return Err(e.help(suggest(kind, "supported in this version", &["diffuse"])));
-        }
-    }
-    if let Some(texture) = c.get("texture") {
-        return Err(texture.error("textures are not supported yet").help("write reflectance = [r, g, b]"));
-    }
-    c.only(&MATERIAL_KEYS)?;
-    let reflectance = c.require("reflectance", "reflectance = [r, g, b] with values in [0, 1]")?.reflectance()?;
-    let sides = match c.get("sides") {
-        Some(s) => s.choice("choice of sides", &[("both", Sides::Both), ("front", Sides::Front)])?,
-        None => Sides::Both,
-    };
-    Ok(Material::diffuse(name, reflectance, sides))
 }
 
 fn expect(c: &Cursor) -> Result<Expect, SceneError> {
@@ -120,9 +74,10 @@ mod tests {
     #[test]
     fn the_schema_documents_every_key() {
         let readme = include_str!("../../../scenes/README.md");
-        let shapes = shapes::KINDS.iter().flat_map(|(kind, keys)| keys.iter().chain([kind]));
-        let all = ROOT_KEYS.iter().chain(&MATERIAL_KEYS).chain(&EXPECT_KEYS).chain(&camera::KEYS).chain(shapes);
-        for key in all.chain(&shapes::LIGHT_KEYS).chain(&LATER_MATERIALS) {
+        let kinds = shapes::KINDS.iter().chain(&materials::KINDS).chain(&lights::KINDS);
+        let keys = kinds.flat_map(|(kind, keys)| keys.iter().chain([kind]));
+        let all = ROOT_KEYS.iter().chain(&EXPECT_KEYS).chain(&camera::KEYS).chain(&shapes::LIGHT_KEYS);
+        for key in all.chain(keys) {
             assert!(readme.contains(&format!("`{key}`")), "scenes/README.md says nothing about `{key}`");
         }
     }

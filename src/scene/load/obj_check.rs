@@ -1,0 +1,74 @@
+//! What is wrong in an OBJ, with its line: numbers that are none, indices that point nowhere, faces without area to be.
+
+use super::{
+    cursor::{LARGEST_LENGTH, LARGEST_UV},
+    mtl::Statement,
+};
+use crate::scene::SceneError;
+use std::path::Path;
+
+/// An index of a corner.
+pub(super) fn number_of(word: &str) -> Option<i64> {
+    word.parse().ok()
+}
+
+/// Refuses the first statement that is not geometry, with its line.
+pub(super) fn check(list: &[Statement], path: &Path) -> Result<(), SceneError> {
+    let count = |key: &str| list.iter().filter(|s| s.key == key).count() as i64;
+    let (total, total_vt) = (count("v"), count("vt"));
+    let (mut seen, mut seen_vt) = (0, 0);
+    for s in list {
+        let fail = |what: String, help: &str| Err(SceneError::new(what).at(path, s.line).key(s.key.clone()).help(help));
+        match s.key.as_str() {
+            "v" => {
+                seen += 1;
+                let numbers = s.words().take(3).map(str::parse).collect::<Result<Vec<f64>, _>>().unwrap_or_default();
+                if numbers.len() != 3 {
+                    return fail(format!("`{}` is not a position", s.rest), "a vertex is three numbers");
+                }
+                if numbers.iter().any(|x| x.is_nan() || x.abs() > LARGEST_LENGTH) {
+                    return fail(
+                        format!("the vertex {} is not finite, or beyond 1e12", s.rest),
+                        "repair the exporter's numbers",
+                    );
+                }
+            }
+            "vt" => {
+                seen_vt += 1;
+                let numbers = s.words().take(2).map(str::parse).collect::<Result<Vec<f64>, _>>().unwrap_or_default();
+                if numbers.is_empty() || numbers.iter().any(|x| x.is_nan() || x.abs() > LARGEST_UV) {
+                    let help = "write vt u v, within 1e5 repeats of the image";
+                    return fail(format!("`{}` is not a texture coordinate", s.rest), help);
+                }
+            }
+            "f" => {
+                if s.words().count() < 3 {
+                    return fail(
+                        format!("the face `{}` has fewer than 3 corners", s.rest),
+                        "a face is three indices or more",
+                    );
+                }
+                for word in s.words() {
+                    let parts: Vec<&str> = word.split('/').collect();
+                    let rest_valid =
+                        parts.len() <= 3 && parts[1..].iter().all(|p| p.is_empty() || number_of(p).is_some());
+                    let Some(i) = number_of(parts[0]).filter(|_| rest_valid) else {
+                        return fail(format!("`{word}` is not a corner"), "write v, v/vt, v//vn or v/vt/vn");
+                    };
+                    if i == 0 || i > total || (i < 0 && seen < i.saturating_neg()) {
+                        let what = format!("vertex index {i} is out of range, the file has {total} vertices");
+                        return fail(what, "indices start at 1; negative ones count back from the last vertex");
+                    }
+                    let vt = parts.get(1).and_then(|p| number_of(p));
+                    if let Some(i) = vt.filter(|&i| i == 0 || i > total_vt || (i < 0 && seen_vt < i.saturating_neg())) {
+                        let what = format!("vt index {i} is out of range, the file has {total_vt}");
+                        return fail(what, "indices start at 1; negative ones count back from the last vt");
+                    }
+                }
+            }
+            "usemtl" if s.rest.is_empty() => return fail("usemtl needs a name".into(), "write usemtl NAME"),
+            _ => {}
+        }
+    }
+    Ok(())
+}
