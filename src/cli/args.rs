@@ -2,6 +2,7 @@
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use fredholm::estimator::{Roulette, Technique};
+use fredholm::math::Points;
 use fredholm::scene::bsdf::Sampling;
 use std::path::PathBuf;
 
@@ -104,6 +105,8 @@ pub enum EstimatorName {
     Single,
     /// All terms from the prefixes of one path
     Prefix,
+    /// A tree of paths
+    Branching,
 }
 
 /// Arguments of everything that renders.
@@ -124,12 +127,21 @@ pub struct Run {
     /// K: keep the terms k = 0..=K; k counts applications of T
     #[arg(long, value_name = "K", default_value_t = 8, value_parser = clap::value_parser!(u16).range(0..=1000))]
     pub max_bounces: u16,
-    /// How the terms are estimated: single, prefix
+    /// How the terms are estimated: single, prefix, branching
     ///
-    /// single: each term from paths of its own; prefix: all terms from the prefixes of one path.
-    /// The tour runs both.
+    /// single: each term from paths of its own; prefix: all terms from the prefixes of one path;
+    /// branching: a tree, --branching children at every vertex. The tour runs the first two.
     #[arg(long, value_enum, default_value_t = EstimatorName::Prefix, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
     pub estimator: EstimatorName,
+    /// Children of every vertex under --estimator branching: N^k rays for term k
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub branching: u32,
+    /// How the samples of a pixel lie: independent, sobol
+    ///
+    /// independent: they know nothing of each other; sobol: Owen-scrambled Sobol points,
+    /// one scramble per replicate.
+    #[arg(long, default_value = "independent", value_parser = points, value_name = "NAME", verbatim_doc_comment)]
+    pub points: Points,
     /// How light is found: scatter, connect, mis
     ///
     /// scatter: paths must hit it; connect: next-event estimation; mis: both, weighed.
@@ -278,6 +290,14 @@ fn technique(s: &str) -> Result<Technique, String> {
         "connect" => Ok(Technique::Connect),
         "mis" => Ok(Technique::Mis),
         _ => Err(format!("`{s}` is none of scatter, connect, mis")),
+    }
+}
+
+fn points(s: &str) -> Result<Points, String> {
+    match s {
+        "independent" => Ok(Points::Independent),
+        "sobol" => Ok(Points::Sobol),
+        _ => Err(format!("`{s}` is none of independent, sobol")),
     }
 }
 

@@ -4,6 +4,7 @@ use super::args::{EstimatorName, Run, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, facts, guard, output, write};
 use fredholm::estimator::Roulette;
+use fredholm::math::Points;
 use fredholm::report::{summary, table};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
@@ -110,6 +111,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let settings = Settings {
         spp: run.spp,
         seed: run.seed,
+        points: run.points,
         max_bounces,
         technique: run.technique,
         sampling: run.sampling,
@@ -125,6 +127,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         (_, true, _) => vec![Estimator::Single, Estimator::Prefix],
         (_, _, EstimatorName::Single) => vec![Estimator::Single],
         (_, _, EstimatorName::Prefix) => vec![Estimator::Prefix],
+        (_, _, EstimatorName::Branching) => vec![Estimator::Branching { children: run.branching }],
     };
     guard::fits_in_memory(&settings, description.camera.size)?;
     guard::light_is_lost(&scene, &settings, &worlds)?;
@@ -265,6 +268,7 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
         format!("{}\nseed {}, {spp} spp, {}×{} pixels", found.command, s.seed, summary.width, summary.height);
     if !found.terms.is_empty() || found.path.is_some() {
         head += &format!("; technique {}", s.technique);
+        head += if s.points == Points::Sobol { "; Sobol points" } else { "" };
     }
     let used =
         [(!found.terms.is_empty(), "terms", &s.roulette), (found.path.is_some(), "path tracer", &s.path_roulette)];

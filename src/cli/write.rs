@@ -226,7 +226,7 @@ fn write_plots(found: &Found, out: &mut Files, caption: &Caption) -> Result<(), 
         let points = decay::norms(&means);
         let ratios = match estimator {
             Estimator::Single => independent_ratios(&points),
-            Estimator::Prefix => decay::ratios(&means),
+            Estimator::Prefix | Estimator::Branching { .. } => decay::ratios(&means),
         };
         figure.ratios.push(Curve { label: estimator.to_string(), points: ratios, look });
         figure.surface.push(Curve { label: format!("Monte Carlo, {estimator}"), points, look });

@@ -7,11 +7,13 @@
 //! |---|---|---|
 //! | single | each X_k from a path of its own | [`single_term`] |
 //! | prefix | all X_k from one path, by its prefixes | [`prefix`] |
+//! | branching | a tree of paths, N children at every vertex | [`branching`] |
 //! | path tracer | the sum alone, independent code | [`path_tracer`] |
 //! | gather | the matrix solution, read through one sampled application of T | [`gather`] |
 //!
 //! Slots of the result: k = 0..=K for the terms, K + 1 for the tail; the path tracer has one slot.
 
+pub mod branching;
 pub mod gather;
 pub mod path_tracer;
 pub mod paths;
@@ -21,6 +23,7 @@ pub mod roulette;
 pub mod single_term;
 pub mod technique;
 
+pub use branching::Branching;
 pub use gather::Gather;
 pub use path_tracer::PathTracer;
 pub use paths::{Batch, Paths};
