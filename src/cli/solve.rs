@@ -105,7 +105,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let scene = Scene::new(&description);
 
     // what to do with it
-    let max_bounces = usize::from(run.max_bounces);
+    let max_bounces = usize::from(run.max_bounces.unwrap_or(8));
     let fallback = default.roulette.unwrap_or(Roulette::Albedo { from: 2 });
     let roulette = run.roulette.clone();
     let settings = Settings {
@@ -125,10 +125,11 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let estimators = match (worlds.contains(&WorldName::Terms), default.both_estimators, run.estimator) {
         (false, ..) => vec![],
         (_, true, _) => vec![Estimator::Single, Estimator::Prefix],
-        (_, _, EstimatorName::Single) => vec![Estimator::Single],
-        (_, _, EstimatorName::Prefix) => vec![Estimator::Prefix],
-        (_, _, EstimatorName::Branching) => vec![Estimator::Branching { children: run.branching }],
+        (_, _, name) => vec![estimator(name, run.branching)],
     };
+    for &estimator in &estimators {
+        guard::tree_can_be_walked(estimator, &settings, description.camera.size)?;
+    }
     guard::fits_in_memory(&settings, description.camera.size)?;
     guard::light_is_lost(&scene, &settings, &worlds)?;
     let folder = output::folder(run.out.as_deref(), &description.name, &command, run.force)?;
@@ -236,8 +237,17 @@ fn orders(found: &Found, progress: &Progress) -> Result<Vec<Series>, Failure> {
     Ok(vec![picture.series, discrete.coarse.series.clone(), discrete.fine.series.clone()])
 }
 
+/// The estimator of that name.
+pub fn estimator(name: EstimatorName, children: u32) -> Estimator {
+    match name {
+        EstimatorName::Single => Estimator::Single,
+        EstimatorName::Prefix => Estimator::Prefix,
+        EstimatorName::Branching => Estimator::Branching { children },
+    }
+}
+
 /// FNV-1a of the scene as loaded.
-fn scene_hash(canonical: &str) -> String {
+pub fn scene_hash(canonical: &str) -> String {
     format!("{:016x}", fredholm::math::fnv1a(canonical.bytes()))
 }
 
