@@ -1,5 +1,5 @@
-//! Naive branching against what is known of it: the prefix estimator at N = 1, matrix powers, N^k rays, and the variance
-//! that N children leave.
+//! Naive branching against what is known of it: the prefix estimator at N = 1, matrix powers, N^k rays, and the
+//! variance that N children leave.
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 mod common;
@@ -127,8 +127,8 @@ fn a_tree_has_the_powers_of_the_matrix() {
     jury.assert_power(0.18, 0.0);
 }
 
-/// Children are independent, so with scattering alone `V_k(i) = 1/N · ( Σ_j F_ij ρ_i² (V_{k−1}(j) + m_{k−1}(j)²) − m_k(i)² )`
-/// and V_0 = 0. Siblings or cousins that shared a random number would show.
+/// Children are independent, so with scattering alone `V_k(i) = 1/N · ( Σ_j F_ij ρ_i² (V_{k−1}(j) + m_{k−1}(j)²) −
+/// m_k(i)² )` and V_0 = 0. Siblings or cousins that shared a random number would show.
 #[test]
 fn variances_follow_the_recursion_of_independent_children() {
     let mut jury = Jury::open("variances_follow_the_recursion_of_independent_children");

@@ -4,10 +4,11 @@
 //! (T L)(x_v) ≈ 1/N Σ_{c<N} weight_c · L(x_{v+1,c})         N^k paths of length k for one value of the pixel
 //! ```
 //!
-//! Each child draws everything anew: its connection, its roulette, its direction. So one vertex makes N connections and
-//! scatters N rays, each of weight 1/N, and the mean over the children is the mean of N independent samples of the step
-//! that [`Prefix`](super::Prefix) takes once. A part of the variance falls as 1/N^k, the cost of term k grows as N^k, and what
-//! the first ray decides (which point the pixel sees) does not fall at all. With N = 1 this **is** the prefix estimator, bit for bit.
+//! Each child draws everything anew: its connection, its roulette, its direction. So one vertex makes N connections
+//! and scatters N rays, each of weight 1/N, and the mean over the children is the mean of N independent samples of
+//! the step that [`Prefix`](super::Prefix) takes once. A part of the variance falls as 1/N^k, the cost of term k
+//! grows as N^k, and what the first ray decides (which point the pixel sees) does not fall at all. With N = 1 this
+//! **is** the prefix estimator, bit for bit.
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
@@ -15,10 +16,10 @@
 //! | c₀ c₁ … | a lineage: which child was followed at every vertex | the key of a wave |
 //! | K | branching ends at vertex K: the tail follows one child per path, or it would never end | [`Plan::max_bounces`] |
 //!
-//! A wave holds one lineage of every path of the batch. The tree is walked depth first, one wave per depth in memory, so that
-//! memory is `K + 1` waves however large N^K is. Reference: Whitted, *An Improved Illumination Model for Shaded Display*
-//! (1980), for the tree; Cook, Porter, Carpenter, *Distributed Ray Tracing* (1984); Kajiya, *The Rendering Equation* (1986),
-//! for why one child is enough.
+//! A wave holds one lineage of every path of the batch. The tree is walked depth first, one wave per depth in memory,
+//! so that memory is `K + 1` waves however large N^K is. Reference: Whitted, *An Improved Illumination Model for
+//! Shaded Display* (1980), for the tree; Cook, Porter, Carpenter, *Distributed Ray Tracing* (1984); Kajiya, *The
+//! Rendering Equation* (1986), for why one child is enough.
 
 use super::{Batch, Paths, Plan, TermEstimator, TermSink, prefix};
 use crate::math::Key;
@@ -56,7 +57,8 @@ impl<T: Transport> TermEstimator<T> for Branching {
 }
 
 impl Branching {
-    /// Every child of the paths that stand at vertex v, and all that descends from them. `below` has one wave per depth.
+    /// Every child of the paths that stand at vertex v, and all that descends from them. `below` has one wave per
+    /// depth.
     fn descend<T: Transport>(
         &self,
         t: &T,

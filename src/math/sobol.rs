@@ -5,21 +5,22 @@
 //! sample i of a pixel = point j = i div R of replicate r = i mod R           seed = hash(key, pixel, r, place)
 //! ```
 //!
-//! The four numbers of a draw are one point of the first four Sobol dimensions, scrambled (each point is uniform, so every mean
-//! stays unbiased) and shuffled by the seed. Every place on the path (bounce, purpose, draw) has a seed of its own and uses these
-//! same four dimensions, the best there are ("padding"): the points of one place are evenly spread, those of two places are
-//! independent of each other. Taking higher dimensions for further places instead spreads places jointly only once thousands of
-//! points are taken, and until then worse than this.
+//! The four numbers of a draw are one point of the first four Sobol dimensions, scrambled (each point is uniform, so
+//! every mean stays unbiased) and shuffled by the seed. Every place on the path (bounce, purpose, draw) has a seed of
+//! its own and uses these same four dimensions, the best there are ("padding"): the points of one place are evenly
+//! spread, those of two places are independent of each other. Higher dimensions for further places would spread places
+//! jointly too, but their pairs are spread so much worse at the tens of points that a replicate has (t up to 5) that
+//! single places pay for it.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | R | replicates: scrambles that know nothing of each other, so errors from replicates stay honest | [`Key`](super::Key) |
 //! | j | index within the replicate; every 2¹⁶ points a new scramble | `LONGEST` |
-//! | t | the first 2^m points of dimensions 0, 1 fill every elementary interval of area 2^−m (t = 0), those of 2, 3 every one of area 2^(1−m) | `tests/points.rs` |
+//! | t | 2^m points fill every elementary interval of area 2^(t−m): t = 0 in dimensions 0, 1, t ≤ 1 in 2, 3 | tests |
 //!
-//! Numbers are multiples of 2⁻²³. References: Sobol (1967); Owen, *Scrambled net variance for integrals of smooth functions*
-//! (1997); Joe and Kuo, *Constructing Sobol sequences with better two-dimensional projections* (2008); Burley, *Practical
-//! Hash-based Owen Scrambling* (JCGT 9(4), 2020).
+//! Numbers are multiples of 2⁻²³. References: Sobol (1967); Owen, *Scrambled net variance for integrals of smooth
+//! functions* (1997); Joe and Kuo, *Constructing Sobol sequences with better two-dimensional projections* (2008);
+//! Burley, *Practical Hash-based Owen Scrambling* (JCGT 9(4), 2020).
 
 use super::random::pcg4d;
 
