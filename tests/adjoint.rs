@@ -3,7 +3,10 @@
 
 mod common;
 
-use common::{Noise, judge::{Jury, at}};
+use common::{
+    Noise,
+    judge::{Jury, at},
+};
 use fredholm::estimator::render::{Amount, Unwatched, render};
 use fredholm::estimator::{Bidirectional, LightTracer, Plan, Roulette, Technique, TermEstimator};
 use fredholm::math::{Key, Rgb};
@@ -77,5 +80,12 @@ fn light_tracing_matches_matrix_powers() {
 
 #[test]
 fn bidirectional_matches_matrix_powers() {
-    compare("bidirectional_matches_matrix_powers", &matrix(6, 5), 6, &Bidirectional(plan(Technique::Mis)), 1 << 17, 0.3);
+    compare(
+        "bidirectional_matches_matrix_powers",
+        &matrix(6, 5),
+        6,
+        &Bidirectional(plan(Technique::Mis)),
+        1 << 17,
+        0.3,
+    );
 }

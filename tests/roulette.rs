@@ -62,8 +62,7 @@ fn follow<T: Transport>(t: &T, start: T::State, technique: Technique, key: Key, 
         path.push(stop);
         let Some(step) = step else { break };
         x = step.state;
-        hit =
-            if technique.hits(t) { t.emission(&x) * technique.hit(step.pdf, step.other_pdf) } else { Rgb::ZERO };
+        hit = if technique.hits(t) { t.emission(&x) * technique.hit(step.pdf, step.other_pdf) } else { Rgb::ZERO };
     }
     path
 }

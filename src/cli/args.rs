@@ -2,7 +2,8 @@
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use fredholm::estimator::{Roulette, Technique};
-use fredholm::scene::bsdf::Sampling;
+use fredholm::math::Points;
+use fredholm::scene::{Selection, bsdf::Sampling};
 use std::path::PathBuf;
 
 const TOUR: &str = "The operator view of global illumination: L = E + T L = Σ T^k E, measured.
@@ -16,6 +17,7 @@ const EXAMPLES: &str = "Examples:
   fredholm series cornell --spp 64                each bounce, and their sum
   fredholm series box.toml --set materials.white.reflectance=[0.6,0.6,0.6]
   fredholm compare fredholm-out/cornell other     verdict per term
+  fredholm sweep cornell --over technique         one setting, several values: cost and gain
   fredholm info                                   the built-in scenes
   fredholm info cornell                           materials, lights, bounds
 
@@ -39,7 +41,11 @@ pub struct Cli {
 /// Parses the command line, or prints help or what is wrong with it and ends the program.
 pub fn read() -> Cli {
     // the tour's options are explained by `fredholm tour --help`; here they would hide the commands
-    let mut matches = Cli::command().mut_args(|arg| arg.hide(true)).get_matches();
+    let cli = Cli::command().mut_args(|arg| arg.hide(true));
+    // nor does a sweep know matrices
+    let matrix = ["worlds", "patches", "read_patches", "orders", "verbose"];
+    let cli = cli.mut_subcommand("sweep", |c| matrix.iter().fold(c, |c, name| c.mut_arg(name, |arg| arg.hide(true))));
+    let mut matches = cli.get_matches();
     Cli::from_arg_matches_mut(&mut matches).unwrap_or_else(|e| e.exit())
 }
 
@@ -76,6 +82,15 @@ Example:
   fredholm compare a b"
     )]
     Compare(Compare),
+    /// The terms for every value of one setting: cost beside gain
+    #[command(after_help = "Examples:
+  fredholm sweep furnace --over branching --sampling uniform --spp 64
+  fredholm sweep cornell --over technique --max-bounces 4 --size 64x64
+  fredholm sweep cornell --over estimator --values prefix,single --equal-rays
+
+Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged over
+the pixels; 1/(V rays) is the efficiency: twice as efficient is half the rays for the same error.")]
+    Sweep(Sweep),
     /// Scenes, materials, lights, bounds on the norm of T
     #[command(after_help = "Examples:
   fredholm info            the built-in scenes
@@ -104,6 +119,12 @@ pub enum EstimatorName {
     Single,
     /// All terms from the prefixes of one path
     Prefix,
+    /// A tree of paths
+    Branching,
+    /// All terms from particles, walked from the light
+    Light,
+    /// All terms from walks from both ends
+    Bidirectional,
 }
 
 /// Arguments of everything that renders.
@@ -121,20 +142,34 @@ pub struct Run {
     /// Image size in pixels [default: the scene's; 192x192 for the tour]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
-    /// K: keep the terms k = 0..=K; k counts applications of T
-    #[arg(long, value_name = "K", default_value_t = 8, value_parser = clap::value_parser!(u16).range(0..=1000))]
-    pub max_bounces: u16,
-    /// How the terms are estimated: single, prefix
+    /// K: keep the terms k = 0..=K; k counts applications of T [default: 8; 4 to sweep over branching]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=1000))]
+    pub max_bounces: Option<u16>,
+    /// How the terms are estimated: single, prefix, branching, light, bidirectional
     ///
-    /// single: each term from paths of its own; prefix: all terms from the prefixes of one path.
-    /// The tour runs both.
+    /// single: each term from paths of its own; prefix: all terms from the prefixes of one path;
+    /// branching: a tree, --branching children at every vertex; light: particles from the lights;
+    /// bidirectional: walks from both ends, joined in every way. The tour runs the first two.
     #[arg(long, value_enum, default_value_t = EstimatorName::Prefix, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
     pub estimator: EstimatorName,
-    /// How light is found: scatter, connect, mis
+    /// Children of every vertex under --estimator branching: N^k rays for term k
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub branching: u32,
+    /// How the samples of a pixel lie: independent, sobol
     ///
-    /// scatter: paths must hit it; connect: next-event estimation; mis: both, weighed.
+    /// independent: they know nothing of each other; sobol: Owen-scrambled Sobol points,
+    /// one scramble per replicate.
+    #[arg(long, default_value = "independent", value_parser = points, value_name = "NAME", verbatim_doc_comment)]
+    pub points: Points,
+    /// How light is found: scatter, connect, mis, mis-power
+    ///
+    /// scatter: paths must hit it; connect: next-event estimation (and hits after a mirror);
+    /// mis: both, weighed by the balance heuristic; mis-power: by the power heuristic.
     #[arg(long, default_value = "mis", value_parser = technique, value_name = "NAME")]
     pub technique: Technique,
+    /// How a light is selected: uniform, power
+    #[arg(long, default_value = "uniform", value_parser = selection, value_name = "NAME")]
+    pub lights: Selection,
     /// How directions are drawn: uniform, cosine, bsdf
     #[arg(long, default_value = "bsdf", value_parser = sampling, value_name = "NAME")]
     pub sampling: Sampling,
@@ -202,6 +237,51 @@ pub struct Run {
     /// More about the matrix and the cost
     #[arg(short, long)]
     pub verbose: bool,
+}
+
+/// A setting that can be swept over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Over {
+    /// Children of every vertex
+    Branching,
+    /// Samples per pixel
+    Spp,
+    /// How light is found
+    Technique,
+    /// How directions are drawn
+    Sampling,
+    /// How the terms are estimated
+    Estimator,
+    /// How the samples of a pixel lie
+    Points,
+    /// How paths end
+    Roulette,
+}
+
+impl std::fmt::Display for Over {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.to_possible_value().as_ref().map_or("", |v| v.get_name()))
+    }
+}
+
+/// Arguments of `sweep`.
+#[derive(Clone, Debug, Args)]
+pub struct Sweep {
+    /// The setting: branching, spp, technique, sampling, estimator, points, roulette
+    #[arg(long, value_enum, value_name = "SETTING", hide_possible_values = true)]
+    pub over: Over,
+    /// Its values, with commas
+    ///
+    /// [default: 1,2,3,4; 16,64,256; scatter,connect,mis; uniform,cosine,bsdf;
+    /// prefix,single,branching; independent,sobol; none,lecture,albedo]
+    #[arg(long, value_name = "V,…", verbatim_doc_comment)]
+    pub values: Option<String>,
+    /// Give every value the rays of the dearest, instead of the same spp
+    #[arg(long)]
+    pub equal_rays: bool,
+    /// What is rendered.
+    #[command(flatten)]
+    pub run: Run,
 }
 
 /// Arguments of `compare`.
@@ -272,16 +352,33 @@ fn probability(s: &str) -> Result<f64, String> {
     s.parse().ok().filter(|p| *p > 0.0 && *p < 1.0).ok_or(format!("`{s}` is not between 0 and 1"))
 }
 
-fn technique(s: &str) -> Result<Technique, String> {
+pub(super) fn technique(s: &str) -> Result<Technique, String> {
     match s {
         "scatter" => Ok(Technique::Scatter),
         "connect" => Ok(Technique::Connect),
         "mis" => Ok(Technique::Mis),
-        _ => Err(format!("`{s}` is none of scatter, connect, mis")),
+        "mis-power" => Ok(Technique::Power),
+        _ => Err(format!("`{s}` is none of scatter, connect, mis, mis-power")),
     }
 }
 
-fn sampling(s: &str) -> Result<Sampling, String> {
+pub(super) fn points(s: &str) -> Result<Points, String> {
+    match s {
+        "independent" => Ok(Points::Independent),
+        "sobol" => Ok(Points::Sobol),
+        _ => Err(format!("`{s}` is none of independent, sobol")),
+    }
+}
+
+pub(super) fn selection(s: &str) -> Result<Selection, String> {
+    match s {
+        "uniform" => Ok(Selection::Uniform),
+        "power" => Ok(Selection::Power),
+        _ => Err(format!("`{s}` is none of uniform, power")),
+    }
+}
+
+pub fn sampling(s: &str) -> Result<Sampling, String> {
     match s {
         "uniform" => Ok(Sampling::Uniform),
         "cosine" => Ok(Sampling::Cosine),

@@ -7,6 +7,7 @@ use fredholm::operator::{SceneTransport, Transport};
 use fredholm::scene::{Scene, SurfaceSensor};
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::MatrixError;
+use fredholm::worlds::sampled::Estimator;
 
 /// The sums of all terms, pixels and replicates are held at once: better refused now than killed later.
 pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
@@ -24,6 +25,22 @@ pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failu
     Err(Failure::Usage(format!(
         "error: {w}×{h} pixels with terms up to k = {} need {need:.1} GiB of memory; {have:.1} GiB are free\n\
          help: choose a smaller --size or --max-bounces",
+        settings.max_bounces
+    )))
+}
+
+/// N^K rays for every path grow beyond all patience long before they grow beyond memory.
+pub fn tree_can_be_walked(estimator: Estimator, settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
+    const MOST: f64 = 1e11;
+    let Estimator::Branching { children } = estimator else { return Ok(()) };
+    let paths = f64::from(w) * f64::from(h) * f64::from(settings.spp);
+    let deepest = f64::from(children).powi(settings.max_bounces as i32) * paths;
+    if deepest <= MOST {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "error: {children} children at every vertex make {deepest:.1e} rays at depth {}\n\
+         help: choose fewer children, or a smaller --max-bounces, --spp or --size",
         settings.max_bounces
     )))
 }

@@ -14,6 +14,7 @@ mod info;
 mod output;
 mod progress;
 mod solve;
+mod sweep;
 mod write;
 
 use args::{Cli, Command};
@@ -78,6 +79,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Render(run)) => solve::render(run),
         Some(Command::Radiosity(run)) => solve::radiosity(run),
         Some(Command::Compare(args)) => compare::run(args),
+        Some(Command::Sweep(args)) => sweep::run(args),
         Some(Command::Info(args)) => info::run(args),
         Some(Command::Chapter(args)) => chapter::run(args),
     };

@@ -4,6 +4,7 @@ use super::args::{EstimatorName, Run, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, facts, guard, output, write};
 use fredholm::estimator::Roulette;
+use fredholm::math::Points;
 use fredholm::report::{summary, table};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
@@ -101,15 +102,16 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         super::note(&format!("warning: {warning}"));
     }
     let description = loaded.description;
-    let scene = Scene::new(&description);
+    let scene = Scene::new(&description).select_lights(run.lights);
 
     // what to do with it
-    let max_bounces = usize::from(run.max_bounces);
+    let max_bounces = usize::from(run.max_bounces.unwrap_or(8));
     let fallback = default.roulette.unwrap_or(Roulette::Albedo { from: 2 });
     let roulette = run.roulette.clone();
     let settings = Settings {
         spp: run.spp,
         seed: run.seed,
+        points: run.points,
         max_bounces,
         technique: run.technique,
         sampling: run.sampling,
@@ -123,9 +125,11 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let estimators = match (worlds.contains(&WorldName::Terms), default.both_estimators, run.estimator) {
         (false, ..) => vec![],
         (_, true, _) => vec![Estimator::Single, Estimator::Prefix],
-        (_, _, EstimatorName::Single) => vec![Estimator::Single],
-        (_, _, EstimatorName::Prefix) => vec![Estimator::Prefix],
+        (_, _, name) => vec![estimator(name, run.branching)],
     };
+    for &estimator in &estimators {
+        guard::tree_can_be_walked(estimator, &settings, description.camera.size)?;
+    }
     guard::fits_in_memory(&settings, description.camera.size)?;
     guard::light_is_lost(&scene, &settings, &worlds)?;
     let folder = output::folder(run.out.as_deref(), &description.name, &command, run.force)?;
@@ -233,8 +237,19 @@ fn orders(found: &Found, progress: &Progress) -> Result<Vec<Series>, Failure> {
     Ok(vec![picture.series, discrete.coarse.series.clone(), discrete.fine.series.clone()])
 }
 
+/// The estimator of that name.
+pub fn estimator(name: EstimatorName, children: u32) -> Estimator {
+    match name {
+        EstimatorName::Single => Estimator::Single,
+        EstimatorName::Prefix => Estimator::Prefix,
+        EstimatorName::Branching => Estimator::Branching { children },
+        EstimatorName::Light => Estimator::Light,
+        EstimatorName::Bidirectional => Estimator::Bidirectional,
+    }
+}
+
 /// FNV-1a of the scene as loaded.
-fn scene_hash(canonical: &str) -> String {
+pub fn scene_hash(canonical: &str) -> String {
     format!("{:016x}", fredholm::math::fnv1a(canonical.bytes()))
 }
 
@@ -265,6 +280,7 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
         format!("{}\nseed {}, {spp} spp, {}×{} pixels", found.command, s.seed, summary.width, summary.height);
     if !found.terms.is_empty() || found.path.is_some() {
         head += &format!("; technique {}", s.technique);
+        head += if s.points == Points::Sobol { "; Sobol points" } else { "" };
     }
     let used =
         [(!found.terms.is_empty(), "terms", &s.roulette), (found.path.is_some(), "path tracer", &s.path_roulette)];

@@ -72,7 +72,14 @@ impl Bidirectional {
         let mut light = vec![];
         if let Some((start, density)) = t.emit(&mut light_numbers(0, Purpose::Start)) {
             light.push(Node::new(start, Rgb::splat(1.0 / density), density));
-            super::densities::walk(t, &mut light, last, Role::Emission, |v| light_numbers(v, Purpose::Scatter), &mut rays);
+            super::densities::walk(
+                t,
+                &mut light,
+                last,
+                Role::Emission,
+                |v| light_numbers(v, Purpose::Scatter),
+                &mut rays,
+            );
         }
 
         // s = 0: the eye's walk is on a light

@@ -9,12 +9,14 @@
 //! | prefix | all X_k from one path, by its prefixes | [`prefix`] |
 //! | light | all X_k from one particle, walked from the light | [`light_tracer`] |
 //! | bidirectional | every way to find each path from both ends, weighted | [`bidirectional`] |
+//! | branching | a tree of paths, N children at every vertex | [`branching`] |
 //! | path tracer | the sum alone, independent code | [`path_tracer`] |
 //! | gather | the matrix solution, read through one sampled application of T | [`gather`] |
 //!
 //! Slots of the result: k = 0..=K for the terms, K + 1 for the tail; the path tracer has one slot.
 
 pub mod bidirectional;
+pub mod branching;
 pub mod densities;
 pub mod gather;
 pub mod light_tracer;
@@ -27,6 +29,7 @@ pub mod single_term;
 pub mod technique;
 
 pub use bidirectional::{Bidirectional, Pyramid};
+pub use branching::Branching;
 pub use gather::Gather;
 pub use light_tracer::LightTracer;
 pub use path_tracer::PathTracer;

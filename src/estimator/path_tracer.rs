@@ -41,8 +41,10 @@ impl PathTracer {
             if technique.connects() {
                 rays += 1;
                 if let Some(light) = t.connect(&x, &mut numbers(vertex, Purpose::Connect)) {
-                    colour +=
-                        alpha * light.weight * t.emission(&light.state) * technique.connection(light.pdf, light.other_pdf);
+                    colour += alpha
+                        * light.weight
+                        * t.emission(&light.state)
+                        * technique.connection(light.pdf, light.other_pdf);
                 }
             }
             if last(vertex + 1) && !technique.hits(t) {

@@ -89,6 +89,21 @@ impl<W> Paths<W> {
         self.compact();
     }
 
+    /// Copies of the paths of a wave, which go on with the numbers of another stream and throughput α · `share`.
+    pub(super) fn descend_from<S: Copy>(&mut self, parents: &Self, key: Key, share: f32)
+    where
+        W: Wave<S>,
+    {
+        self.reserve(parents.n);
+        (self.n, self.key) = (parents.n, Some(key));
+        self.pixel[..self.n].copy_from_slice(&parents.pixel[..self.n]);
+        self.sample[..self.n].copy_from_slice(&parents.sample[..self.n]);
+        for i in 0..self.n {
+            self.state.set(i, parents.state.get(i));
+            self.through.set(i, parents.through.get(i) * share);
+        }
+    }
+
     /// `samples.value[i] = E(x_v)`, emission where the paths are.
     pub fn emission<T: Transport<Wave = W>>(&mut self, t: &T) {
         t.emission_wave(&mut self.state, self.n, &mut self.samples.value);

@@ -7,9 +7,10 @@ pub mod columns;
 pub mod direction;
 pub mod distribution;
 pub mod random;
+pub mod sobol;
 
 pub use columns::Columns;
-pub use random::{Key, Purpose, Rng, Streams, fnv1a};
+pub use random::{Key, Points, Purpose, Rng, Streams, fnv1a};
 
 /// A radiance, reflectance or throughput: linear Rec. 709, one `f32` per channel. Sums of it are kept in [`glam::DVec3`].
 pub type Rgb = glam::Vec3;

@@ -9,8 +9,11 @@
 //! | bounce | vertex index v | where on the path |
 //! | purpose | [`Purpose`] | what the number decides |
 //! | draw | 0, 1, … | four numbers each |
+//! | points | [`Points`] | how the samples of a pixel lie to each other |
 //!
 //! The hash is pcg4d of Jarzynski and Olano, *Hash Functions for GPU Rendering* (JCGT 9(3), 2020).
+
+use super::sobol;
 
 /// What a random number decides; part of its address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,9 +28,29 @@ pub enum Purpose {
     Roulette = 3,
 }
 
+/// How the samples of a pixel lie to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Points {
+    /// They know nothing of each other.
+    #[default]
+    Independent,
+    /// Those of one replicate are the points of a scrambled [Sobol sequence](super::sobol).
+    Sobol,
+}
+
+impl std::fmt::Display for Points {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(if *self == Self::Independent { "independent" } else { "sobol" })
+    }
+}
+
 /// A whole run's stream: equal seeds and names give equal numbers, anything else gives unrelated ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Key(pub [u32; 2]);
+pub struct Key {
+    bits: [u32; 2],
+    /// Replicates that the samples are dealt to; 0 where samples are independent.
+    scrambles: u32,
+}
 
 impl Key {
     /// The stream called `name` of a run with this seed.
@@ -44,14 +67,27 @@ impl Key {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^= z >> 31;
-        Self([z as u32, (z >> 32) as u32])
+        Self { bits: [z as u32, (z >> 32) as u32], scrambles: 0 }
+    }
+
+    /// The same stream with other points. Sample i belongs to replicate `i mod replicates`, as on the
+    /// [film](crate::terms::film); replicates are independent whatever the points.
+    #[must_use]
+    pub fn with_points(self, points: Points, replicates: usize) -> Self {
+        Self { scrambles: if points == Points::Sobol { replicates.max(1) as u32 } else { 0 }, ..self }
+    }
+
+    /// How the samples of a pixel lie to each other.
+    #[inline(always)]
+    pub fn points(self) -> Points {
+        if self.scrambles == 0 { Points::Independent } else { Points::Sobol }
     }
 
     /// A further stream of this run: `single` gives each term its own.
     #[must_use]
     pub fn branch(self, index: u32) -> Self {
-        let v = pcg4d([self.0[0], self.0[1], index, 0x5bd1_e995]);
-        Self([v[0], v[1]])
+        let v = pcg4d([self.bits[0], self.bits[1], index, 0x5bd1_e995]);
+        Self { bits: [v[0], v[1]], ..self }
     }
 }
 
@@ -63,7 +99,7 @@ pub fn fnv1a(bytes: impl IntoIterator<Item = u8>) -> u64 {
 /// The numbers of one (path, bounce, purpose), four at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct Rng {
-    key: [u32; 2],
+    key: Key,
     pixel: u32,
     sample: u32,
     place: u32,
@@ -75,15 +111,18 @@ impl Rng {
     /// The numbers at vertex `bounce` of path (`pixel`, `sample`) for one purpose.
     #[inline(always)]
     pub fn at(key: Key, pixel: u32, sample: u32, bounce: usize, purpose: Purpose) -> Self {
-        Self { key: key.0, pixel, sample, place: place(bounce, purpose) }
+        Self { key, pixel, sample, place: place(bounce, purpose) }
     }
 
-    /// Four independent uniform numbers in [0, 1), multiples of 2⁻²⁴.
+    /// Four uniform numbers in [0, 1): independent ones, multiples of 2⁻²⁴, or a Sobol point.
     #[inline(always)]
     pub fn four(&mut self) -> [f32; 4] {
-        let v = pcg4d([self.pixel.wrapping_add(self.key[0]), self.sample, self.place, self.key[1]]);
-        self.place = self.place.wrapping_add(DRAW);
-        v.map(unit)
+        let Self { key, pixel, sample, place } = *self;
+        self.place = place.wrapping_add(DRAW);
+        match key.points() {
+            Points::Independent => independent(key, pixel, sample, place),
+            Points::Sobol => sobol::four(key.bits, pixel, sample, place, key.scrambles),
+        }
     }
 
     /// One uniform number in [0, 1); the other three of the draw are not used.
@@ -91,6 +130,11 @@ impl Rng {
     pub fn one(&mut self) -> f32 {
         self.four()[0]
     }
+}
+
+#[inline(always)]
+fn independent(key: Key, pixel: u32, sample: u32, place: u32) -> [f32; 4] {
+    pcg4d([pixel.wrapping_add(key.bits[0]), sample, place, key.bits[1]]).map(unit)
 }
 
 #[inline(always)]
@@ -106,7 +150,7 @@ fn unit(x: u32) -> f32 {
 }
 
 #[inline(always)]
-fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
+pub(super) fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
     for x in &mut v {
         *x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     }
@@ -144,6 +188,12 @@ impl Streams<'_> {
     #[inline(always)]
     pub fn rng(&self, i: usize) -> Rng {
         Rng::at(self.key, self.pixel[i], self.sample[i], self.bounce, self.purpose)
+    }
+
+    /// The first draw of path `i`, where samples are independent: no branch in a loop over paths.
+    #[inline(always)]
+    pub(crate) fn first_draw(&self, i: usize) -> [f32; 4] {
+        independent(self.key, self.pixel[i], self.sample[i], place(self.bounce, self.purpose))
     }
 
     /// Number of paths.

@@ -113,9 +113,8 @@ impl MatrixWalk {
     pub fn adjoint_powers(&self, importance: &[glam::DVec3], k_max: usize) -> Vec<Vec<glam::DVec3>> {
         let mut terms = vec![importance.to_vec()];
         for k in 0..k_max {
-            let column = |j: usize| {
-                (0..self.n).map(|i| terms[k][i] * self.rho[i].as_dvec3() * self.rows[i * self.n + j]).sum()
-            };
+            let column =
+                |j: usize| (0..self.n).map(|i| terms[k][i] * self.rho[i].as_dvec3() * self.rows[i * self.n + j]).sum();
             let next = (0..self.n).map(column).collect();
             terms.push(next);
         }

@@ -74,7 +74,8 @@ impl Adjoint for SceneTransport<'_> {
         }
         let d = self.depart(at, role.carried(), u)?;
         let o = self.scene.lift(at.p, d.normal);
-        let seen = if role == Role::Radiance { self.scene.look(o, d.direction) } else { self.scene.trace(o, d.direction) };
+        let seen =
+            if role == Role::Radiance { self.scene.look(o, d.direction) } else { self.scene.trace(o, d.direction) };
         let state = seen?;
         let delta = d.delta.then_some(d.pdf);
         let density = match delta {

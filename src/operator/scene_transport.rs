@@ -16,8 +16,8 @@
 use super::form_factor::Visibility;
 use super::patches::SurfacePoint;
 use super::transport::{self, Samples, Seen, Sensor, Step, Transport, Wave};
-use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::math::direction::Frame;
+use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::scene::bsdf::{Bsdf, Carried, Sampling, diffuse, diffuse::Diffuse};
 use crate::scene::{Camera, Rays, Scene, SurfaceSensor, Vertex, VertexWave, cosine_directions, numbers};
 use crate::scene::{connection, solid_angle};

@@ -30,6 +30,7 @@ pub mod plot;
 mod rate;
 pub mod sheet;
 pub mod summary;
+pub mod sweep;
 pub mod table;
 pub mod typeset;
 pub mod variance;

@@ -164,13 +164,13 @@ fn shortened(text: &str, longest: usize) -> String {
 }
 
 #[derive(Clone, Copy)]
-enum Side {
+pub(super) enum Side {
     Left,
     Right,
 }
 
 /// Rows as lines, two blanks between columns, a rule under the header.
-fn aligned(rows: &[Vec<String>], sides: &[Side]) -> String {
+pub(super) fn aligned(rows: &[Vec<String>], sides: &[Side]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |c: usize| rows.iter().map(|row| row[c].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();

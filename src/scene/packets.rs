@@ -6,7 +6,7 @@
 
 use super::shape::Shape;
 use super::vertex::Rays;
-use crate::math::{Columns, Streams};
+use crate::math::{Columns, Points, Streams};
 use glam::Vec3;
 use pulp::{Arch, Simd};
 
@@ -109,8 +109,15 @@ pub(crate) fn numbers_with_simd<'a, S: Simd>(_simd: S, streams: Streams<'a>, u: 
     let (pixel, sample) = (&streams.pixel[..n], &streams.sample[..n]);
     let [a, b, c, d] = u.each_mut().map(|u| &mut u[..n]);
     let streams = Streams { pixel, sample, ..streams };
+    if streams.key.points() == Points::Sobol {
+        // table look-ups: nothing for the vector units
+        for i in 0..n {
+            [a[i], b[i], c[i], d[i]] = streams.rng(i).four();
+        }
+        return;
+    }
     for i in 0..n {
-        [a[i], b[i], c[i], d[i]] = streams.rng(i).four();
+        [a[i], b[i], c[i], d[i]] = streams.first_draw(i);
     }
 }
 

@@ -102,6 +102,14 @@ pub const ENTRIES: &[Entry] = &[
     entry("a_sphere_above_the_horizon_is_a_point_light", 18, 1e-8),
     // tests/roulette.rs
     entry("no_term_moves_under_roulette", 75, 1e-8),
+    // tests/points.rs
+    entry("sobol_points_move_no_mean", 2_000, 1e-8),
+    entry("errors_from_replicates_cover_the_truth", 1, 1e-8),
+    entry("the_variance_of_a_smooth_integrand_falls_faster", 2, 1e-8),
+    entry("no_term_of_a_furnace_is_noisier", 12, 1e-8),
+    // tests/branching.rs
+    entry("a_tree_has_the_powers_of_the_matrix", 2_000, 1e-8),
+    entry("variances_follow_the_recursion_of_independent_children", 108, 1e-8),
     // tests/scene_properties.rs
     entry("no_bounce_gains_energy", 768, 1e-8),
     entry("a_uniform_room_keeps_the_share_of_its_albedo", 144, 1e-8),

@@ -13,6 +13,7 @@ pub mod sampled;
 pub mod surface;
 
 use crate::estimator::{Plan, Roulette, Technique};
+use crate::math::{Key, Points};
 use crate::scene::bsdf::Sampling;
 use crate::terms::TermFilm;
 
@@ -23,6 +24,8 @@ pub struct Settings {
     pub spp: u32,
     /// Seed of all random numbers.
     pub seed: u64,
+    /// How the samples of a pixel lie to each other.
+    pub points: Points,
     /// K.
     pub max_bounces: usize,
     /// How light is found.
@@ -46,6 +49,7 @@ impl Default for Settings {
         Self {
             spp: 256,
             seed: 0,
+            points: Points::Independent,
             max_bounces,
             technique: Technique::Mis,
             sampling: Sampling::Bsdf,
@@ -58,6 +62,11 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// The stream of that name, dealt to so many replicates.
+    pub fn key(&self, stream: &str, replicates: usize) -> Key {
+        Key::new(self.seed, stream).with_points(self.points, replicates)
+    }
+
     /// The plan of the term estimators.
     pub fn plan(&self) -> Plan {
         Plan { max_bounces: self.max_bounces, technique: self.technique, roulette: self.roulette.clone() }

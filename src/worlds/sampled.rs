@@ -2,8 +2,8 @@
 
 use super::{Observer, Settings};
 use crate::estimator::render::{Amount, Watch, render};
-use crate::estimator::{Bidirectional, LightTracer, PathTracer, Plan, Prefix, SingleTerm, TermEstimator};
-use crate::math::Key;
+use crate::estimator::{Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, SingleTerm, TermEstimator};
+use crate::math::Points;
 use crate::operator::{SceneTransport, Sensor, Transport};
 use crate::scene::Scene;
 use crate::terms::functional::{Replicates, functionals, image_replicates};
@@ -25,16 +25,22 @@ pub enum Estimator {
     Light,
     /// All terms from walks from both ends.
     Bidirectional,
+    /// A tree of paths.
+    Branching {
+        /// Children of every vertex.
+        children: u32,
+    },
 }
 
 impl fmt::Display for Estimator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Single => "single",
-            Self::Prefix => "prefix",
-            Self::Light => "light",
-            Self::Bidirectional => "bidirectional",
-        })
+        match self {
+            Self::Single => f.write_str("single"),
+            Self::Prefix => f.write_str("prefix"),
+            Self::Light => f.write_str("light"),
+            Self::Bidirectional => f.write_str("bidirectional"),
+            Self::Branching { children } => write!(f, "branching {children}"),
+        }
     }
 }
 
@@ -72,7 +78,7 @@ pub fn terms(
     stop: &AtomicBool,
 ) -> Sampled {
     let t = SceneTransport { scene, sampling: settings.sampling };
-    let amount = Amount::new(settings.spp, Key::new(settings.seed, &estimator.to_string()));
+    let amount = amount(settings, &estimator.to_string());
     let mut run = Run::new(&format!("terms, {estimator}"), scene.camera.size, settings.spp, observer);
     let plan = settings.plan();
     let film = match estimator {
@@ -80,8 +86,12 @@ pub fn terms(
         Estimator::Single => render(&t, &scene.camera, &SingleTerm(plan), amount, &mut run, stop),
         Estimator::Light => render(&t, &scene.camera, &LightTracer(plan), amount, &mut run, stop),
         Estimator::Bidirectional => render(&t, &scene.camera, &Bidirectional(plan), amount, &mut run, stop),
+        Estimator::Branching { children } => {
+            render(&t, &scene.camera, &Branching { plan, children }, amount, &mut run, stop)
+        }
     };
-    let mut result = run.finish(&film, World::Terms, format!("{estimator}, {}", settings.technique));
+    let label = format!("{estimator}, {}{}", settings.technique, spread(settings.points));
+    let mut result = run.finish(&film, World::Terms, label);
     if !settings.roulette.ends() {
         cut(&mut result.series, settings);
     }
@@ -92,13 +102,25 @@ pub fn terms(
 pub fn path(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &AtomicBool) -> Sampled {
     let plan = Plan { roulette: settings.path_roulette.clone(), ..settings.plan() };
     let t = SceneTransport { scene, sampling: settings.sampling };
-    let label = format!("path tracer, {}, roulette {}", settings.technique, settings.path_roulette);
+    let Settings { technique, path_roulette, points, .. } = settings;
+    let label = format!("path tracer, {technique}, roulette {path_roulette}{}", spread(*points));
     let mut result =
         sample(&t, &scene.camera, &PathTracer(plan), "path", (World::Path, label), settings, observer, stop);
     if !settings.path_roulette.ends() {
         cut(&mut result.series, settings);
     }
     result
+}
+
+/// The usual amount, from the stream of that name.
+fn amount(settings: &Settings, stream: &str) -> Amount {
+    let amount = Amount::new(settings.spp, settings.key(stream, 1));
+    Amount { key: settings.key(stream, amount.replicates), ..amount }
+}
+
+/// What a label says of points that are not the usual ones.
+fn spread(points: Points) -> &'static str {
+    if points == Points::Sobol { ", Sobol points" } else { "" }
 }
 
 /// Paths that no roulette ends are cut at K: says so, and that nothing is known about what is longer.
@@ -119,7 +141,7 @@ pub(super) fn sample<T: Transport>(
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Sampled {
-    let amount = Amount::new(settings.spp, Key::new(settings.seed, stream));
+    let amount = amount(settings, stream);
     let mut run = Run::new(stream, sensor.size(), settings.spp, observer);
     let film = render(t, sensor, estimator, amount, &mut run, stop);
     run.finish(&film, world, label)

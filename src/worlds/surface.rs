@@ -5,8 +5,7 @@
 
 use super::{Observer, Settings, sampled::Estimator};
 use crate::estimator::render::{Amount, Watch, render};
-use crate::estimator::{Prefix, SingleTerm};
-use crate::math::Key;
+use crate::estimator::{Branching, Prefix, SingleTerm};
 use crate::operator::{SceneTransport, scene_transport::SurfaceStrip};
 use crate::scene::{Scene, SurfaceSensor};
 use crate::terms::functional::{Replicates, image_replicates};
@@ -29,15 +28,20 @@ pub fn norms(
     let t = SceneTransport { scene, sampling: settings.sampling };
     let strip = SurfaceStrip { sensor: SurfaceSensor::new(scene), pixels: STRIP };
     let spp = (paths / STRIP).next_multiple_of(REPLICATES).max(REPLICATES);
-    let key = Key::new(settings.seed, &format!("surface {estimator}"));
+    let key = settings.key(&format!("surface {estimator}"), REPLICATES as usize);
     let amount = Amount { spp, replicates: REPLICATES as usize, key };
     observer.begin(&format!("surface norms, {estimator}"), u64::from(spp) * u64::from(STRIP));
     let mut watch = Advance(observer);
     let plan = settings.plan();
     let film = match estimator {
         // walks from the light cannot be led to this sensor
-        Estimator::Prefix | Estimator::Light | Estimator::Bidirectional => render(&t, &strip, &Prefix(plan), amount, &mut watch, stop),
+        Estimator::Prefix | Estimator::Light | Estimator::Bidirectional => {
+            render(&t, &strip, &Prefix(plan), amount, &mut watch, stop)
+        }
         Estimator::Single => render(&t, &strip, &SingleTerm(plan), amount, &mut watch, stop),
+        Estimator::Branching { children } => {
+            render(&t, &strip, &Branching { plan, children }, amount, &mut watch, stop)
+        }
     };
     image_replicates(&film)
 }

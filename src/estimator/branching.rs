@@ -1,0 +1,111 @@
+//! Naive branching: every vertex has N children, and the number of rays explodes.
+//!
+//! ```text
+//! (T L)(x_v) ≈ 1/N Σ_{c<N} weight_c · L(x_{v+1,c})         N^k paths of length k for one value of the pixel
+//! ```
+//!
+//! Each child draws everything anew: its connection, its roulette, its direction. So one vertex makes N connections
+//! and scatters N rays, each of weight 1/N, and the mean over the children is the mean of N independent samples of
+//! the step that [`Prefix`](super::Prefix) takes once. A part of the variance falls as 1/N^k, the cost of term k
+//! grows as N^k, and what the first ray decides (which point the pixel sees) does not fall at all. With N = 1 this
+//! **is** the prefix estimator, bit for bit.
+//!
+//! | notation | meaning | place |
+//! |---|---|---|
+//! | N | children of a vertex | [`Branching::children`] |
+//! | c₀ c₁ … | a lineage: which child was followed at every vertex | the key of a wave |
+//! | K | branching ends at vertex K: the tail follows one child per path, or it would never end | [`Plan::max_bounces`] |
+//!
+//! A wave holds one lineage of every path of the batch. The tree is walked depth first, one wave per depth in memory,
+//! so that memory is `K + 1` waves however large N^K is. Reference: Whitted, *An Improved Illumination Model for
+//! Shaded Display* (1980), for the tree; Cook, Porter, Carpenter, *Distributed Ray Tracing* (1984); Kajiya, *The
+//! Rendering Equation* (1986), for why one child is enough.
+
+use super::{Batch, Paths, Plan, TermEstimator, TermSink, prefix};
+use crate::math::Key;
+use crate::operator::{Sensor, Transport};
+
+/// The branching estimator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Branching {
+    /// How far, how light is found, how paths end.
+    pub plan: Plan,
+    /// N, at least 1.
+    pub children: u32,
+}
+
+impl<T: Transport> TermEstimator<T> for Branching {
+    fn slots(&self) -> usize {
+        self.plan.max_bounces + 2
+    }
+
+    fn sample(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        batch: &Batch,
+        paths: &mut Paths<T::Wave>,
+        sink: &mut impl TermSink,
+    ) {
+        paths.start(t, sensor, batch);
+        paths.emission(t);
+        paths.add(0, sink);
+        sink.rays(0, batch.len());
+        let mut below: Vec<Paths<T::Wave>> = (0..self.plan.max_bounces).map(|_| Paths::default()).collect();
+        self.descend(t, 0, batch.key, paths, &mut below, sink);
+    }
+}
+
+impl Branching {
+    /// Every child of the paths that stand at vertex v, and all that descends from them. `below` has one wave per
+    /// depth.
+    fn descend<T: Transport>(
+        &self,
+        t: &T,
+        v: usize,
+        key: Key,
+        parents: &mut Paths<T::Wave>,
+        below: &mut [Paths<T::Wave>],
+        sink: &mut impl TermSink,
+    ) {
+        // at vertex K the terms are complete, and the tail goes on as a single path
+        let Some((child, below)) = below.split_first_mut() else {
+            return prefix::follow(t, &self.plan, v, parents, sink);
+        };
+        if parents.n == 0 {
+            return;
+        }
+        for c in 0..self.children {
+            let key = lineage(key, v, c, self.children);
+            child.descend_from(parents, key, 1.0 / self.children as f32);
+            self.step(t, v, child, sink);
+            self.descend(t, v + 1, key, child, below, sink);
+        }
+    }
+
+    /// x_v → x_{v+1} as in [`prefix`]: term v + 1 is scored by connection and by hit.
+    fn step<T: Transport>(&self, t: &T, v: usize, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        let Plan { max_bounces, technique, ref roulette } = self.plan;
+        let slot = v + 1;
+        if technique.connects() {
+            sink.rays(slot, paths.n);
+            paths.connect(t, v);
+            paths.score_connections(technique, slot, sink);
+        }
+        if slot == max_bounces && !technique.hits(t) && !roulette.ends() {
+            return; // nothing is left to be found
+        }
+        paths.roulette(t, v, roulette);
+        sink.rays(slot, paths.n);
+        paths.scatter(t, v);
+        if technique.hits(t) {
+            paths.emission(t);
+            paths.score_hits(technique, slot, sink);
+        }
+    }
+}
+
+/// The stream of child c of vertex v: the first child inherits its parent's, every other has one of its own.
+fn lineage(key: Key, v: usize, c: u32, children: u32) -> Key {
+    if c == 0 { key } else { key.branch((v as u32).wrapping_mul(children).wrapping_add(c)) }
+}

@@ -1,0 +1,248 @@
+//! `fredholm sweep`: a row per value, numbers that programs can read, costs that are known, and refusals.
+#![allow(clippy::unwrap_used)]
+
+use fredholm::report::summary;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+struct Said {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+/// Runs a sweep in a folder.
+fn run(desk: &Path, line: &str) -> Said {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
+    let output = command.args(line.split_whitespace()).current_dir(desk).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let said = Said { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) };
+    assert!(!said.err.contains("panicked"), "{line}: {}", said.err);
+    assert!(!said.out.contains("\n\n\n"), "{line}: two blank lines in a row\n{}", said.out);
+    for l in said.out.lines().filter(|l| !l.starts_with("fredholm ") && !l.trim_start().starts_with('"')) {
+        assert!(l.chars().count() <= 100, "{l}");
+    }
+    said
+}
+
+/// A sweep that must go well, in a folder of its own; its csv as one map per line.
+struct Swept {
+    said: Said,
+    rows: Vec<std::collections::BTreeMap<String, String>>,
+    folder: PathBuf,
+    _desk: TempDir,
+}
+
+/// Cells of a line: commas inside quotes stay.
+fn cells(line: &str) -> Vec<String> {
+    let (mut all, mut quoted) = (vec![String::new()], false);
+    for c in line.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            ',' if !quoted => all.push(String::new()),
+            c => all.last_mut().unwrap().push(c),
+        }
+    }
+    all
+}
+
+fn swept(line: &str) -> Swept {
+    let desk = TempDir::new().unwrap();
+    let said = run(desk.path(), &format!("sweep {line} -o out"));
+    assert_eq!(said.code, 0, "{line}: {}{}", said.out, said.err);
+    let folder = desk.path().join("out");
+    let text = std::fs::read_to_string(folder.join("sweep.csv")).unwrap();
+    let mut lines = text.lines().map(cells);
+    let header = lines.next().unwrap();
+    let row = |c: Vec<String>| {
+        assert_eq!(c.len(), header.len(), "{c:?}");
+        header.iter().cloned().zip(c).collect()
+    };
+    let rows = lines.map(row).collect();
+    Swept { said, rows, folder, _desk: desk }
+}
+
+impl Swept {
+    fn text(&self, value: &str, k: &str, column: &str) -> &str {
+        let row = self.rows.iter().find(|r| r["value"] == value && r["k"] == k);
+        &row.unwrap_or_else(|| panic!("no row {value}, {k}"))[column]
+    }
+    fn number(&self, value: &str, k: &str, column: &str) -> f64 {
+        let text = self.text(value, k, column);
+        text.parse().unwrap_or_else(|_| panic!("{value}, {k}, {column}: `{text}`"))
+    }
+    fn values(&self) -> Vec<&str> {
+        let mut all: Vec<&str> = self.rows.iter().map(|r| r["value"].as_str()).collect();
+        all.dedup();
+        all
+    }
+}
+
+const SMALL: &str = "--size 8x8 --spp 32 --max-bounces 3 -q";
+
+#[test]
+fn branching_takes_powers_of_its_children() {
+    let s = swept(&format!("furnace --over branching --technique scatter --sampling uniform {SMALL}"));
+    assert_eq!(s.values(), ["1", "2", "3", "4"]);
+    for n in 1..=4u32 {
+        let name = n.to_string();
+        for k in 0..=3u32 {
+            let of = |column| s.number(&name, &k.to_string(), column);
+            assert_eq!(of("rays"), 64.0 * 32.0 * f64::from(n.pow(k)), "N = {n}, k = {k}");
+            assert_eq!(of("rays_per_path"), f64::from(n.pow(k)));
+            let truth = 0.5f64.powi(k as i32);
+            assert!((of("mean") - truth).abs() <= 6.0 * of("std_error") + 1e-9, "N = {n}, k = {k}: {}", of("mean"));
+            assert_eq!(of("replicates"), 16.0);
+        }
+        assert_eq!(s.text(&name, "0", "efficiency_per_ray"), "inf", "term 0 of a furnace has no noise");
+        let (v, rays) = (s.number(&name, "2", "variance"), s.number(&name, "all", "rays_per_path"));
+        assert!((s.number(&name, "2", "efficiency_per_ray") * v * rays - 1.0).abs() < 1e-9);
+    }
+    // all the noise of term 1 is in the children: N of them leave 1/N of it
+    let ratio = s.number("4", "1", "variance") / s.number("1", "1", "variance");
+    assert!((0.15..0.4).contains(&ratio), "{ratio}");
+
+    // the table: a line per value, then one per value and term
+    let lines: Vec<&str> = s.said.out.lines().collect();
+    let begins =
+        |words: [&str; 2]| lines.iter().filter(|l| l.split_whitespace().take(2).eq(words.iter().copied())).count();
+    for n in ["1", "2", "3", "4"] {
+        assert_eq!(begins([n, "32"]), 1, "{}", s.said.out);
+        for k in ["0", "1", "2", "3", "tail"] {
+            assert_eq!(begins([n, k]), 1, "{n} {k}\n{}", s.said.out);
+        }
+    }
+    assert!(s.said.err.is_empty(), "{}", s.said.err);
+
+    let mut names: Vec<String> =
+        std::fs::read_dir(&s.folder).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names, ["summary.json", "sweep.csv", "sweep.png", "sweep.svg"]);
+    let summary = summary::read(&s.folder.join("summary.json")).unwrap();
+    assert_eq!(summary.files, names);
+    assert_eq!(summary.series.len(), 4);
+    assert_eq!(summary.series[2].label, "branching 3: branching 3, scatter");
+    assert_eq!(summary.series[2].image().terms[1].replicates, 16);
+    let svg = std::fs::read_to_string(s.folder.join("sweep.svg")).unwrap();
+    for words in ["N = 3", "Cost: rays per path", "--over branching", "scene furnace"] {
+        assert!(svg.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn every_setting_has_its_usual_values() {
+    for (over, values) in [
+        ("spp", vec!["16", "64", "256"]),
+        ("technique", vec!["scatter", "connect", "mis"]),
+        ("sampling", vec!["uniform", "cosine", "bsdf"]),
+        ("estimator", vec!["prefix", "single", "branching"]),
+        ("points", vec!["independent", "sobol"]),
+        ("roulette", vec!["none", "lecture", "albedo"]),
+    ] {
+        let s = swept(&format!("cornell --over {over} {SMALL}"));
+        assert_eq!(s.values(), values, "{over}");
+        assert!(s.rows.iter().all(|r| r["over"] == over));
+        assert!(std::fs::metadata(s.folder.join("sweep.png")).unwrap().len() > 1000);
+    }
+}
+
+#[test]
+fn a_row_is_what_series_gives() {
+    let s = swept(&format!("cornell --over technique --values connect {SMALL} --seed 5"));
+    let desk = TempDir::new().unwrap();
+    let line = "series cornell --technique connect --worlds terms --seed 5 --max-bounces 3 --size 8x8 --spp 32 -q -o a";
+    assert_eq!(run(desk.path(), line).code, 0);
+    let summary = summary::read(&desk.path().join("a/summary.json")).unwrap();
+    for (k, term) in summary.terms.iter().enumerate() {
+        let of = |column| s.number("connect", &k.to_string(), column);
+        assert_eq!(of("mean_g"), term.mean.y);
+        assert_eq!(of("std_error_g"), term.std_error.y);
+        assert_eq!(of("rays"), term.rays as f64);
+        assert!((of("variance") / (term.variance.element_sum() / 3.0) - 1.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn given_values_replace_the_usual_ones() {
+    let s = swept(&format!("furnace --over roulette --values table:0,0.5,none {SMALL}"));
+    assert_eq!(s.values(), ["table:0,0.5", "none"]);
+    assert!(s.said.out.contains("none (cut at K)"), "{}", s.said.out);
+    assert!(s.rows.iter().all(|r| r["value"] != "none" || r["k"] != "tail"), "paths that are cut have no tail");
+    // one sample: a mean without an error
+    let s = swept("cornell --over spp --values 1,2 --size 4x4 --max-bounces 2 -q");
+    assert_eq!((s.text("1", "1", "std_error"), s.text("1", "1", "variance")), ("", ""));
+    assert!(s.number("1", "1", "mean") > 0.0 && s.number("2", "1", "std_error") > 0.0);
+}
+
+#[test]
+fn equal_rays_are_shared_out() {
+    let s = swept(
+        "furnace --over branching --values 1,3 --equal-rays --technique scatter --roulette none --size 8x8 --spp 16 --max-bounces 3 -q",
+    );
+    // 1 + 1 + 1 + 1 against 1 + 3 + 9 + 27 rays per path
+    assert_eq!((s.number("1", "all", "spp"), s.number("3", "all", "spp")), (160.0, 16.0));
+    assert_eq!(s.number("1", "all", "rays"), s.number("3", "all", "rays"));
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let desk = TempDir::new().unwrap();
+    for (line, says) in [
+        ("", "--over"),
+        ("--over colour", "colour"),
+        ("--over branching --values 0", "`0` is not a whole number from 1 to 1000"),
+        ("--over branching --values 2,x", "`x` is not a whole number"),
+        ("--over branching --values 2,", "`` is not a whole number"),
+        ("--over technique --values guess", "`guess` is none of scatter, connect, mis"),
+        ("--over sampling --values mis", "`mis` is none of uniform"),
+        ("--over points --values halton", "`halton` is none of"),
+        ("--over estimator --values light", "`light` is none of"),
+        ("--over roulette --values half", "unknown roulette"),
+        ("--over spp --values 0", "`0` is not a whole number"),
+        ("--over spp --equal-rays", "--equal-rays"),
+        ("--over spp --patches 100", "--patches has no part in a sweep"),
+        ("--over branching --values 1000", "1000 children at every vertex make 1.7e19 rays at depth 4"),
+    ] {
+        let said = run(desk.path(), &format!("sweep cornell {line}"));
+        assert_eq!(said.code, 2, "{line}: {}", said.err);
+        assert!(said.err.contains(says), "{line}: {}", said.err);
+        assert!(said.out.is_empty());
+        assert!(said.err.contains("error: "), "{}", said.err);
+    }
+    let said = run(desk.path(), "series cornell --estimator branching --branching 100 --size 64x64");
+    assert_eq!(said.code, 2, "{}", said.err);
+    assert!(said.err.contains("help: choose fewer children"), "{}", said.err);
+    assert!(!desk.path().join("fredholm-out").exists(), "nothing was written");
+}
+
+/// The rules of every other command: its own output is replaced, another run's never is.
+#[test]
+fn outputs_are_safe() {
+    let desk = TempDir::new().unwrap();
+    let sweep = |more: &str| run(desk.path(), &format!("sweep furnace --over points {SMALL} {more}")).code;
+    assert_eq!((sweep("-o a"), sweep("-o a")), (0, 0));
+    assert_eq!((sweep("-o a --seed 1"), sweep("-o a --seed 1 --force")), (3, 0));
+    assert_eq!((sweep(""), sweep("--seed 1")), (0, 0));
+    for name in ["furnace-points", "furnace-points-2"] {
+        assert!(desk.path().join("fredholm-out").join(name).join("sweep.csv").exists(), "{name}");
+    }
+    let said = run(desk.path(), &format!("sweep furnace --over points {SMALL} -o a --force --json"));
+    let json: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(json["series"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn series_branches_and_takes_sobol_points() {
+    let desk = TempDir::new().unwrap();
+    let line = "series furnace --estimator branching --branching 3 --points sobol --worlds terms --size 8x8 --spp 32 --max-bounces 2 -q -o a";
+    let said = run(desk.path(), line);
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert!(said.out.contains("branching 3, mis, Sobol points"), "{}", said.out);
+    let summary = summary::read(&desk.path().join("a/summary.json")).unwrap();
+    assert!(summary.command.contains("--points sobol"));
+    let rays: Vec<u64> = summary.terms.iter().map(|t| t.rays).collect();
+    assert_eq!(rays, [2048, 2048 * 6, 2048 * 18]);
+    let said = run(desk.path(), "render furnace --points halton");
+    assert_eq!(said.code, 2);
+}
