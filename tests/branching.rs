@@ -75,7 +75,7 @@ fn rays_grow_as_powers_of_the_children() {
             let expected = |k: u32| {
                 let each = match technique {
                     Technique::Scatter => 1,
-                    Technique::Mis => 2,
+                    Technique::Mis | Technique::Power => 2,
                     // what follows the last connection is of no use
                     Technique::Connect => 1 + u64::from(k < k_max),
                 };
