@@ -91,7 +91,7 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Cells with at most `most` of `pilot` each, never across one of the `cuts` in z.
+    /// Cells with at most `most` of `pilot` each, at most 1/1024 of the sphere or so, never across one of the `cuts` in z.
     pub fn new(pilot: &mut [[f64; 2]], most: usize, cuts: &[f64]) -> Self {
         let mut cells = vec![];
         let whole = Cell { z: [-1.0, 1.0], phi: [0.0, TAU] };
@@ -120,13 +120,13 @@ impl Cells {
 
 fn grow(pilot: &mut [[f64; 2]], cell: Cell, most: usize, cuts: &[f64], depth: usize, cells: &mut Vec<Cell>) -> Tree {
     let cut = cuts.iter().copied().find(|&c| cell.z[0] < c && c < cell.z[1]);
-    if cut.is_none() && (pilot.len() <= most || depth > 40) {
+    if cut.is_none() && depth >= 10 && (pilot.len() <= most || depth > 40) {
         cells.push(cell);
         return Tree::Leaf(cells.len() - 1);
     }
     let (axis, at) = match cut {
         Some(c) => (0, c),
-        None if depth % 2 == 0 => (0, 0.5 * (cell.z[0] + cell.z[1])),
+        None if depth.is_multiple_of(2) => (0, 0.5 * (cell.z[0] + cell.z[1])),
         None => (1, 0.5 * (cell.phi[0] + cell.phi[1])),
     };
     pilot.sort_unstable_by(|a, b| a[axis].total_cmp(&b[axis]));
