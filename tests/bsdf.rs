@@ -1,6 +1,6 @@
 //! How surfaces scatter: densities are those of the samples, weights those of the formulas, energy is never gained, and
 //! light may go either way.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stderr, unreachable_pub)]
 
 #[path = "bsdf/chi_square.rs"]
 mod chi_square;
@@ -8,7 +8,7 @@ mod common;
 #[path = "bsdf/surfaces.rs"]
 mod surfaces;
 
-use chi_square::{Cells, chart, direction, p_value, together};
+use chi_square::{Cells, Chart, p_value, together};
 use common::random::cases;
 use common::{Noise, truth};
 use fredholm::scene::bsdf::fresnel::{Interface, conductor, hemispherical};
@@ -21,8 +21,8 @@ use surfaces::{Surface, all, fresnel, glass, gold, metal, outgoing, plastic, til
 
 const BOTH: [Carried; 2] = [Carried::Radiance, Carried::Flux];
 
-/// Pilot samples in all, and in a cell.
-const PILOT: [usize; 2] = [1 << 14, 16];
+/// Pilot samples in a cell.
+const PILOT: usize = 8;
 
 /// A multiple of 2⁻²⁴ in [0, 1), as the library's own.
 fn uniform(noise: &mut Noise) -> f32 {
@@ -60,22 +60,23 @@ fn p_values(
     draw: impl Fn([f32; 3]) -> Draw,
     pdf: impl Fn(Vec3) -> f32,
 ) -> Option<[f64; 2]> {
+    let chart = Chart::about(wo);
     let mut pilot: Vec<[f64; 2]> = vec![];
-    for _ in 0..PILOT[0] {
+    for _ in 0..n / 4 {
         if let Draw::Direction(wi) = draw(three(noise)) {
-            pilot.push(chart(wo, wi));
+            pilot.push(chart.at(wi));
         }
     }
     let (mut found, mut nowhere, mut delta, mut p_delta) = (vec![], 0, 0, 0.0);
     for _ in 0..n {
         match draw(three(noise)) {
-            Draw::Direction(wi) => found.push(chart(wo, wi)),
+            Draw::Direction(wi) => found.push(chart.at(wi)),
             Draw::Delta(p) => (delta, p_delta) = (delta + 1, f64::from(p)),
             Draw::Nowhere => nowhere += 1,
         }
     }
-    let cells = Cells::new(&mut pilot, PILOT[1], cuts);
-    let density = |z: f64, phi: f64| DVec3::splat(f64::from(pdf(direction(wo, z, phi))));
+    let cells = Cells::new(&mut pilot, PILOT, cuts);
+    let density = |z: f64, phi: f64| DVec3::splat(f64::from(pdf(chart.direction(z, phi))));
     let expected: Vec<f64> = cells.integrals(density, 1e-4).iter().map(|v| v.x).collect();
     let mut counts = vec![0u64; expected.len()];
     found.iter().for_each(|&x| counts[cells.find(x)] += 1);
@@ -98,8 +99,8 @@ fn densities(account: &mut common::Account, n: usize) {
         if !bsdf.connects() {
             continue;
         }
-        for wo in outgoing() {
-            for &sampling in surface.samplings() {
+        for (i, wo) in outgoing().into_iter().enumerate() {
+            for &sampling in surface.samplings(i) {
                 let draw = |u| bsdf.sample(wo, sampling, Carried::Radiance, u).into();
                 let pdf = |wi| bsdf.pdf(wo, wi, sampling);
                 let what = format!("{sampling:?}, {wo}, {surface:?}");
@@ -160,20 +161,20 @@ fn wrong_densities_are_found() {
     wrong("Malley without the root", Vec3::Z, &malley, &|wi| Sampling::Cosine.pdf(wi.z.max(0.0)));
 }
 
-/// ∫ f |cos θ_i| dω_i without deltas.
-fn quadrature(surface: &Surface, bsdf: &Bsdf, wo: Vec3, carried: Carried) -> DVec3 {
+/// ∫ f |cos θ_i| dω_i without deltas, as well as `n` samples deserve.
+fn quadrature(surface: &Surface, bsdf: &Bsdf, wo: Vec3, carried: Carried, n: usize) -> DVec3 {
     if !bsdf.connects() {
         return DVec3::ZERO;
     }
-    let mut noise = Noise(7);
+    let (mut noise, chart) = (Noise(7), Chart::about(wo));
     let mut pilot = vec![];
-    for _ in 0..PILOT[0] {
+    for _ in 0..n / 4 {
         if let Draw::Direction(wi) = bsdf.sample(wo, Sampling::Bsdf, carried, three(&mut noise)).into() {
-            pilot.push(chart(wo, wi));
+            pilot.push(chart.at(wi));
         }
     }
-    let f = |z: f64, phi: f64| bsdf.eval(wo, direction(wo, z, phi), carried).as_dvec3() * z.abs();
-    Cells::new(&mut pilot, PILOT[1], &surface.cuts(wo)).integrals(f, 2e-5).iter().sum()
+    let f = |z: f64, phi: f64| bsdf.eval(wo, chart.direction(z, phi), carried).as_dvec3() * z.abs();
+    Cells::new(&mut pilot, PILOT, &surface.cuts(wo)).integrals(f, 2e-5).iter().sum()
 }
 
 /// What a delta part adds to the albedo.
@@ -200,9 +201,12 @@ fn weights(account: &mut common::Account, n: u64) {
     let mut noise = Noise(account.seed());
     for surface in all() {
         let bsdf = surface.bsdf();
-        for (wo, carried) in outgoing().into_iter().flat_map(|wo| BOTH.map(|c| (wo, c))) {
-            let truth = quadrature(&surface, &bsdf, wo, carried) + delta(&surface, wo, carried);
-            for &sampling in surface.samplings() {
+        let carried = if surface.eta == 1.0 { &BOTH[..1] } else { &BOTH };
+        for ((i, wo), &carried) in
+            outgoing().into_iter().enumerate().flat_map(|wo| carried.iter().map(move |c| (wo, c)))
+        {
+            let truth = quadrature(&surface, &bsdf, wo, carried, n as usize) + delta(&surface, wo, carried);
+            for &sampling in surface.samplings(i) {
                 let (mut sum, mut squares) = (DVec3::ZERO, DVec3::ZERO);
                 for _ in 0..n {
                     if let Some(s) = bsdf.sample(wo, sampling, carried, three(&mut noise)) {
@@ -239,9 +243,9 @@ fn a_million_weights_average_to_the_albedo() {
 fn no_surface_gains_energy() {
     for surface in all() {
         let bsdf = surface.bsdf();
-        for z in [1.0, 0.95, 0.7, 0.4, 0.2, 0.1, 0.03, 0.01] {
+        for z in [1.0, 0.8, 0.4, 0.1, 0.01] {
             let wo = tilted(z, 0.7);
-            let truth = quadrature(&surface, &bsdf, wo, Carried::Flux) + delta(&surface, wo, Carried::Flux);
+            let truth = quadrature(&surface, &bsdf, wo, Carried::Flux, 30_000) + delta(&surface, wo, Carried::Flux);
             let (bound, max) = (bsdf.albedo(wo).as_dvec3(), bsdf.max_albedo().as_dvec3());
             let what = format!("z = {z}, {surface:?}: {truth}, bound {bound}, {max}");
             let slack = DVec3::splat(1e-5);
@@ -265,7 +269,7 @@ fn no_surface_gains_energy() {
 #[test]
 fn only_roughness_loses_energy() {
     let wo = tilted(0.5, 0.0);
-    let left = |surface: &Surface| quadrature(surface, &surface.bsdf(), wo, Carried::Flux).x;
+    let left = |surface: &Surface| quadrature(surface, &surface.bsdf(), wo, Carried::Flux, 30_000).x;
     let rough = |alpha| Some(Ggx { alpha, masking: Masking::HeightCorrelated });
     let alphas = [0.05, 0.2, 0.5, 1.0];
     for make in [|r| metal(Metal::Reflectance(DVec3::ONE), r), |r| glass(Choice::Fresnel, r, false)] {
@@ -345,7 +349,7 @@ fn fresnel_is_exact() {
             assert!((t * t - 1.0 + (1.0 - c * c) / (eta * eta)).abs() < 1e-6);
             let (there, back) = (interface.reflectance(c as f32), inside.reflectance(t as f32));
             // inside, the rounding of t weighs 1/c
-            assert!(f64::from(there - back).abs() < 1e-6 / c, "{c}: {there} {back}");
+            assert!(f64::from(there - back).abs() < eta * eta * 1e-6 / c, "{c}: {there} {back}");
             assert!((f64::from(there) - fresnel(c, eta, 0.0)).abs() < 3e-7);
         }
     }
@@ -408,7 +412,7 @@ fn any_surface() -> impl Strategy<Value = (BsdfDescription, bool)> {
             choice,
             rough
         }),
-        (rgb(), ior(), rough).prop_map(|(r, ior, rough)| BsdfDescription::Plastic {
+        (rgb(), ior().prop_map(|n| n.max(1.0 / n)), rough).prop_map(|(r, ior, rough)| BsdfDescription::Plastic {
             reflectance: Colour::Uniform(r),
             ior,
             rough

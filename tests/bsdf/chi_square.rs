@@ -8,7 +8,7 @@
 //! dense: small in a lobe, growing with the distance from it. Their integrals do not use that sample, and neighbours are
 //! taken together until each expects its share.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::f64::consts::TAU;
 
@@ -19,16 +19,29 @@ pub struct Cell {
     phi: [f64; 2],
 }
 
-/// (z, φ), with φ = π where `wo` is reflected to.
-pub fn chart(wo: Vec3, wi: Vec3) -> [f64; 2] {
-    let (a, b) = (f64::from(wi.y).atan2(f64::from(wi.x)), f64::from(wo.y).atan2(f64::from(wo.x)));
-    [f64::from(wi.z), (a - b).rem_euclid(TAU)]
+/// Directions as (z, φ), with φ = π where ω_o is reflected to.
+#[derive(Clone, Copy, Debug)]
+pub struct Chart {
+    x: DVec2,
 }
 
-/// A direction of the chart.
-pub fn direction(wo: Vec3, z: f64, phi: f64) -> Vec3 {
-    let (r, a) = ((1.0 - z * z).max(0.0).sqrt(), phi + f64::from(wo.y).atan2(f64::from(wo.x)));
-    DVec3::new(r * a.cos(), r * a.sin(), z).as_vec3()
+impl Chart {
+    pub fn about(wo: Vec3) -> Self {
+        Self { x: DVec2::new(f64::from(wo.x), f64::from(wo.y)).try_normalize().unwrap_or(DVec2::X) }
+    }
+
+    pub fn at(&self, wi: Vec3) -> [f64; 2] {
+        let (x, y) = (f64::from(wi.x), f64::from(wi.y));
+        let [a, b] = [self.x.x * x + self.x.y * y, self.x.x * y - self.x.y * x];
+        [f64::from(wi.z), b.atan2(a).rem_euclid(TAU)]
+    }
+
+    pub fn direction(&self, z: f64, phi: f64) -> Vec3 {
+        let (sin, cos) = phi.sin_cos();
+        let r = (1.0 - z * z).max(0.0).sqrt();
+        let [a, b] = [r * cos, r * sin];
+        DVec3::new(a * self.x.x - b * self.x.y, a * self.x.y + b * self.x.x, z).as_vec3()
+    }
 }
 
 // Gauss and Legendre, three points
@@ -78,7 +91,7 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Cells with at most `most` of `pilot` each, never across one of the `cuts` in z.
+    /// Cells with at most `most` of `pilot` each, at most 1/1024 of the sphere or so, never across one of the `cuts` in z.
     pub fn new(pilot: &mut [[f64; 2]], most: usize, cuts: &[f64]) -> Self {
         let mut cells = vec![];
         let whole = Cell { z: [-1.0, 1.0], phi: [0.0, TAU] };
@@ -107,13 +120,13 @@ impl Cells {
 
 fn grow(pilot: &mut [[f64; 2]], cell: Cell, most: usize, cuts: &[f64], depth: usize, cells: &mut Vec<Cell>) -> Tree {
     let cut = cuts.iter().copied().find(|&c| cell.z[0] < c && c < cell.z[1]);
-    if cut.is_none() && (pilot.len() <= most || depth > 40) {
+    if cut.is_none() && depth >= 10 && (pilot.len() <= most || depth > 40) {
         cells.push(cell);
         return Tree::Leaf(cells.len() - 1);
     }
     let (axis, at) = match cut {
         Some(c) => (0, c),
-        None if depth % 2 == 0 => (0, 0.5 * (cell.z[0] + cell.z[1])),
+        None if depth.is_multiple_of(2) => (0, 0.5 * (cell.z[0] + cell.z[1])),
         None => (1, 0.5 * (cell.phi[0] + cell.phi[1])),
     };
     pilot.sort_unstable_by(|a, b| a[axis].total_cmp(&b[axis]));

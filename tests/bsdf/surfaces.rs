@@ -20,9 +20,13 @@ impl Surface {
         Bsdf::new(&self.description, self.back)
     }
 
-    /// The samplings worth trying: uniform directions do not find a narrow lobe.
-    pub fn samplings(&self) -> &[Sampling] {
-        if self.width < 0.3 { &[Sampling::Bsdf] } else { &[Sampling::Bsdf, Sampling::Cosine, Sampling::Uniform] }
+    /// The samplings worth trying from the i-th outgoing direction: uniform directions do not find a narrow lobe.
+    pub fn samplings(&self, i: usize) -> &[Sampling] {
+        match i {
+            _ if self.width < 0.3 => &[Sampling::Bsdf],
+            0 | 3 => &[Sampling::Bsdf, Sampling::Uniform],
+            _ => &[Sampling::Bsdf, Sampling::Cosine],
+        }
     }
 
     /// Heights at which densities jump: the horizon, and what a refraction by a vertical facet leads to.

@@ -28,8 +28,8 @@ const NODES: usize = 16;
 /// Steps of the quadrature in u₁; half as many cover half of u₂, the rest is its mirror image.
 const STEPS: usize = 64;
 
-/// What the quadrature may miss of E; measured errors stay below.
-const MARGIN: f64 = 1e-4;
+/// What quadrature and chords may still miss of E; of α ≥ 10⁻³ and indices from 1.05 to 3 it is at most 2.7·10⁻⁴.
+const MARGIN: f64 = 3e-4;
 
 /// A boundary that reflects, in front of something else.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub struct Coat {
 }
 
 impl Coat {
-    /// A coat of relative index `eta`.
+    /// A coat of relative index `eta` ≥ 1: under total reflection from outside, a table would smear the critical angle.
     pub fn new(eta: f64, rough: Option<Microfacets>) -> Self {
         let interface = Interface::new(1.0, eta);
         let Some(facets) = rough else {
@@ -90,16 +90,17 @@ impl Coat {
     }
 }
 
-/// E(μ) of a rough coat: the midpoint rule in the numbers a visible normal is made of.
+/// E(μ) of a rough coat: the midpoint rule in w = √(1 − u₁), where the long tail of the slopes is smooth too, and u₂.
 fn integrated(interface: &Interface, facets: &Microfacets, mu: f64) -> f64 {
     let wo = Vec3::new((1.0 - mu * mu).sqrt() as f32, 0.0, mu as f32);
     let mut sum = 0.0;
     for i in 0..STEPS {
+        let w = (i as f32 + 0.5) / STEPS as f32;
         for j in 0..STEPS / 2 {
-            let u = [(i as f32 + 0.5) / STEPS as f32, (j as f32 + 0.5) / STEPS as f32];
+            let u = [1.0 - w * w, (j as f32 + 0.5) / STEPS as f32];
             let wi = reflect(wo, facets.sample(wo, u));
             if wi.z > 0.0 {
-                sum += f64::from(interface.reflectance(half(wo, wi).1) * facets.lit(wo.z, wi.z));
+                sum += f64::from(2.0 * w * interface.reflectance(half(wo, wi).1) * facets.lit(wo.z, wi.z));
             }
         }
     }
@@ -111,8 +112,9 @@ fn bounded(interface: &Interface, facets: &Microfacets) -> [f32; NODES] {
     // grazing is a limit
     let at = |t: f64| integrated(interface, facets, (t / (NODES - 1) as f64).powi(2).max(1e-6));
     let nodes: [f64; NODES] = std::array::from_fn(|i| at(i as f64));
+    // half-way is not quite where most is missed
     let missed: [f64; NODES - 1] =
-        std::array::from_fn(|i| (at(i as f64 + 0.5) - 0.5 * (nodes[i] + nodes[i + 1])).max(0.0));
+        std::array::from_fn(|i| 1.25 * (at(i as f64 + 0.5) - 0.5 * (nodes[i] + nodes[i + 1])).max(0.0));
     std::array::from_fn(|i| {
         let beside = missed[i.saturating_sub(1)].max(missed[i.min(NODES - 2)]);
         (1.0 - nodes[i] - beside - MARGIN).max(0.0) as f32

@@ -60,7 +60,12 @@ impl Interface {
     /// R for incidence at cosine c > 0; 1 under total internal reflection.
     #[inline(always)]
     pub fn reflectance(&self, c: f32) -> f32 {
-        let Some(g) = self.refracted(c) else { return 1.0 };
+        self.refracted(c).map_or(1.0, |g| self.between(c, g))
+    }
+
+    /// R where g is known as well as c: near the critical angle g² has lost its digits.
+    #[inline(always)]
+    pub fn between(&self, c: f32, g: f32) -> f32 {
         let (s, p) = (c + g, self.eta2 * c + g);
         let (s, p) = (self.e / (s * s), self.e * ((self.eta2 + 1.0) * (c * c) - 1.0) / (p * p));
         0.5 * (s * s + p * p)

@@ -41,7 +41,7 @@ pub struct Plastic {
 }
 
 impl Plastic {
-    /// A base of albedo ρ under a coat of relative index `ior`.
+    /// A base of albedo ρ under a coat of relative index `ior` ≥ 1.
     pub fn new(reflectance: Rgb, ior: f64, rough: Option<Ggx>) -> Self {
         Self { coat: Coat::new(ior, rough.map(Microfacets::new)), base: Rgb::ZERO, out: Rgb::ZERO }
             .with_reflectance(reflectance)

@@ -62,8 +62,11 @@ impl RoughDielectric {
         let length = sum.length();
         let h = if sum.z > 0.0 { sum } else { -sum } / length;
         let (co, ci) = (wo.dot(h), -wi.dot(h));
-        let f = if co > 0.0 { self.interface.reflectance(co) } else { 1.0 };
-        if wi.z == 0.0 || ci <= 0.0 || f == 1.0 {
+        if wi.z == 0.0 || co <= 0.0 || ci <= 0.0 {
+            return None;
+        }
+        let f = self.interface.between(co, self.interface.eta * ci);
+        if f >= 1.0 {
             return None;
         }
         let jacobian = self.interface.eta2() * ci / (length * length);
