@@ -69,6 +69,11 @@ fn scenes_and_files_that_are_not_there_exit_with_3() {
     std::fs::create_dir(desk.path().join("folder.toml")).unwrap();
     std::fs::create_dir(desk.path().join("empty")).unwrap();
     std::fs::write(desk.path().join("file"), "no folder").unwrap();
+    let head = fredholm::scene::builtin::find("caustic").unwrap().source;
+    let sky = |file: &str| format!("{head}\n[[lights]]\ntype = \"environment\"\nfile = \"{file}\"\n");
+    std::fs::write(desk.path().join("no_sky.toml"), sky("none.exr")).unwrap();
+    std::fs::write(desk.path().join("text_sky.toml"), sky("text.png")).unwrap();
+    std::fs::write(desk.path().join("text.png"), "no picture").unwrap();
     for (line, said) in [
         ("cornel", "`cornel` is neither a built-in scene nor a .toml or .obj file"),
         ("info cornel", "did you mean `cornell`"),
@@ -76,6 +81,12 @@ fn scenes_and_files_that_are_not_there_exit_with_3() {
         ("series folder.toml", "folder.toml"),
         ("series none.toml", "--> none.toml"),
         ("render none.obj", "--> none.obj"),
+        ("info no_sky.toml", "cannot read `none.exr`: No such file"),
+        ("render no_sky.toml", "lights[0].file"),
+        ("info text_sky.toml", "cannot read `text.png`: "),
+        ("info caustic --set lights=[{type=\"sun\"}]", "`sun` is no type of light"),
+        ("info caustic --set materials.glass.ior=0.5", "ior 0.5 is outside [1, 10]"),
+        ("info caustic --set materials.floor={type=\"diffuse\",texture=\"none.png\"}", "materials.floor"),
         ("compare none none", "--> none"),
         ("compare empty empty", "--> empty/summary.json"),
         ("compare file file", "not valid JSON"),

@@ -277,11 +277,11 @@ fn commands_end_as_they_say() {
     furnace         a closed box where every surface glows and reflects half: T^k E = 0.5^k everywhere
     sphere          an integrating sphere lit by its own cap: every term from k = 1 on is constant
     shells          two concentric spheres: pointwise exact terms of a 2 by 2 operator, with occlusion
-    cornell-spheres the Cornell box with a mirror sphere and a glass sphere: caustics from k = 2 and 3 on
-    veach-mis       four glossy plates under spheres of equal power and unequal size: why techniques are combined
+    cornell-spheres a Cornell box with a mirror and a glass sphere: caustics from k = 2 and k = 3 on
+    veach-mis       glossy plates under lamps of equal power and unequal size: combined techniques
     veach-ajar      a room lit only through a door ajar: a long series, the lamp out of sight
     env-ggx         gold, copper and plastic under a sky and a point light: GGX at four widths
-    caustic         a glass sphere focuses a small lamp: easy from the light, fireflies from the eye
+    caustic         a glass sphere focuses a small lamp: easy from the light, hard from the eye
     glass-furnace   a glass ball in a sky of radiance 1: every pixel sums to 1, terms known
     mirror-corridor two parallel mirrors of 0.9: T^k E decays slowly
     sky-bowl        part of a sphere open to a sky of radiance 1: every term is constant

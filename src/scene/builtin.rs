@@ -35,12 +35,12 @@ pub const ALL: [Builtin; 13] = [
     },
     Builtin {
         name: "cornell-spheres",
-        summary: "the Cornell box with a mirror sphere and a glass sphere: caustics from k = 2 and 3 on",
+        summary: "a Cornell box with a mirror and a glass sphere: caustics from k = 2 and k = 3 on",
         source: include_str!("../../scenes/cornell-spheres.toml"),
     },
     Builtin {
         name: "veach-mis",
-        summary: "four glossy plates under spheres of equal power and unequal size: why techniques are combined",
+        summary: "glossy plates under lamps of equal power and unequal size: combined techniques",
         source: include_str!("../../scenes/veach-mis.toml"),
     },
     Builtin {
@@ -55,7 +55,7 @@ pub const ALL: [Builtin; 13] = [
     },
     Builtin {
         name: "caustic",
-        summary: "a glass sphere focuses a small lamp: easy from the light, fireflies from the eye",
+        summary: "a glass sphere focuses a small lamp: easy from the light, hard from the eye",
         source: include_str!("../../scenes/caustic.toml"),
     },
     Builtin {
