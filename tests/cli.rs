@@ -447,7 +447,7 @@ fn a_closed_pipe_is_no_crash() {
 #[test]
 fn help_fits_the_screen_and_says_how_k_counts() {
     let desk = Desk::new();
-    for command in ["", "tour", "series", "render", "radiosity", "compare", "info", "chapter"] {
+    for command in ["", "tour", "series", "render", "radiosity", "sweep", "compare", "info", "chapter"] {
         for flag in ["-h", "--help"] {
             let said = desk.ok(&format!("{command} {flag}"));
             for line in said.out.lines() {
@@ -474,6 +474,7 @@ fn help_fits_the_screen_and_says_how_k_counts() {
       render     The full path tracer alone
       radiosity  The matrix alone: form factors, terms, solve
       compare    Two results: verdict per term, z map
+      sweep      The terms for every value of one setting: cost beside gain
       info       Scenes, materials, lights, bounds on the norm of T
       chapter    Runs a chapter of the book
       help       Print this message or the help of the given subcommand(s)
@@ -487,6 +488,7 @@ fn help_fits_the_screen_and_says_how_k_counts() {
       fredholm series cornell --spp 64                each bounce, and their sum
       fredholm series box.toml --set materials.white.reflectance=[0.6,0.6,0.6]
       fredholm compare fredholm-out/cornell other     verdict per term
+      fredholm sweep cornell --over technique         one setting, several values: cost and gain
       fredholm info                                   the built-in scenes
       fredholm info cornell                           materials, lights, bounds
 

@@ -336,7 +336,13 @@ fn full_summary() -> Summary {
         total: estimate(1.8, 16),
     };
     let cost = Cost { paths: 10, rays: u64::MAX, non_finite: 0, seconds: 0.1 + 0.2 };
-    let series = Series { world: World::Terms, label: "prefix, mis".into(), functionals: vec![functional], cost };
+    let series = Series {
+        world: World::Terms,
+        label: "prefix, mis".into(),
+        functionals: vec![functional],
+        cost,
+        unseen: vec![],
+    };
     let verdict = Verdict {
         name: "T1: terms − radiosity".into(),
         effect: 1e-300,

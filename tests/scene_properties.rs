@@ -133,7 +133,9 @@ fn turned(d: &Description, turn: DQuat) -> Description {
     all.shapes.clear();
     for (shape, primitive) in d.primitives() {
         let geometry = match primitive {
-            Primitive::Triangle(p) => Geometry::Mesh { vertices: p.map(|p| turn * p).to_vec(), faces: vec![[0, 1, 2]], uvs: vec![] },
+            Primitive::Triangle(p) => {
+                Geometry::Mesh { vertices: p.map(|p| turn * p).to_vec(), faces: vec![[0, 1, 2]], uvs: vec![] }
+            }
             Primitive::Parallelogram { origin, edge_u, edge_v } => {
                 Geometry::Quad { origin: turn * origin, edge_u: turn * edge_u, edge_v: turn * edge_v }
             }

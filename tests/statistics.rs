@@ -46,7 +46,7 @@ fn simulated(rng: &mut Noise, design: Design, truth: impl Fn(usize, usize) -> f6
             total: measured(2.0),
         })
         .collect();
-    Series { world: World::Terms, label: "simulated".into(), functionals, cost: Cost::default() }
+    Series { world: World::Terms, label: "simulated".into(), functionals, cost: Cost::default(), unseen: vec![] }
 }
 
 fn null(_functional: usize, k: usize) -> f64 {

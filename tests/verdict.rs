@@ -29,7 +29,7 @@ fn functional(name: &str, cv: f64) -> Functional {
 
 fn series(cv: f64) -> Series {
     let functionals = vec![functional("image", cv), functional("region 0,0", 4.0 * cv)];
-    Series { world: World::Terms, label: "test".into(), functionals, cost: Cost::default() }
+    Series { world: World::Terms, label: "test".into(), functionals, cost: Cost::default(), unseen: vec![] }
 }
 
 fn path(cv: f64) -> Series {

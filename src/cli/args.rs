@@ -88,8 +88,8 @@ Example:
   fredholm sweep cornell --over technique --max-bounces 4 --size 64x64
   fredholm sweep cornell --over estimator --values prefix,single --equal-rays
 
-Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged over
-the pixels; 1/(V rays) is the efficiency: twice as efficient is half the rays for the same error.")]
+Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged
+over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for the same error.")]
     Sweep(Sweep),
     /// Scenes, materials, lights, bounds on the norm of T
     #[command(after_help = "Examples:
@@ -142,20 +142,24 @@ pub struct Run {
     /// Image size in pixels [default: the scene's; 192x192 for the tour]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
-    /// K: keep the terms k = 0..=K; k counts applications of T [default: 8; 4 to sweep over branching]
+    /// K: keep the terms k = 0..=K; k counts applications of T [default: 8]
+    ///
+    /// [default in a sweep over branching: 4]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=1000))]
     pub max_bounces: Option<u16>,
-    /// How the terms are estimated: single, prefix, branching, light, bidirectional
+    /// Estimator of the terms: single, prefix, branching, light, …
     ///
     /// single: each term from paths of its own; prefix: all terms from the prefixes of one path;
     /// branching: a tree, --branching children at every vertex; light: particles from the lights;
     /// bidirectional: walks from both ends, joined in every way. The tour runs the first two.
     #[arg(long, value_enum, default_value_t = EstimatorName::Prefix, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
     pub estimator: EstimatorName,
-    /// Children of every vertex under --estimator branching: N^k rays for term k
+    /// Children of every vertex of --estimator branching
+    ///
+    /// Term k takes N^k rays.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub branching: u32,
-    /// How the samples of a pixel lie: independent, sobol
+    /// How samples lie in a pixel: independent, sobol
     ///
     /// independent: they know nothing of each other; sobol: Owen-scrambled Sobol points,
     /// one scramble per replicate.
@@ -267,7 +271,7 @@ impl std::fmt::Display for Over {
 /// Arguments of `sweep`.
 #[derive(Clone, Debug, Args)]
 pub struct Sweep {
-    /// The setting: branching, spp, technique, sampling, estimator, points, roulette
+    /// branching, spp, technique, sampling, estimator, points or roulette
     #[arg(long, value_enum, value_name = "SETTING", hide_possible_values = true)]
     pub over: Over,
     /// Its values, with commas

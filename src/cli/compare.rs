@@ -20,6 +20,12 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
     let Some((x, y)) = pair(&a.1, &b.1) else {
         return Err(Failure::Input("error: one of the results holds no world\nhelp: render it again".into()));
     };
+    if let Err(why) = x.comparable(y) {
+        let help = "compare results that see the same paths: another --technique or --estimator";
+        return Err(Failure::Unsupported(format!(
+            "not supported: the two estimate different things; {why}\nhelp: {help}"
+        )));
+    }
     // what the mesh may matter, where one side is a matrix and the other is not
     let allowance = match (x.world, y.world) {
         (World::Radiosity, World::Radiosity) => vec![],

@@ -2,12 +2,13 @@
 
 use super::Failure;
 use super::args::WorldName;
+use fredholm::estimator::Technique;
 use fredholm::math::{Key, Purpose, Rng};
 use fredholm::operator::{SceneTransport, Transport};
-use fredholm::scene::{Scene, SurfaceSensor};
+use fredholm::scene::{Description, Scene, SurfaceSensor};
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::MatrixError;
-use fredholm::worlds::sampled::Estimator;
+use fredholm::worlds::{sampled::Estimator, unseen::unseen};
 
 /// The sums of all terms, pixels and replicates are held at once: better refused now than killed later.
 pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
@@ -43,6 +44,48 @@ pub fn tree_can_be_walked(estimator: Estimator, settings: &Settings, [w, h]: [u3
          help: choose fewer children, or a smaller --max-bounces, --spp or --size",
         settings.max_bounces
     )))
+}
+
+/// A matrix holds Lambertian surfaces of one colour that are lit by surfaces. Not asked for by name it is left out, with a
+/// word, where the scene has others.
+pub fn suits_a_matrix(description: &Description, worlds: &mut Vec<WorldName>, asked: bool) -> Result<(), Failure> {
+    let Err(why) = description.radiosity_suits() else { return Ok(()) };
+    if !worlds.contains(&WorldName::Radiosity) {
+        return Ok(());
+    }
+    if asked {
+        let help = "leave the radiosity world out: --worlds terms,path";
+        return Err(Failure::Usage(format!("error: no radiosity matrix can hold this scene: {why}\nhelp: {help}")));
+    }
+    worlds.retain(|w| *w != WorldName::Radiosity);
+    super::note(&format!("note: no radiosity: {why}"));
+    Ok(())
+}
+
+/// Refuses what would only be dark, and says what will be missing.
+pub fn light_is_seen(
+    scene: &Scene,
+    estimators: &[Estimator],
+    settings: &Settings,
+    worlds: &[WorldName],
+) -> Result<(), Failure> {
+    let walks: Vec<Option<Estimator>> =
+        estimators.iter().map(|&e| Some(e)).chain(worlds.contains(&WorldName::Path).then_some(None)).collect();
+    let from_eye = |e: &Option<Estimator>| !matches!(e, Some(Estimator::Light | Estimator::Bidirectional));
+    if settings.technique == Technique::Scatter && scene.lights.all_delta() && walks.iter().any(from_eye) {
+        return Err(Failure::Usage(
+            "error: no ray ever hits a point or a direction, and nothing else emits light here\n\
+             help: use --technique connect or mis"
+                .into(),
+        ));
+    }
+    for walk in walks {
+        for missing in unseen(scene, walk, settings.technique) {
+            let who = walk.map_or("the path tracer".into(), |e| e.to_string());
+            super::note(&format!("note: not supported by {who}, {}: {missing}", settings.technique));
+        }
+    }
+    Ok(())
 }
 
 /// A side of a primitive is at least one patch, and the matrix is dense. Where the radiosity was not asked for by name it is

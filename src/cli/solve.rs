@@ -121,7 +121,9 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         read_patches: run.read_patches,
     };
     let mut worlds: Vec<WorldName> = if run.worlds.is_empty() { default.worlds.to_vec() } else { run.worlds.clone() };
-    guard::fits_in_a_matrix(&scene, &mut worlds, !run.worlds.is_empty() || default.worlds.len() == 1)?;
+    let by_name = !run.worlds.is_empty() || default.worlds.len() == 1;
+    guard::suits_a_matrix(&description, &mut worlds, by_name)?;
+    guard::fits_in_a_matrix(&scene, &mut worlds, by_name)?;
     let estimators = match (worlds.contains(&WorldName::Terms), default.both_estimators, run.estimator) {
         (false, ..) => vec![],
         (_, true, _) => vec![Estimator::Single, Estimator::Prefix],
@@ -130,6 +132,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     for &estimator in &estimators {
         guard::tree_can_be_walked(estimator, &settings, description.camera.size)?;
     }
+    guard::light_is_seen(&scene, &estimators, &settings, &worlds)?;
     guard::fits_in_memory(&settings, description.camera.size)?;
     guard::light_is_lost(&scene, &settings, &worlds)?;
     let folder = output::folder(run.out.as_deref(), &description.name, &command, run.force)?;
@@ -257,7 +260,9 @@ fn verdicts(found: &Found) -> Vec<summary::Verdict> {
     let criterion = Criterion::default();
     let mut all = vec![];
     let mut judge = |name: &str, a: &Series, b: &Series, allowance: &[fredholm::terms::Functional]| {
-        all.extend(summary::verdicts(name, &compare(a, b, &criterion, allowance)));
+        if a.comparable(b).is_ok() {
+            all.extend(summary::verdicts(name, &compare(a, b, &criterion, allowance)));
+        }
     };
     let Some(terms) = found.terms.first().map(|t| &t.series) else { return all };
     if let Some(other) = found.terms.get(1) {

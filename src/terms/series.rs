@@ -80,9 +80,24 @@ pub struct Series {
     pub functionals: Vec<Functional>,
     /// Work done.
     pub cost: Cost,
+    /// Kinds of paths that this way of sampling cannot find in this scene; empty if it finds all light.
+    #[serde(default)]
+    pub unseen: Vec<String>,
 }
 
 impl Series {
+    /// Whether two results estimate the same: each finds the paths that the other finds.
+    ///
+    /// # Errors
+    /// What only one of them leaves out.
+    pub fn comparable(&self, other: &Self) -> Result<(), String> {
+        let only = |a: &Self, b: &Self| {
+            let missing: Vec<&str> = a.unseen.iter().filter(|p| !b.unseen.contains(p)).map(String::as_str).collect();
+            (!missing.is_empty()).then(|| format!("{} does not see {}", a.label, missing.join(" or ")))
+        };
+        only(self, other).or_else(|| only(other, self)).map_or(Ok(()), Err)
+    }
+
     /// The image means.
     pub fn image(&self) -> &Functional {
         &self.functionals[0]

@@ -11,6 +11,7 @@
 pub mod discrete;
 pub mod sampled;
 pub mod surface;
+pub mod unseen;
 
 use crate::estimator::{Plan, Roulette, Technique};
 use crate::math::{Key, Points};

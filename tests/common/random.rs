@@ -92,7 +92,11 @@ impl Item {
             Kind::Disk => Geometry::Disk { center: at, normal: turn * DVec3::Z, radius: size.x },
             Kind::Triangle => {
                 let corners = [DVec3::ZERO, DVec3::X * size.x, DVec3::Y * size.y];
-                Geometry::Mesh { vertices: corners.map(|c| at + turn * c).to_vec(), faces: vec![[0, 1, 2]], uvs: vec![] }
+                Geometry::Mesh {
+                    vertices: corners.map(|c| at + turn * c).to_vec(),
+                    faces: vec![[0, 1, 2]],
+                    uvs: vec![],
+                }
             }
         }
     }

@@ -180,6 +180,11 @@ impl Lights {
         self.lights.iter().any(|l| matches!(l, Light::Point { .. } | Light::Directional { .. }))
     }
 
+    /// Whether no light has an area.
+    pub fn all_delta(&self) -> bool {
+        self.lights.iter().all(|l| matches!(l, Light::Point { .. } | Light::Directional { .. }))
+    }
+
     /// The emitting primitive, if there is only one and nothing else emits.
     pub(crate) fn only(&self) -> Option<u32> {
         match self.lights.as_slice() {

@@ -1,0 +1,30 @@
+//! What a way of sampling cannot find in a scene: said in words, never silently dark.
+//!
+//! Two kinds of things have no area in ray space: lights that are a point or a direction, and the reflections of mirrors and
+//! glass. A path can be found from the eye (E … ), from the light (… L), or by linking two walks; a link needs
+//! a vertex on each side that is no delta vertex, a hit needs a light that has area. With S a delta vertex and D any other:
+//!
+//! | way | does not see |
+//! |---|---|
+//! | walks from the eye, `scatter` | paths to a point or a direction |
+//! | walks from the eye, with connections | such paths whose last vertex is S |
+//! | walks from the light | paths whose first vertex is S |
+//! | walks from both ends | paths to a point or a direction without two neighbours that can be linked |
+
+use super::sampled::Estimator;
+use crate::estimator::Technique;
+use crate::scene::Scene;
+
+/// The kinds of paths, of any term, that an estimator (`None` for the path tracer) cannot find in a scene; empty if it finds all.
+pub fn unseen(scene: &Scene, estimator: Option<Estimator>, technique: Technique) -> Vec<String> {
+    let (no_area, delta) = (scene.lights.any_delta(), scene.any_delta_surface());
+    let missing = match estimator {
+        Some(Estimator::Light) => delta.then_some("what the eye sees in mirrors or glass"),
+        Some(Estimator::Bidirectional) => {
+            (delta && no_area).then_some("light of a point or a direction between mirrors or glass at both ends")
+        }
+        _ if technique == Technique::Scatter => no_area.then_some("light of a point or a direction"),
+        _ => (delta && no_area).then_some("light of a point or a direction through mirrors or glass"),
+    };
+    missing.map(str::to_owned).into_iter().collect()
+}
