@@ -202,12 +202,15 @@ fn sampled_directions_stay_in_their_texel() {
         let (d, p) = env.sample(u);
         assert!(p > 0.0 && env.pdf(d) == p && env.radiance(d).min_element() > 0.0, "{u:?}: {d}");
     }
-    // a position at the edge of each texel of a coarse image, all azimuths and both poles
-    let coarse = Environment::new(&random_sky([24, 12], &mut noise), 77.7, 1.0);
-    for i in 0..1u32 << 22 {
-        let u = [i as f32 / 4_194_304.0, (i.wrapping_mul(2_654_435_761) >> 8) as f32 / 16_777_216.0];
-        let (d, p) = coarse.sample(u);
-        assert!(p > 0.0 && coarse.pdf(d) == p && coarse.radiance(d) != Vec3::ZERO, "{u:?}: {d}");
+    // a sun takes nearly all numbers, so some of them fall next to its edges: narrow columns, then low rows
+    for ([w, h], row) in [([8192, 16], 0), ([8192, 16], 7), ([8192, 16], 15), ([8, 8192], 4000), ([8, 8192], 8191)] {
+        let at = row * w + w / 3;
+        let env = Environment::new(&lat_long([w, h], |i| DVec3::splat(if i == at { 1e9 } else { 0.01 })), 77.7, 1.0);
+        let sun = env.sample([0.5, 0.5]).1;
+        for u in corners.into_iter().chain((0..1 << 19).map(|_| pair(&mut noise))) {
+            let (d, p) = env.sample(u);
+            assert!(env.pdf(d) == p && (p == sun) == (env.radiance(d).x == 1e9), "{w} × {h}, {u:?}: {d}");
+        }
     }
 }
 
@@ -257,7 +260,7 @@ fn a_quadratic_sky_lights_a_surface_in_closed_form() {
         let one = |(d, p): (Vec3, f32)| lit(d) / f64::from(p);
         let sampled = mean_of((0..1 << 20).map(|_| one(env.sample(pair(&mut noise)))));
         let what = format!("n·u = {cosine}");
-        account.assert_equivalent(&what, &sampled, DVec3::splat(radiance), DVec3::splat(0.01 * radiance));
+        account.assert_equivalent(&what, &sampled, DVec3::splat(radiance), DVec3::splat(0.02 * radiance));
     }
 }
 
@@ -294,7 +297,6 @@ fn mirror_balls_show_the_sky_around_them() {
     let blind = 2.0 * (6.0 / f64::from(size)).sqrt();
     let right = photo(upright);
     let (seen, all) = (error(&right, blind), error(&right, 0.0));
-    println!("rms {seen:.2e}, with the blind spot {all:.2e}");
     assert!(seen < 4e-3, "rms error {seen}");
     assert!(all < 2e-2, "rms error {all} with the blind spot");
     let flipped = photo(|x, y| DVec3::new(-x, y, (1.0 - x * x - y * y).sqrt()));

@@ -44,9 +44,9 @@ impl Discrete {
     /// ```
     /// use fredholm::math::distribution::Discrete;
     /// let d = Discrete::new(&[3.0, 0.0, 1.0]).unwrap();
-    /// assert_eq!(d.sample(0.75), (2, 0.0));
+    /// assert_eq!(d.sample(0.375), (0, 0.5));
+    /// assert_eq!(d.sample(0.75).0, 2);
     /// assert_eq!([0, 1, 2].map(|i| d.probability(i)), [0.75, 0.0, 0.25]);
-    /// # assert_eq!(d.sample(0.375), (0, 0.5));
     /// ```
     ///
     /// # Panics
