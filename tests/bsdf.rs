@@ -121,7 +121,7 @@ fn directions_have_the_density_they_claim() {
 }
 
 #[test]
-#[ignore = "a minute"]
+#[ignore = "minutes"]
 fn a_million_directions_have_the_density_they_claim() {
     densities(&mut common::open("a_million_directions_have_the_density_they_claim"), 1_000_000);
 }
@@ -233,7 +233,7 @@ fn weights_average_to_the_albedo() {
 }
 
 #[test]
-#[ignore = "a minute"]
+#[ignore = "minutes"]
 fn a_million_weights_average_to_the_albedo() {
     weights(&mut common::open("a_million_weights_average_to_the_albedo"), 1_000_000);
 }

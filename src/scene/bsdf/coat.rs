@@ -9,8 +9,8 @@
 //! | μ | cosine of the direction outside | arguments |
 //! | E | albedo of the coat alone; F(μ) if it is smooth | [`Coat::albedo`] |
 //! | T, T̄ | what enters, from one direction and from all | [`Coat::transmittance`], [`Coat::mean`] |
-//! | u | the numbers a visible normal is made of: there the integrand is smooth whatever the roughness | [`integrated`] |
-//! | t | √μ, in which the table of a rough coat is evenly spaced and linear between its nodes | [`NODES`] |
+//! | u | the numbers a visible normal is made of: there the integrand is smooth whatever the roughness | `integrated` |
+//! | t | √μ, in which the table of a rough coat is evenly spaced and linear between its nodes | `NODES` |
 //!
 //! A rough coat stores an upper bound of E: a node is raised by what the chord beside it misses half-way, and T̄ is that
 //! of the table itself. So nothing that is built with T gains energy, and reciprocity is exact.

@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | k_d, k_s | albedo of the base, and of the lobe at normal incidence; k_d + k_s ≤ 1 | [`Phong::new`] |
 //! | n | exponent | [`Phong::new`] |
-//! | α | angle between ω_i and the mirror direction of ω_o; f has no lobe beyond π/2 | [`Phong::lobe`] |
+//! | α | angle between ω_i and the mirror direction of ω_o; f has no lobe beyond π/2 | `lobe` |
 //! | p_s | probability of the lobe, k_s/(k_d + k_s) of the largest channels | [`Phong::sample`] |
 //!
 //! At oblique incidence a part of the lobe is below the surface; that part of the samples is lost, and the albedo is below

@@ -10,8 +10,8 @@
 //! | T, T̄ | what enters through the coat: 1 − F and 1 − F_out if it is smooth | [`super::coat`] |
 //! | ρ | albedo of the base | [`Plastic::new`] |
 //! | F_in | share of the light from the base that the coat sends back to it | [`Plastic::new`] |
-//! | β | T̄ρ/(η² (1 − ρ F_in)): share of what enters that comes out again; 1 if ρ is | [`Plastic::out`] |
-//! | p | probability of the coat, E/(E + Tβ) of the largest channel | [`Plastic::p_coat`] |
+//! | β | T̄ρ/(η² (1 − ρ F_in)): share of what enters that comes out again; 1 if ρ is | `out` |
+//! | p | probability of the coat, E/(E + Tβ) of the largest channel | `p_coat` |
 //!
 //! The factor 1/(1 − ρ F_in) sums the reflections between base and coat; 1/η² is the solid angle gained outside. The
 //! albedo is E(ω_o) + T(ω_o) β: with a white base exactly 1, and f is reciprocal because it is a product.

@@ -9,9 +9,9 @@
 //! | notation | meaning | place |
 //! |---|---|---|
 //! | η, F, p, e | as for smooth glass, at the micronormal | [`super::dielectric`] |
-//! | h | micronormal, on the side of ω_o | [`RoughDielectric::facet`] |
+//! | h | micronormal, on the side of ω_o | `facet` |
 //! | D, G, D_ωo | microfacets | [`super::ggx`] |
-//! | η² abs(ω_i·h)/abs(ω_o + η ω_i)² | dh/dω_i of a refraction | [`Facet::jacobian`] |
+//! | η² abs(ω_i·h)/abs(ω_o + η ω_i)² | dh/dω_i of a refraction | `jacobian` |
 //!
 //! Reference: Walter, Marschner, Li and Torrance, *Microfacet Models for Refraction through Rough Surfaces* (EGSR 2007),
 //! with the visible normals of [`super::ggx`]. Both quotients f |cos θ_i|/p are those of smooth glass times G/G₁(ω_o).
