@@ -154,6 +154,12 @@ pub struct Run {
     /// bidirectional: walks from both ends, joined in every way. The tour runs the first two.
     #[arg(long, value_enum, default_value_t = EstimatorName::Prefix, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
     pub estimator: EstimatorName,
+    /// With --estimator bidirectional: every strategy apart
+    ///
+    /// Writes strategies.png, strategies-alone.png and strategies.exr, and prints a table: for each term, what is
+    /// found with s vertices walked from the light, for s = 0 to k + 1.
+    #[arg(long)]
+    pub strategies: bool,
     /// Children of every vertex of --estimator branching
     ///
     /// Term k takes N^k rays.

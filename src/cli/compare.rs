@@ -38,7 +38,7 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
 
     let command = output::canonical_command();
     let folder = output::folder(args.out.as_deref(), "compare", &command, args.force)?;
-    let map = z_map(&a, &b, &folder, &command)?;
+    let map = z_map((&a, x.world), (&b, y.world), &folder, &command)?;
     let record = summary::Summary {
         command: command.clone(),
         scene: format!("{} | {}", a.1.scene, b.1.scene),
@@ -104,19 +104,31 @@ fn coarse(s: &summary::Summary) -> Option<&Series> {
     s.series.iter().filter(|s| s.world == World::Radiosity).nth(1)
 }
 
-/// The z map of the whole images, if both runs left theirs; the fractions beyond 2 and 3.
-fn z_map(a: &Result2, b: &Result2, folder: &Path, command: &str) -> Result<Option<(f64, f64)>, Failure> {
+/// The z map of the whole images of the worlds compared, if both runs left theirs; the fractions beyond 2 and 3.
+fn z_map(
+    (a, x): (&Result2, World),
+    (b, y): (&Result2, World),
+    folder: &Path,
+    command: &str,
+) -> Result<Option<(f64, f64)>, Failure> {
     let open = |r: &Result2| {
         let file = r.0.join("terms.exr");
         if file.exists() { exr::read(&file).map(Some) } else { Ok(None) }
     };
-    let (Some(x), Some(y)) = (open(a)?, open(b)?) else { return Ok(None) };
-    let whole =
-        |image: &exr::Image| Some((image.layer("")?.to_vec(), image.layer(write::beauty_error(image))?.to_vec()));
-    let (Some((m, s)), Some((n, t))) = (whole(&x), whole(&y)) else { return Ok(None) };
+    let (Some(image_a), Some(image_b)) = (open(a)?, open(b)?) else { return Ok(None) };
+    let whole = |image: &exr::Image, world: World| {
+        let names: &[&str] = match world {
+            World::Terms => &["Tall", "Tsum"],
+            World::Path => &["path"],
+            World::Radiosity => &["Rfull"],
+        };
+        let name = names.iter().find(|name| image.layer(name).is_some())?;
+        Some((image.layer(name)?.to_vec(), image.layer(&format!("{name}_se"))?.to_vec()))
+    };
+    let (Some((m, s)), Some((n, t))) = (whole(&image_a, x), whole(&image_b, y)) else { return Ok(None) };
     let z = write::z_values((&m, &s), (&n, &t));
     let caption = Caption { command: command.to_string(), seed: a.1.seed, scene: a.1.scene.clone() };
-    let map = zmap::draw("z of the whole image: A − B", x.width, x.height, &z, &caption)?;
+    let map = zmap::draw("z of the whole image: A − B", image_a.width, image_a.height, &z, &caption)?;
     map.picture.write(&folder.join("z.png"))?;
     Ok(Some((map.beyond_2, map.beyond_3)))
 }

@@ -14,6 +14,7 @@ mod info;
 mod output;
 mod progress;
 mod solve;
+mod strategies;
 mod sweep;
 mod write;
 

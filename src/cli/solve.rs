@@ -2,7 +2,7 @@
 
 use super::args::{EstimatorName, Run, WorldName};
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, facts, guard, output, write};
+use super::{Ending, Failure, facts, guard, output, strategies, write};
 use fredholm::estimator::Roulette;
 use fredholm::math::Points;
 use fredholm::report::{summary, table};
@@ -12,6 +12,7 @@ use fredholm::stats::{Criterion, compare, discretisation};
 use fredholm::terms::Series;
 use fredholm::terms::functional::Replicates;
 use fredholm::worlds::discrete::{self, Discrete, MatrixError};
+use fredholm::worlds::pyramid::{self, Strategy};
 use fredholm::worlds::sampled::{self, Estimator, Sampled};
 use fredholm::worlds::{Settings, Unobserved, surface};
 use std::path::PathBuf;
@@ -34,6 +35,8 @@ pub struct Found {
     pub radiosity: Option<Discrete>,
     /// Three meshes, coarse to fine, for the order of convergence: patches and image means.
     pub orders: Vec<Series>,
+    /// Every strategy of the bidirectional estimator, where they were asked for.
+    pub strategies: Vec<Strategy>,
     /// Surface norms by estimator.
     pub surface: Vec<(Estimator, Replicates)>,
     /// Spectral radius of ρ²F/(1−q), where the path tracer's roulette is constant and the matrix is known.
@@ -132,6 +135,10 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     for &estimator in &estimators {
         guard::tree_can_be_walked(estimator, &settings, description.camera.size)?;
     }
+    if run.strategies && estimators != [Estimator::Bidirectional] {
+        let help = "add --estimator bidirectional";
+        return Err(Failure::Usage(format!("error: only the bidirectional estimator has strategies\nhelp: {help}")));
+    }
     guard::light_is_seen(&scene, &estimators, &settings, &worlds)?;
     guard::fits_in_memory(&settings, description.camera.size)?;
     guard::light_is_lost(&scene, &settings, &worlds)?;
@@ -155,6 +162,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         radiosity: None,
         orders: vec![],
         surface: vec![],
+        strategies: vec![],
         second_moment: None,
         verdicts: vec![],
     };
@@ -165,6 +173,9 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
             let result = sampled::terms(&found.scene, estimator, &found.settings, &progress, stop);
             found.terms.insert(0, result);
         }
+    }
+    if run.strategies && !stopped() {
+        found.strategies = pyramid::strategies(&found.scene, &found.settings, &progress, stop);
     }
     if worlds.contains(&WorldName::Path) && !stopped() {
         found.path = Some(sampled::path(&found.scene, &found.settings, &progress, stop));
@@ -296,6 +307,9 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     let mut blocks = vec![head];
     let world = |s: &Sampled, rays: &[u64]| table::series(&s.series.label, s.series.image(), rays);
     blocks.extend(found.terms.iter().map(|t| world(t, &t.rays)));
+    if !found.strategies.is_empty() {
+        blocks.push(strategies::text(&found.strategies));
+    }
     blocks.extend(found.path.iter().map(|p| world(p, &[])));
     blocks.extend(found.radiosity.iter().map(|r| world(&r.fine, &[])));
     let mut lines: Vec<String> = found.radiosity.iter().map(|r| facts::matrix_facts(r, verbose)).collect();

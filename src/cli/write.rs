@@ -1,7 +1,7 @@
 //! What a run leaves behind: `terms.exr`, pictures, plots, `summary.json`, `index.html`.
 
 use super::solve::Found;
-use super::{Failure, output};
+use super::{Failure, output, strategies};
 use fredholm::report::decay::{Decay, Rate, independent_ratios};
 use fredholm::report::html::{Page, Plate};
 use fredholm::report::plot::{Curve, Look, Point};
@@ -54,6 +54,10 @@ pub fn all(found: &Found) -> Result<summary::Summary, Failure> {
     let size = found.description.camera.size;
     write_exr(found, &mut out, size)?;
     write_pictures(found, &mut out, size, &caption)?;
+    if !found.strategies.is_empty() {
+        out.names.extend(strategies::FILES.map(str::to_owned));
+        strategies::write(&out.folder, &found.strategies, size.map(|s| s as usize), &caption, &attributes(found))?;
+    }
     write_plots(found, &mut out, &caption)?;
     out.names.push("index.html".into());
     out.names.push("summary.json".into());
@@ -81,12 +85,6 @@ impl Files {
     fn has(&self, name: &str) -> bool {
         self.names.iter().any(|n| n == name)
     }
-}
-
-/// The layer that holds the error of the unnamed layer: the path tracer's, else that of the whole series or matrix.
-pub fn beauty_error(image: &exr::Image) -> &'static str {
-    let has = |name: &str| image.layer(name).is_some();
-    ["path_se", "Tall_se", "Tsum_se"].into_iter().find(|name| has(name)).unwrap_or("Rfull_se")
 }
 
 fn write_exr(found: &Found, out: &mut Files, size: [u32; 2]) -> Result<(), Failure> {
@@ -122,16 +120,20 @@ fn write_exr(found: &Found, out: &mut Files, size: [u32; 2]) -> Result<(), Failu
     if layers.is_empty() {
         return Ok(());
     }
-    let attributes = [
+    let layers: Vec<exr::Layer> = layers.iter().map(|(name, pixels)| exr::Layer { name, pixels }).collect();
+    exr::write(&out.add("terms.exr"), size[0] as usize, size[1] as usize, &layers, &attributes(found))?;
+    Ok(())
+}
+
+/// What an EXR says of how it was made; nothing that differs between two equal runs.
+fn attributes(found: &Found) -> [(&'static str, String); 5] {
+    [
         ("fredholm.command", found.command.clone()),
         ("fredholm.seed", found.settings.seed.to_string()),
         ("fredholm.spp", spp(found).to_string()),
         ("fredholm.scene_hash", found.hash.clone()),
         ("fredholm.version", env!("CARGO_PKG_VERSION").to_string()),
-    ];
-    let layers: Vec<exr::Layer> = layers.iter().map(|(name, pixels)| exr::Layer { name, pixels }).collect();
-    exr::write(&out.add("terms.exr"), size[0] as usize, size[1] as usize, &layers, &attributes)?;
-    Ok(())
+    ]
 }
 
 /// Samples per pixel that every world has: fewer than asked for when interrupted.

@@ -132,28 +132,21 @@ impl Bidirectional {
         }
     }
 
-    /// A batch, with each find put into the slot that `slot` names.
+    /// Everything that a batch finds, with its sample; the rays of each term.
     fn batch<T: Adjoint>(
         &self,
         t: &T,
         sensor: &impl Sensor<T>,
         batch: &Batch,
-        sink: &mut impl TermSink,
-        slot: impl Fn(&Found) -> usize,
-        weigh: impl Fn(&Found) -> f32,
-    ) {
-        let mut value = Columns::new(1);
-        let mut count = vec![0; self.0.max_bounces + 1];
+        mut found: impl FnMut(Found, u32),
+    ) -> Vec<usize> {
+        let mut rays = vec![0; self.0.max_bounces + 1];
         for sample in batch.samples.clone() {
             for pixel in batch.pixels.clone() {
-                let found = |f: Found| {
-                    value.set(0, f.value * weigh(&f));
-                    sink.add(slot(&f), &[f.pixel], &[sample], &value);
-                };
-                self.find(t, sensor, (batch.key, pixel, sample), found, |k| count[k] += 1);
+                self.find(t, sensor, (batch.key, pixel, sample), |f| found(f, sample), |k| rays[k] += 1);
             }
         }
-        count.iter().enumerate().for_each(|(k, &n)| sink.rays(k, n));
+        rays
     }
 }
 
@@ -174,26 +167,32 @@ impl<T: Adjoint> TermEstimator<T> for Bidirectional {
         paths: &mut Paths<T::Wave>,
         sink: &mut impl TermSink,
     ) {
-        self.batch(t, sensor, batch, sink, |f| f.k, |f| f.weight);
+        let mut value = Columns::new(1);
+        let rays = self.batch(t, sensor, batch, |f, sample| {
+            value.set(0, f.value * f.weight);
+            sink.add(f.k, &[f.pixel], &[sample], &value);
+        });
+        rays.iter().enumerate().for_each(|(k, &n)| sink.rays(k, n));
         SingleTerm(self.0.clone()).tail(t, sensor, batch, paths, sink);
     }
 }
 
-/// The strategies of the bidirectional estimator kept apart: slot (k, s) holds w_s times what strategy s found of term k, so
-/// that the slots of a term add up to it; or, unweighted, what the strategy would give alone.
+/// The strategies of the bidirectional estimator kept apart, along the same walks. Slot (k, s) holds w_s times what strategy
+/// s found of term k, so that the slots of a term add up to it; behind all of these the same without weights: what the
+/// strategy would give alone.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pyramid {
-    /// Terms and heuristic.
-    pub plan: Plan,
-    /// Whether values carry their weights.
-    pub weighted: bool,
-}
+pub struct Pyramid(pub Plan);
 
 impl Pyramid {
-    /// The slot of strategy s of term k.
+    /// The slot of strategy s of term k, weighted.
     pub fn slot(k: usize, s: usize) -> usize {
         // terms before k have 2 + 3 + … + (k + 1) strategies
         k * (k + 3) / 2 + s
+    }
+
+    /// Number of strategies of all terms k ≤ K; slot i weighted is slot `len + i` alone.
+    pub fn len(max_bounces: usize) -> usize {
+        Self::slot(max_bounces + 1, 0)
     }
 
     /// Every (k, s), in the order of the slots.
@@ -204,7 +203,7 @@ impl Pyramid {
 
 impl<T: Adjoint> TermEstimator<T> for Pyramid {
     fn slots(&self) -> usize {
-        Self::slot(self.plan.max_bounces + 1, 0)
+        2 * Self::len(self.0.max_bounces)
     }
 
     fn splats(&self) -> bool {
@@ -212,21 +211,18 @@ impl<T: Adjoint> TermEstimator<T> for Pyramid {
     }
 
     fn sample(&self, t: &T, sensor: &impl Sensor<T>, batch: &Batch, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
-        let weigh = |f: &Found| if self.weighted { f.weight } else { 1.0 };
-        // rays of a strategy are not told apart
-        let mut quiet = Quiet(sink);
-        Bidirectional(self.plan.clone()).batch(t, sensor, batch, &mut quiet, |f| Self::slot(f.k, f.s), weigh);
+        let behind = Self::len(self.0.max_bounces);
+        Bidirectional(self.0.clone()).batch(t, sensor, batch, |f, sample| {
+            let slot = Self::slot(f.k, f.s);
+            for (slot, value) in [(slot, f.value * f.weight), (slot + behind, f.value)] {
+                sink.add(slot, &[f.pixel], &[sample], &one(value));
+            }
+        });
     }
 }
 
-/// A sink that counts every ray in slot 0.
-struct Quiet<'a, S>(&'a mut S);
-
-impl<S: TermSink> TermSink for Quiet<'_, S> {
-    fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
-        self.0.add(slot, pixel, sample, value);
-    }
-    fn rays(&mut self, _: usize, rays: usize) {
-        self.0.rays(0, rays);
-    }
+fn one(value: Rgb) -> Columns {
+    let mut column = Columns::new(1);
+    column.set(0, value);
+    column
 }

@@ -27,6 +27,7 @@ mod null_as_nan;
 mod panel;
 pub mod picture;
 pub mod plot;
+pub mod pyramid;
 mod rate;
 pub mod sheet;
 pub mod summary;

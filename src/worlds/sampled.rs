@@ -115,7 +115,7 @@ pub fn path(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &
 }
 
 /// The usual amount, from the stream of that name.
-fn amount(settings: &Settings, stream: &str) -> Amount {
+pub(super) fn amount(settings: &Settings, stream: &str) -> Amount {
     let amount = Amount::new(settings.spp, settings.key(stream, 1));
     Amount { key: settings.key(stream, amount.replicates), ..amount }
 }

@@ -1,0 +1,79 @@
+//! `--strategies`: the pyramid of the bidirectional estimator, as pictures, layers and a table.
+
+use super::Failure;
+use fredholm::report::pyramid::{Stone, draw, name};
+use fredholm::report::typeset::Caption;
+use fredholm::report::{exr, table};
+use fredholm::worlds::pyramid::Strategy;
+use std::path::Path;
+
+/// Names of the files.
+pub const FILES: [&str; 3] = ["strategies.png", "strategies-alone.png", "strategies.exr"];
+
+/// Writes [`FILES`]; layers `KkSs` are weighted, `KkSs_alone` are not.
+pub fn write(
+    folder: &Path,
+    all: &[Strategy],
+    [w, h]: [usize; 2],
+    caption: &Caption,
+    attributes: &[(&str, String)],
+) -> Result<(), Failure> {
+    let total = |k: usize| all.iter().filter(|s| s.k == k).map(|s| table::average(&s.means[0]).0).sum::<f64>();
+    let share = |s: &Strategy| {
+        let (mine, all) = (table::average(&s.means[0]).0, total(s.k));
+        if all > 0.0 { format!("{:.1} % of the term", 100.0 * mine / all) } else { "nothing".into() }
+    };
+    let alone = |s: &Strategy| format!("variance {}", table::significant(s.variances[1], 2));
+    let stones: Vec<Stone> =
+        all.iter().map(|s| Stone { k: s.k, s: s.s, pixels: &s.weighted.mean, note: share(s) }).collect();
+    let title = "What each strategy adds to TᵏE, weighted: every row sums to its term";
+    draw(title, w, h, &stones, true, caption)?.write(&folder.join(FILES[0]))?;
+    let stones: Vec<Stone> =
+        all.iter().map(|s| Stone { k: s.k, s: s.s, pixels: &s.alone.mean, note: alone(s) }).collect();
+    let title = "What each strategy finds of TᵏE alone, unweighted";
+    draw(title, w, h, &stones, false, caption)?.write(&folder.join(FILES[1]))?;
+    let names: Vec<[String; 2]> =
+        all.iter().map(|s| ["", "_alone"].map(|end| format!("K{:02}S{:02}{end}", s.k, s.s))).collect();
+    let layers: Vec<exr::Layer> = all
+        .iter()
+        .zip(&names)
+        .flat_map(|(s, [a, b])| {
+            [exr::Layer { name: a, pixels: &s.weighted.mean }, exr::Layer { name: b, pixels: &s.alone.mean }]
+        })
+        .collect();
+    exr::write(&folder.join(FILES[2]), w, h, &layers, attributes)?;
+    Ok(())
+}
+
+/// A row for every strategy: what it adds, what it would give alone, and the noise of both.
+pub fn text(all: &[Strategy]) -> String {
+    let head = ["k", "strategy", "weighted", "± 95 %", "alone", "± 95 %", "variance weighted", "alone"];
+    let mut rows = vec![head.map(str::to_owned)];
+    for s in all {
+        let [(mean, error), (alone, alone_error)] = [0, 1].map(|i| table::average(&s.means[i]));
+        let number = |x: f64| table::significant(x, 4);
+        let short = |x: f64| table::significant(x, 2);
+        rows.push([
+            s.k.to_string(),
+            name(s.k, s.s),
+            number(mean),
+            short(1.96 * error),
+            number(alone),
+            short(1.96 * alone_error),
+            short(s.variances[0]),
+            short(s.variances[1]),
+        ]);
+    }
+    let width: Vec<usize> =
+        (0..head.len()).map(|c| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0)).collect();
+    let line = |r: &[String; 8]| {
+        let cell = |(c, text): (usize, &String)| {
+            if c == 1 { format!("{text:<w$}", w = width[c]) } else { format!("{text:>w$}", w = width[c]) }
+        };
+        r.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    format!(
+        "strategies: s vertices walked from the light, k + 1 − s from the eye\n{}",
+        rows.iter().map(line).collect::<Vec<_>>().join("\n")
+    )
+}

@@ -1,0 +1,61 @@
+//! The strategies of the bidirectional estimator, one by one: what each finds of each term, with its weight and without.
+//!
+//! `T^k E = Σ_s (w_s-weighted strategy s)`: the weighted images of a row add up to the term, to rounding, because the same
+//! walks are walked as by the estimator itself.
+
+use super::{Observer, Settings, sampled::Estimator, sampled::amount};
+use crate::estimator::Pyramid;
+use crate::estimator::render::{Amount, Watch, render};
+use crate::operator::SceneTransport;
+use crate::scene::Scene;
+use crate::terms::functional::image_replicates;
+use crate::terms::{Estimate, TermImage, variance};
+use std::sync::atomic::AtomicBool;
+
+/// One strategy of one term.
+#[derive(Clone, Debug)]
+pub struct Strategy {
+    /// The term.
+    pub k: usize,
+    /// Vertices walked from the light; the other k + 1 − s are walked from the eye.
+    pub s: usize,
+    /// What it adds to the term.
+    pub weighted: TermImage,
+    /// What it finds, unweighted: unbiased for what it can see at all.
+    pub alone: TermImage,
+    /// Image means of both.
+    pub means: [Estimate; 2],
+    /// Variances of one sample of both, averaged over pixels and channels.
+    pub variances: [f64; 2],
+}
+
+/// Replicates: enough for an error, few enough for the many images.
+const REPLICATES: u32 = 4;
+
+/// Every strategy of every term k ≤ K.
+pub fn strategies(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &AtomicBool) -> Vec<Strategy> {
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let usual = amount(settings, &Estimator::Bidirectional.to_string());
+    let amount = Amount { replicates: settings.spp.min(REPLICATES) as usize, ..usual };
+    let [w, h] = scene.camera.size;
+    observer.begin("strategies", u64::from(w) * u64::from(h) * u64::from(settings.spp));
+    let film = render(&t, &scene.camera, &Pyramid(settings.plan()), amount, &mut Advance(observer), stop);
+    let (replicates, spp) = (image_replicates(&film), f64::from(film.least_samples()));
+    let variances = variance::snapshot(&film).slots;
+    let behind = Pyramid::len(settings.max_bounces);
+    let strategy = |(k, s)| {
+        let slots = [Pyramid::slot(k, s), behind + Pyramid::slot(k, s)];
+        let [weighted, alone] = slots.map(|i| TermImage::of(&film, i..i + 1));
+        let means = slots.map(|i| replicates.estimate(i..i + 1));
+        Strategy { k, s, weighted, alone, means, variances: slots.map(|i| variances[i].value * spp) }
+    };
+    Pyramid::strategies(settings.max_bounces).map(strategy).collect()
+}
+
+struct Advance<'a>(&'a dyn Observer);
+
+impl Watch for Advance<'_> {
+    fn paths(&self, paths: u64) {
+        self.0.advance(paths);
+    }
+}
