@@ -133,9 +133,11 @@ pub struct Run {
     /// Built-in scene, .toml, or .obj
     #[arg(value_name = "SCENE", default_value = "cornell")]
     pub scene: String,
-    /// Samples per pixel
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
-    pub spp: u32,
+    /// Samples per pixel [default: 256]
+    ///
+    /// [default in a sweep over branching: 32]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub spp: Option<u32>,
     /// Seed: same seed, same bits, for any number of threads
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,

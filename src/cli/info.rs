@@ -2,7 +2,9 @@
 
 use super::{Ending, Failure, args};
 use fredholm::report::table;
-use fredholm::scene::description::{Description, Geometry, Sides};
+use fredholm::scene::description::{
+    BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
+};
 use fredholm::scene::{Scene, SurfaceSensor, builtin, load};
 use serde_json::json;
 
@@ -56,10 +58,7 @@ fn people(d: &Description, scene: &Scene) -> String {
     out += "\nmaterials\n";
     for m in &d.materials {
         let sides = if m.sides == Sides::Both { "both sides" } else { "front only" };
-        let what = match m.lambertian() {
-            Some(rho) => format!("diffuse, reflectance {}", rgb(rho)),
-            None => m.bsdf.kind().to_owned(),
-        };
+        let what = surface(&m.bsdf);
         out += &format!("  {:16} {what}, {sides}\n", m.name);
     }
     out += "\nlights\n";
@@ -74,14 +73,27 @@ fn people(d: &Description, scene: &Scene) -> String {
             rgb(power)
         );
     }
+    d.lights.iter().for_each(|l| out += &format!("  {}\n", light(l)));
     let rho = scene.max_albedo();
     out += &format!("\noperator\n  surfaces that reflect or emit: {:.4} m²\n", SurfaceSensor::new(scene).area);
     out += &format!(
         "  ‖T‖ ≤ max albedo = ({:.4}, {:.4}, {:.4}), in every Lp norm of the throughput measure\n",
         rho.x, rho.y, rho.z
     );
+    if scene.any_delta_surface() {
+        out += "  mirrors or glass: T is not compact, and no connection finds what they show\n";
+    }
+    if d.materials.iter().any(|m| matches!(m.bsdf, BsdfDescription::Dielectric { .. })) {
+        out += "  glass: the norm is that of L/η²; radiance itself grows by η² on the way in, and ‖T‖∞ can exceed 1\n";
+    }
+    if scene.has_environment() {
+        out += "  T is not closed: a ray that leaves the scene meets the sky, and the light it brings is E\n";
+    }
     let g = f64::from(rho.max_element());
-    if g < 1.0 {
+    if scene.has_environment() || scene.lights.any_delta() {
+        out +=
+            "  E is not all on surfaces: ‖L − S_K‖₁ ≤ ‖T‖₁/(1 − ‖T‖₁) · ‖T^K E‖₁ holds from K = 1 on, where ‖T‖₁ < 1\n";
+    } else if g < 1.0 {
         let bounces = (0.01f64 * (1.0 - g)).ln() / g.ln() - 1.0;
         out += &format!(
             "  guaranteed: ‖L − S_K‖₁ ≤ {g:.4}^(K+1)/{:.4} · ‖E‖₁; below 1 % of ‖E‖₁ from K = {:.0}\n",
@@ -97,6 +109,65 @@ fn people(d: &Description, scene: &Scene) -> String {
         out += &format!("  {}\n  source: {}\n", terms.join(", "), e.source);
     }
     out
+}
+
+/// A material in words.
+fn surface(bsdf: &BsdfDescription) -> String {
+    let rgb = |v: &glam::DVec3| format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z);
+    let colour = |c: &Colour| match c {
+        Colour::Uniform(v) => rgb(v),
+        Colour::Texture(image) => format!("image {}×{}", image.size[0], image.size[1]),
+    };
+    let rough = |r: &Option<Ggx>| match r {
+        None => "smooth".to_owned(),
+        Some(Ggx { alpha, masking: Masking::HeightCorrelated }) => format!("GGX α {alpha}"),
+        Some(Ggx { alpha, masking: Masking::Separable }) => format!("GGX α {alpha}, separable masking"),
+    };
+    let kind = bsdf.kind();
+    match bsdf {
+        BsdfDescription::Diffuse { reflectance } => format!("{kind}, reflectance {}", colour(reflectance)),
+        BsdfDescription::Mirror { reflectance } => format!("{kind}, reflectance {}", rgb(reflectance)),
+        BsdfDescription::Conductor { metal: Metal::Fresnel { eta, k }, rough: r } => {
+            format!("{kind}, η {}, k {}, {}", rgb(eta), rgb(k), rough(r))
+        }
+        BsdfDescription::Conductor { metal: Metal::Reflectance(f), rough: r } => {
+            format!("{kind}, reflectance {}, {}", rgb(f), rough(r))
+        }
+        BsdfDescription::Dielectric { ior, ior_outside, choice, rough: r } => {
+            let choice = match choice {
+                Choice::Fresnel => "chosen by Fresnel".to_owned(),
+                Choice::Constant(p) => format!("reflected with probability {p}"),
+            };
+            format!("{kind}, index {ior} in {ior_outside}, {choice}, {}", rough(r))
+        }
+        BsdfDescription::Plastic { reflectance, ior, rough: r } => {
+            format!("{kind}, reflectance {}, index {ior}, {}", colour(reflectance), rough(r))
+        }
+        BsdfDescription::Phong { reflectance, specular, exponent } => {
+            format!("{kind}, reflectance {}, specular {}, exponent {exponent}", colour(reflectance), rgb(specular))
+        }
+    }
+}
+
+/// A light without a surface in words.
+fn light(light: &LightDescription) -> String {
+    let rgb = |v: &glam::DVec3| format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z);
+    match light {
+        LightDescription::Point { position, intensity } => {
+            format!("point at {}, intensity {} W/sr", rgb(position), rgb(intensity))
+        }
+        LightDescription::Directional { direction, irradiance } => {
+            format!("directional along {}, irradiance {} W/m²", rgb(direction), rgb(irradiance))
+        }
+        LightDescription::Environment { sky, rotate, scale } => match sky {
+            Sky::Constant(radiance) => format!("environment, radiance {}", rgb(&(*radiance * *scale))),
+            Sky::LatLong(image) | Sky::MirrorBall(image) => {
+                let what = if matches!(sky, Sky::LatLong(_)) { "latitude–longitude" } else { "mirror ball" };
+                let [w, h] = image.size;
+                format!("environment, {what} image {w}×{h}, rotated {rotate}°, times {scale}")
+            }
+        },
+    }
 }
 
 fn counted(n: usize, what: &str) -> String {

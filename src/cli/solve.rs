@@ -112,7 +112,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let fallback = default.roulette.unwrap_or(Roulette::Albedo { from: 2 });
     let roulette = run.roulette.clone();
     let settings = Settings {
-        spp: run.spp,
+        spp: run.spp.unwrap_or(256),
         seed: run.seed,
         points: run.points,
         max_bounces,

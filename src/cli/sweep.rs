@@ -45,6 +45,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     for case in &cases {
         guard::tree_can_be_walked(case.estimator, &case.settings, description.camera.size)?;
         guard::fits_in_memory(&case.settings, description.camera.size)?;
+        guard::light_is_seen(&scene, &[case.estimator], &case.settings, &[])?;
         guard::light_is_lost(&scene, &case.settings, &[WorldName::Terms])?;
     }
     let folder = output::folder(run.out.as_deref(), &format!("{}-{over}", description.name), &command, run.force)?;
@@ -82,7 +83,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         scene: description.name.clone(),
         scene_hash: solve::scene_hash(&loaded.canonical),
         seed: run.seed,
-        spp: run.spp.into(),
+        spp: cases[0].settings.spp.into(),
         max_bounces: cases[0].settings.max_bounces,
         threads: rayon::current_num_threads(),
         width: description.camera.size[0] as usize,
@@ -133,6 +134,7 @@ fn refuse_what_has_no_part(args: &args::Sweep) -> Result<(), Failure> {
         ("--patches", run.patches.is_some()),
         ("--read-patches", run.read_patches),
         ("--orders", run.orders),
+        ("--strategies", run.strategies),
     ];
     if let Some((name, _)) = given.iter().find(|g| g.1) {
         return Err(usage(&format!("{name} has no part in a sweep, which renders the terms"), "leave it out"));
@@ -153,7 +155,7 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
     let max_bounces = usize::from(run.max_bounces.unwrap_or(if over == Over::Branching { 4 } else { 8 }));
     let after = Roulette::Albedo { from: 2 }.after(max_bounces);
     let common = Settings {
-        spp: run.spp,
+        spp: run.spp.unwrap_or(if over == Over::Branching { 32 } else { 256 }),
         seed: run.seed,
         points: run.points,
         max_bounces,
@@ -165,9 +167,9 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
     let usual = match over {
         Over::Branching => "1,2,3,4",
         Over::Spp => "16,64,256",
-        Over::Technique => "scatter,connect,mis",
+        Over::Technique => "scatter,connect,mis,mis-power",
         Over::Sampling => "uniform,cosine,bsdf",
-        Over::Estimator => "prefix,single,branching",
+        Over::Estimator => "prefix,single,branching,light,bidirectional",
         Over::Points => "independent,sobol",
         Over::Roulette => "none,lecture,albedo",
     };
@@ -183,7 +185,7 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
                 Over::Roulette => settings.roulette = value.parse()?,
                 Over::Estimator => {
                     let name = <args::EstimatorName as clap::ValueEnum>::from_str(&value, false);
-                    let wrong = |_| format!("`{value}` is none of prefix, single, branching");
+                    let wrong = |_| format!("`{value}` is none of prefix, single, branching, light, bidirectional");
                     estimator = solve::estimator(name.map_err(wrong)?, run.branching);
                 }
             }
