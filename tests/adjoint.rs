@@ -52,9 +52,8 @@ fn an_importance_walked_back_meets_the_light() {
     }
 }
 
-fn compare(name: &str, t: &MatrixWalk, n: u32, estimator: &impl TermEstimator<MatrixWalk>, spp: u32, power: f64) {
-    let mut jury = Jury::open(name);
-    let key = Key::new(jury.seed(), name);
+fn compare(mut jury: Jury, t: &MatrixWalk, n: u32, estimator: &impl TermEstimator<MatrixWalk>, spp: u32, power: f64) {
+    let key = Key::new(jury.seed(), "adjoint");
     let amount = Amount { spp, replicates: 256, key };
     let film = render(t, &Rows(n), estimator, amount, &mut Unwatched, &AtomicBool::new(false));
     let exact = t.powers(200);
@@ -75,13 +74,20 @@ fn plan(technique: Technique) -> Plan {
 
 #[test]
 fn light_tracing_matches_matrix_powers() {
-    compare("light_tracing_matches_matrix_powers", &matrix(6, 5), 6, &LightTracer(plan(Technique::Mis)), 1 << 21, 0.5);
+    compare(
+        Jury::open("light_tracing_matches_matrix_powers"),
+        &matrix(6, 5),
+        6,
+        &LightTracer(plan(Technique::Mis)),
+        1 << 21,
+        0.5,
+    );
 }
 
 #[test]
 fn bidirectional_matches_matrix_powers() {
     compare(
-        "bidirectional_matches_matrix_powers",
+        Jury::open("bidirectional_matches_matrix_powers"),
         &matrix(6, 5),
         6,
         &Bidirectional(plan(Technique::Mis)),

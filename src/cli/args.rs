@@ -149,7 +149,7 @@ pub struct Run {
     /// [default in a sweep over branching: 4]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=1000))]
     pub max_bounces: Option<u16>,
-    /// Estimator of the terms: single, prefix, branching, light, …
+    /// Estimator of the terms: prefix, single, light, …
     ///
     /// single: each term from paths of its own; prefix: all terms from the prefixes of one path;
     /// branching: a tree, --branching children at every vertex; light: particles from the lights;
@@ -158,9 +158,9 @@ pub struct Run {
     pub estimator: EstimatorName,
     /// With --estimator bidirectional: every strategy apart
     ///
-    /// Writes strategies.png, strategies-alone.png and strategies.exr, and prints a table: for each term, what is
-    /// found with s vertices walked from the light, for s = 0 to k + 1.
-    #[arg(long)]
+    /// Writes strategies.png, strategies-alone.png and strategies.exr, and prints a table:
+    /// for each term, what is found with s = 0 to k + 1 vertices walked from the light.
+    #[arg(long, verbatim_doc_comment)]
     pub strategies: bool,
     /// Children of every vertex of --estimator branching
     ///

@@ -84,15 +84,14 @@ fn people(d: &Description, scene: &Scene) -> String {
         out += "  mirrors or glass: T is not compact, and no connection finds what they show\n";
     }
     if d.materials.iter().any(|m| matches!(m.bsdf, BsdfDescription::Dielectric { .. })) {
-        out += "  glass: the norm is that of L/η²; radiance itself grows by η² on the way in, and ‖T‖∞ can exceed 1\n";
+        out += "  glass: the norm is that of L/η²; for radiance itself, squeezed by η², ‖T‖∞ can exceed 1\n";
     }
     if scene.has_environment() {
         out += "  T is not closed: a ray that leaves the scene meets the sky, and the light it brings is E\n";
     }
     let g = f64::from(rho.max_element());
     if scene.has_environment() || scene.lights.any_delta() {
-        out +=
-            "  E is not all on surfaces: ‖L − S_K‖₁ ≤ ‖T‖₁/(1 − ‖T‖₁) · ‖T^K E‖₁ holds from K = 1 on, where ‖T‖₁ < 1\n";
+        out += "  E is not all on surfaces: bounds of ‖L − S_K‖₁ start from ‖T E‖₁, and need ‖T‖₁ < 1\n";
     } else if g < 1.0 {
         let bounces = (0.01f64 * (1.0 - g)).ln() / g.ln() - 1.0;
         out += &format!(
@@ -113,7 +112,7 @@ fn people(d: &Description, scene: &Scene) -> String {
 
 /// A material in words.
 fn surface(bsdf: &BsdfDescription) -> String {
-    let rgb = |v: &glam::DVec3| format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z);
+    let rgb = |v: &glam::DVec3| format!("({:.3}, {:.3}, {:.3})", v.x, v.y, v.z);
     let colour = |c: &Colour| match c {
         Colour::Uniform(v) => rgb(v),
         Colour::Texture(image) => format!("image {}×{}", image.size[0], image.size[1]),
@@ -151,7 +150,7 @@ fn surface(bsdf: &BsdfDescription) -> String {
 
 /// A light without a surface in words.
 fn light(light: &LightDescription) -> String {
-    let rgb = |v: &glam::DVec3| format!("({:.4}, {:.4}, {:.4})", v.x, v.y, v.z);
+    let rgb = |v: &glam::DVec3| format!("({:.3}, {:.3}, {:.3})", v.x, v.y, v.z);
     match light {
         LightDescription::Point { position, intensity } => {
             format!("point at {}, intensity {} W/sr", rgb(position), rgb(intensity))

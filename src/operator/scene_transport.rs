@@ -121,10 +121,7 @@ impl SceneTransport<'_> {
         if self.scene.lights.is_empty() || !at.on_surface() {
             return None;
         }
-        let light = self.scene.sample_light(at.p, u);
-        if !(light.pdf > 0.0) {
-            return None;
-        }
+        let light = self.scene.sample_light(at, u)?;
         let (weight, scatter_pdf, normal) = match self.scene.bsdf(at) {
             // the same products in the same order as in a wave
             Bsdf::Diffuse(Diffuse { reflectance }) => {

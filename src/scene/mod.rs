@@ -248,13 +248,16 @@ impl Scene {
         (p, if side & 1 == 0 { n } else { -n })
     }
 
-    /// Next-event estimation: the light that four uniform numbers choose for a receiver at `x`, before anybody looks
-    /// whether it is hidden.
+    /// Next-event estimation: the light that four uniform numbers choose for a receiver, before anybody looks whether it is
+    /// hidden; nothing where the receiver is the light and cannot see itself.
     #[inline(always)]
-    pub(crate) fn sample_light(&self, x: Vec3, u: [f32; 4]) -> LightSample {
+    pub(crate) fn sample_light(&self, at: &Vertex, u: [f32; 4]) -> Option<LightSample> {
+        let x = at.p;
         let light = self.lights.choose(u[0]);
         let probability = self.lights.probability(light);
-        match self.lights.lights[light as usize] {
+        let sample = match self.lights.lights[light as usize] {
+            // rounding must not let a convex light shine on itself
+            Light::Ball { prim, .. } if prim == at.side / 2 => return None,
             Light::Point { position, .. } => {
                 let (to, r2, ..) = connection(x, Vec3::ZERO, position, Vec3::ZERO);
                 let state = Vertex { p: position, n: Vec3::ZERO, omega: -to, side: LIGHT + light };
@@ -278,11 +281,10 @@ impl Scene {
                 }
                 None => self.by_area(x, prim, [u[2], u[3]]),
             },
-            Light::Surface { .. } => match self.lights.primitive(light, u[1]) {
-                Some(prim) => self.by_area(x, prim, [u[2], u[3]]),
-                None => unreachable!("a surface light has primitives"),
-            },
-        }
+            Light::Surface { .. } => self.by_area(x, self.lights.primitive(light, u[1])?, [u[2], u[3]]),
+        };
+        // a density that is not positive: the light's front looks away
+        (sample.pdf > 0.0).then_some(sample)
     }
 
     /// A point of a primitive, uniformly by area. The density is not positive where the front looks away.
