@@ -292,7 +292,7 @@ fn commands_end_as_they_say() {
     furnace: 1 shape, 6 primitives, 64×64 pixels
 
     materials
-      wall             diffuse, reflectance (0.5000, 0.5000, 0.5000), front only
+      wall             diffuse, reflectance (0.500, 0.500, 0.500), front only
 
     lights
       shapes[0]        box, radiance (1.0000, 1.0000, 1.0000)

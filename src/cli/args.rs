@@ -177,7 +177,7 @@ pub struct Run {
     ///
     /// scatter: paths must hit it; connect: next-event estimation (and hits after a mirror);
     /// mis: both, weighed by the balance heuristic; mis-power: by the power heuristic.
-    #[arg(long, default_value = "mis", value_parser = technique, value_name = "NAME")]
+    #[arg(long, default_value = "mis", value_parser = technique, value_name = "NAME", verbatim_doc_comment)]
     pub technique: Technique,
     /// How a light is selected: uniform, power
     #[arg(long, default_value = "uniform", value_parser = selection, value_name = "NAME")]
