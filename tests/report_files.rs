@@ -334,6 +334,7 @@ fn full_summary() -> Summary {
         tail: estimate(0.1, 1),
         sum: estimate(1.7, 16),
         total: estimate(1.8, 16),
+        events: vec![1e4; 6],
     };
     let cost = Cost { paths: 10, rays: u64::MAX, non_finite: 0, seconds: 0.1 + 0.2 };
     let series = Series {

@@ -44,6 +44,7 @@ fn simulated(rng: &mut Noise, design: Design, truth: impl Fn(usize, usize) -> f6
             tail: measured(0.25),
             sum: measured(1.75),
             total: measured(2.0),
+            events: vec![],
         })
         .collect();
     Series { world: World::Terms, label: "simulated".into(), functionals, cost: Cost::default(), unseen: vec![] }

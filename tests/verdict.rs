@@ -24,6 +24,7 @@ fn functional(name: &str, cv: f64) -> Functional {
         tail: of(0.125),
         sum: of(1.875),
         total: of(2.0),
+        events: vec![],
     }
 }
 
@@ -234,4 +235,36 @@ fn the_order_of_the_worlds_only_turns_the_sign() {
     for (x, y) in ab.rows.iter().zip(&ba.rows) {
         assert_eq!((x.effect, x.outcome, x.p, x.interval.0), (-y.effect, y.outcome, y.p, -y.interval.1));
     }
+}
+
+/// The error of a mean that rests on few events is not known: neither Differs nor Agrees, however the numbers look.
+/// Dark everywhere is another matter.
+#[test]
+fn few_events_decide_nothing() {
+    let whole = |cv: f64, events: f64| {
+        let mut s = series(cv);
+        s.functionals.iter_mut().for_each(|f| f.events = vec![events; 7]);
+        s
+    };
+    let (criterion, mut dim) = (Criterion::default(), whole(1e-4, 1e6));
+    dim.functionals.iter_mut().for_each(|f| f.terms.iter_mut().for_each(|t| t.mean *= 0.9));
+    assert_eq!(compare(&whole(1e-4, 1e6), &dim, &criterion, &[]).outcome, Outcome::Differs);
+    assert_eq!(compare(&whole(1e-4, 1e6), &whole(1e-4, 1e6), &criterion, &[]).outcome, Outcome::Agrees);
+    for (a, b) in [(399.0, 1e6), (1e6, 399.0)] {
+        dim.functionals.iter_mut().for_each(|f| f.events = vec![b; 7]);
+        let found = compare(&whole(1e-4, a), &dim, &criterion, &[]);
+        assert_eq!(found.outcome, Outcome::Inconclusive);
+        let undecided = found.rows.iter().filter(|r| r.outcome == Outcome::Inconclusive);
+        assert!(undecided.clone().count() >= 4, "every term that was dimmed");
+        assert!(undecided.clone().all(|r| r.reason.is_some_and(|why| why.contains("few events"))));
+        // equal means agree only where even ten times the error would not matter
+        let pair = |cv: f64| compare(&whole(cv, a), &whole(cv, b), &criterion, &[]).outcome;
+        assert_eq!((pair(1e-4), pair(2e-3)), (Outcome::Agrees, Outcome::Inconclusive));
+    }
+    // a region that nothing has hit yet is no proof, a term that nothing has hit anywhere is
+    let mut dark = whole(1e-4, 1e6);
+    (dark.functionals[1].terms[2], dark.functionals[1].events[2]) = (estimate(0.0, 0.0), 0.0);
+    assert_eq!(compare(&whole(1e-4, 1e6), &dark, &criterion, &[]).outcome, Outcome::Agrees);
+    (dark.functionals[0].terms[2], dark.functionals[0].events[2]) = (estimate(0.0, 0.0), 0.0);
+    assert_eq!(compare(&whole(1e-4, 1e6), &dark, &criterion, &[]).outcome, Outcome::Differs);
 }

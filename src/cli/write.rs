@@ -210,9 +210,11 @@ fn add(sum: &mut Pixels, image: &Pixels) {
 pub fn z_values(a: (&Pixels, &Pixels), b: (&Pixels, &Pixels)) -> Vec<f64> {
     let sum = |v: &[f32; 3]| v.iter().map(|&x| f64::from(x)).sum::<f64>();
     let z = |i: usize| {
-        let error = sum(&a.1[i]).hypot(sum(&b.1[i]));
+        let errors = (sum(&a.1[i]), sum(&b.1[i]));
+        let error = errors.0.hypot(errors.1);
         let difference = sum(&a.0[i]) - sum(&b.0[i]);
-        if error > 0.0 { difference / error } else { f64::NAN }
+        // an error of 0 is that of a pixel that nothing has hit yet: not known
+        if errors.0 > 0.0 && errors.1 > 0.0 { difference / error } else { f64::NAN }
     };
     (0..a.0.len()).map(z).collect()
 }

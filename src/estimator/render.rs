@@ -91,17 +91,19 @@ fn pass<T: Transport>(
 ) {
     let shape = film.shape;
     let sums = film.sums.par_chunks_mut(BLOCK * shape.per_pixel());
+    let squares = film.squares.par_chunks_mut(BLOCK * shape.slots);
     let counts = film.samples.par_chunks_mut(BLOCK);
     // the first pass is always finished, so that every pixel holds something
     let may_stop = samples.start > 0;
-    let job = |paths: &mut Paths<T::Wave>, (i, (sums, counts)): (usize, (&mut [f64], &mut [u32]))| {
+    let job = |paths: &mut Paths<T::Wave>,
+               (i, ((sums, squares), counts)): (usize, ((&mut [f64], &mut [f64]), &mut [u32]))| {
         if may_stop && stop.load(Ordering::Relaxed) {
             return (vec![0; shape.slots], 0);
         }
         let first = (i * BLOCK) as u32;
         let pixels = first..first + counts.len() as u32;
         let mut block =
-            FilmBlock { shape, first, pixels: pixels.len(), sums, non_finite: 0, rays: vec![0; shape.slots] };
+            FilmBlock { shape, first, pixels: pixels.len(), sums, squares, non_finite: 0, rays: vec![0; shape.slots] };
         let at_once = WAVE / BLOCK as u32 * (BLOCK / pixels.len()) as u32;
         for s in samples.clone().step_by(at_once as usize) {
             let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + at_once).min(samples.end) };
@@ -114,11 +116,11 @@ fn pass<T: Transport>(
     if estimator.splats() {
         return splat(t, sensor, estimator, key, samples, film, watch, stop);
     }
-    let totals = sums
-        .zip(counts)
-        .enumerate()
-        .map_init(Paths::default, job)
-        .reduce(|| (vec![0; shape.slots], 0), |a, b| (a.0.iter().zip(&b.0).map(|(a, b)| a + b).collect(), a.1 + b.1));
+    let totals =
+        sums.zip(squares).zip(counts).enumerate().map_init(Paths::default, job).reduce(
+            || (vec![0; shape.slots], 0),
+            |a, b| (a.0.iter().zip(&b.0).map(|(a, b)| a + b).collect(), a.1 + b.1),
+        );
     film.rays.iter_mut().zip(totals.0).for_each(|(all, more): (&mut u64, u64)| *all += more);
     film.non_finite += totals.1;
 }

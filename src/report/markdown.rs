@@ -100,8 +100,16 @@ mod tests {
             tail: of(0.01, 0.002),
             sum: of(0.04, 0.0),
             total: of(0.05, 0.002),
+            events: vec![],
         };
-        let b = Functional { name: name(), terms: vec![], tail: exact(0.0), sum: exact(0.0), total: exact(0.05) };
+        let b = Functional {
+            name: name(),
+            terms: vec![],
+            tail: exact(0.0),
+            sum: exact(0.0),
+            total: exact(0.05),
+            events: vec![],
+        };
         let expected = "| k | share | a | b |\n|:---|---:|---:|---:|\n\
             | 0 | 60 % | 30.0 ± 0.4 |  |\n| 1 | 20 % | 10.00 ± 0.02 |  |\n| &gt; 1 | 20 % | 10 ± 4 |  |\n\
             | all | 100 % | 50 ± 4 | 50.00 |\n";

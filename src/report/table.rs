@@ -19,7 +19,7 @@ use crate::terms::{Estimate, Functional};
 /// use glam::DVec3;
 /// let terms: Vec<_> = [1.0, 0.5, 0.25].map(|v| Estimate::exact(DVec3::splat(v))).into();
 /// let of = |v: f64| Estimate::exact(DVec3::splat(v));
-/// let furnace = Functional { name: "image".into(), terms, tail: of(0.25), sum: of(1.75), total: of(2.0) };
+/// let furnace = Functional { name: "image".into(), terms, tail: of(0.25), sum: of(1.75), total: of(2.0), events: vec![] };
 /// let table = series("furnace", &furnace, &[]);
 /// assert!(table.lines().any(|l| l.split_whitespace().eq(["1", "0.5000", "0", "0.5000", "25.0", "%"])));
 /// ```

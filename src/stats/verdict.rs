@@ -18,8 +18,9 @@
 //!
 //! The family is every functional (image mean, regions, projections) × every quantity (terms, tail, sum, total) ×
 //! channel. All of it can reject. Only image means must also *prove* agreement: a region sees more noise, and that no
-//! test rejected it proves nothing. Two one-sided tests as one interval: Schuirmann, *J. Pharmacokinetics and
-//! Biopharmaceutics* 15 (1987); a claim that needs all of them to hold needs no correction: Berger, *Technometrics* 24 (1982).
+//! test rejected it proves nothing. Where a mean rests on few events its error is not known: then nothing is rejected, and
+//! agreement needs an interval ten times as narrow. Two one-sided tests as one interval: Schuirmann, *J. Pharmacokinetics
+//! and Biopharmaceutics* 15 (1987); a claim that needs all of them to hold needs no correction: Berger, *Technometrics* 24 (1982).
 
 use super::hypothesis::{Measured, ROUNDING, critical, difference, holm, two_sided_p};
 use super::power;
@@ -98,11 +99,24 @@ pub struct Comparison {
 /// `Some(reason)` texts of [`Verdict::reason`].
 const NO_ERROR: &str = "the standard error is unknown: one replicate only (raise the samples per pixel)";
 const NOT_FINITE: &str = "a mean is not finite";
+const FEW: &str = "a mean rests on too few events (hits) for its error to be known: raise --spp";
 const ALLOWANCE: &str = "the allowance for discretisation alone exceeds what δ can resolve: refine the mesh";
 
 /// An allowance from two meshes is itself uncertain; a rejection must exceed it by this factor, the one that Roache asks for
 /// with two grids (*J. Fluids Engineering* 116, 1994).
 const SAFETY: f64 = 3.0;
+
+/// A sum of n events has a skewness of at least 1/√n, and a t-test at the depth of a family, z ≈ 5.5, is wrong by a factor
+/// of about exp(z³/6√n): 4 for this n. With fewer, a rare event that has not happened yet looks like a proof of darkness.
+const EVENTS: f64 = 400.0;
+/// With fewer, an interval must fit into δ this many times more.
+const WIDER: f64 = 9.0;
+
+/// Whether too few events carry a mean. A result in which a quantity is dark everywhere is no rare event, and is judged.
+fn few_events(quantity: Quantity, f: &Functional, image: &Functional) -> bool {
+    let dark = quantity.events(image) == Some(0.0);
+    !dark && quantity.events(f).is_some_and(|n| n < EVENTS)
+}
 
 /// The largest allowance of the functionals of one kind (image, regions, projections): where the difference of two meshes
 /// changes its sign it is small by accident.
@@ -137,6 +151,7 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
             let extra = allowed.and_then(|f| quantity.of(f)).map_or(DVec3::ZERO, |e| e.mean.abs());
             let excused = SAFETY * largest_alike(allowance, &fa.name, quantity);
             let whole = 0.5 * (image_a.total.mean.abs() + image_b.total.mean.abs());
+            let few = [(fa, image_a), (fb, image_b)].iter().any(|(f, image)| few_events(quantity, f, image));
             for (c, channel) in CHANNELS.iter().enumerate() {
                 family.push(Item {
                     quantity,
@@ -147,6 +162,7 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
                     excuse: excused[c].max(extra[c]),
                     rounding: ROUNDING * whole[c],
                     delta: delta_of(quantity)[c].max(ROUNDING * whole[c]),
+                    few: few && x.std_error[c] + y.std_error[c] > 0.0,
                 });
             }
         }
@@ -166,6 +182,7 @@ pub fn discretisation(fine: &Series, coarse: &Series) -> Vec<Functional> {
             tail: gap(&f.tail, &c.tail),
             sum: gap(&f.sum, &c.sum),
             total: gap(&f.total, &c.total),
+            events: vec![],
         })
     };
     fine.functionals.iter().filter_map(functional).collect()
@@ -188,6 +205,18 @@ impl Quantity {
             Self::Sum => Some(f.sum),
             Self::Total => Some(f.total),
         }
+    }
+
+    /// Of how many events, if that is known.
+    fn events(self, f: &Functional) -> Option<f64> {
+        let k = f.terms.len();
+        let at = match self {
+            Self::Term(k) => k,
+            Self::Tail => k,
+            Self::Sum => k + 1,
+            Self::Total => k + 2,
+        };
+        f.events.get(at).copied()
     }
 
     fn name(self) -> String {
@@ -233,6 +262,8 @@ struct Item {
     /// What `f32` may lose: never a difference.
     rounding: f64,
     delta: f64,
+    /// Whether too few events carry a mean for its error to be known.
+    few: bool,
 }
 
 impl Item {
@@ -242,7 +273,7 @@ impl Item {
         let s = self.effect.std_error;
         if excess.is_nan() || s.is_nan() {
             f64::NAN
-        } else if excess <= 0.0 {
+        } else if excess <= 0.0 || self.few {
             1.0
         } else {
             two_sided_p(excess / s, self.effect.dof) // s = 0: t = ∞
@@ -293,9 +324,11 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Ve
     let (effect, s, delta) = (item.effect.mean, item.effect.std_error, item.delta);
     let (noise, reject) = (item.noise(levels.0), item.noise(levels.1));
     let half = noise + item.allowance;
+    // where the error is not known, agreement must not depend on it
+    let unknown = if item.few { WIDER * noise } else { 0.0 };
     let outcome = if p <= criterion.alpha {
         Outcome::Differs
-    } else if effect.abs() + half <= delta {
+    } else if effect.abs() + half + unknown <= delta {
         Outcome::Agrees
     } else {
         Outcome::Inconclusive
@@ -307,6 +340,7 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Ve
         Outcome::Agrees | Outcome::Differs => None,
         Outcome::Inconclusive if !effect.is_finite() => Some(NOT_FINITE),
         Outcome::Inconclusive if s.is_nan() => Some(NO_ERROR),
+        Outcome::Inconclusive if item.few => Some(FEW),
         Outcome::Inconclusive if room <= 0.0 => Some(ALLOWANCE),
         Outcome::Inconclusive => None,
     };

@@ -53,6 +53,8 @@ pub struct TermFilm {
     /// Samples that were not finite.
     pub non_finite: u64,
     pub(crate) sums: Vec<f64>,
+    /// Σ (r + g + b)² of what was added, by block, slot and pixel: how many events carry a mean.
+    pub(crate) squares: Vec<f64>,
 }
 
 /// Pixels of a block, the part of the film that one job fills.
@@ -71,6 +73,7 @@ pub(crate) struct FilmBlock<'a> {
     pub(crate) first: u32,
     pub(crate) pixels: usize,
     pub(crate) sums: &'a mut [f64],
+    pub(crate) squares: &'a mut [f64],
     pub(crate) non_finite: u64,
     pub(crate) rays: Vec<u64>,
 }
@@ -94,6 +97,8 @@ impl FilmBlock<'_> {
             s[0] += f64::from(x[i]);
             s[1] += f64::from(y[i]);
             s[2] += f64::from(z[i]);
+            let all = f64::from(x[i] + y[i] + z[i]);
+            self.squares[slot * self.pixels + (pixel[i] - self.first) as usize] += all * all;
             self.non_finite += u64::from(!(x[i] + y[i] + z[i]).is_finite());
         }
     }
@@ -103,7 +108,8 @@ impl TermFilm {
     /// An empty film.
     pub fn new(shape: Shape) -> Self {
         let sums = vec![0.0; shape.pixels() * shape.per_pixel()];
-        Self { shape, samples: vec![0; shape.pixels()], rays: vec![0; shape.slots], non_finite: 0, sums }
+        let squares = vec![0.0; shape.pixels() * shape.slots];
+        Self { shape, samples: vec![0; shape.pixels()], rays: vec![0; shape.slots], non_finite: 0, sums, squares }
     }
 
     /// Adds to any pixel, on behalf of sample number `sample`.
@@ -114,6 +120,8 @@ impl TermFilm {
         let at = first * self.shape.per_pixel()
             + place(slot as usize, sample as usize % replicates, pixel, replicates, pixels);
         (0..3).for_each(|c| self.sums[at + c] += f64::from(value[c]));
+        let all = f64::from(value.x + value.y + value.z);
+        self.squares[first * self.shape.slots + slot as usize * pixels + pixel] += all * all;
         self.non_finite += u64::from(!(value.x + value.y + value.z).is_finite());
     }
 
@@ -124,6 +132,14 @@ impl TermFilm {
         let pixels = BLOCK.min(self.samples.len() - first);
         let at = first * self.shape.per_pixel() + place(slot, replicate, pixel - first, self.shape.replicates, pixels);
         DVec3::new(self.sums[at], self.sums[at + 1], self.sums[at + 2])
+    }
+
+    /// Σ (r + g + b)² of what was added to one pixel and slot.
+    #[inline(always)]
+    pub fn square(&self, pixel: usize, slot: usize) -> f64 {
+        let first = pixel / BLOCK * BLOCK;
+        let pixels = BLOCK.min(self.samples.len() - first);
+        self.squares[first * self.shape.slots + slot * pixels + pixel - first]
     }
 
     /// Number of samples of one pixel in one replicate.

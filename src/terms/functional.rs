@@ -48,8 +48,26 @@ impl Replicates {
             tail: if k == 0 { Estimate::default() } else { self.estimate(k..slots) },
             sum: if k == 0 { Estimate::default() } else { self.estimate(0..k) },
             total: self.estimate(0..slots),
+            events: vec![],
         }
     }
+}
+
+/// `(Σ x)²/Σ x²` over the tiles with a weight: for the terms, the tail, the sum and the total.
+fn events(film: &TermFilm, t: &Tiles, inside: impl Fn(usize) -> bool) -> Vec<f64> {
+    let slots = film.shape.slots;
+    let over = |slots_of: std::ops::Range<usize>| {
+        let tiles = (0..GRID * GRID).filter(|&i| inside(i));
+        let (sum, square) = tiles
+            .flat_map(|i| slots_of.clone().map(move |s| i * slots + s))
+            .fold((0.0, 0.0), |a, at| (a.0 + t.sum[at], a.1 + t.square[at]));
+        if square > 0.0 { sum * sum / square } else { 0.0 }
+    };
+    let last = slots - 1;
+    if last == 0 {
+        return vec![0.0, 0.0, over(0..1)];
+    }
+    (0..slots).map(|s| over(s..s + 1)).chain([over(0..last), over(0..slots)]).collect()
 }
 
 fn covariance_factor(replicates: usize) -> f64 {
@@ -63,6 +81,9 @@ struct Tiles {
     pixels: Vec<f64>,
     mean: Vec<DVec3>,
     deviation: Vec<DVec3>,
+    /// Σ (r + g + b) and Σ (r + g + b)² of all that was added.
+    sum: Vec<f64>,
+    square: Vec<f64>,
 }
 
 fn tiles(film: &TermFilm) -> Tiles {
@@ -72,6 +93,8 @@ fn tiles(film: &TermFilm) -> Tiles {
         pixels: vec![0.0; GRID * GRID],
         mean: vec![DVec3::ZERO; GRID * GRID * slots],
         deviation: vec![DVec3::ZERO; GRID * GRID * slots * replicates],
+        sum: vec![0.0; GRID * GRID * slots],
+        square: vec![0.0; GRID * GRID * slots],
     };
     for p in 0..w * h {
         let tile = (p / w) * GRID / h * GRID + (p % w) * GRID / w;
@@ -80,6 +103,8 @@ fn tiles(film: &TermFilm) -> Tiles {
         for s in 0..slots {
             let mean = (0..replicates).map(|r| film.sum(p, r, s)).sum::<DVec3>() / n;
             t.mean[tile * slots + s] += mean;
+            t.sum[tile * slots + s] += mean.element_sum() * n;
+            t.square[tile * slots + s] += film.square(p, s);
             let at = (tile * slots + s) * replicates;
             for (r, d) in t.deviation[at..at + replicates].iter_mut().enumerate() {
                 *d += (film.sum(p, r, s) - mean * film.count(p, r)) / n;
@@ -111,20 +136,24 @@ fn weighted(film: &TermFilm, t: &Tiles, weight: impl Fn(usize) -> f64, total: f6
 pub fn functionals(film: &TermFilm) -> Vec<Functional> {
     let t = tiles(film);
     let pixels = film.shape.pixels() as f64;
-    let mut all = vec![weighted(film, &t, |_| 1.0, pixels).functional("image")];
+    let everywhere = events(film, &t, |_| true);
+    let image = weighted(film, &t, |_| 1.0, pixels).functional("image");
+    let mut all = vec![Functional { events: everywhere.clone(), ..image }];
     let step = GRID / REGIONS;
     for (row, column) in (0..REGIONS).flat_map(|y| (0..REGIONS).map(move |x| (y, x))) {
         let inside = |i: usize| i / GRID / step == row && i % GRID / step == column;
         let count: f64 = (0..GRID * GRID).filter(|&i| inside(i)).map(|i| t.pixels[i]).sum();
         if count > 0.0 {
             let name = format!("region {row},{column}");
-            all.push(weighted(film, &t, |i| if inside(i) { 1.0 } else { 0.0 }, count).functional(&name));
+            let region = weighted(film, &t, |i| if inside(i) { 1.0 } else { 0.0 }, count).functional(&name);
+            all.push(Functional { events: events(film, &t, inside), ..region });
         }
     }
     let key = Key::new(0, "projections");
     for j in 0..PROJECTIONS {
         let sign = |i: usize| if Rng::at(key, i as u32, j, 0, Purpose::Start).one() < 0.5 { -1.0 } else { 1.0 };
-        all.push(weighted(film, &t, sign, pixels).functional(&format!("projection {j}")));
+        let projection = weighted(film, &t, sign, pixels).functional(&format!("projection {j}"));
+        all.push(Functional { events: everywhere.clone(), ..projection });
     }
     all
 }

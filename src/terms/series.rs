@@ -67,6 +67,10 @@ pub struct Functional {
     pub sum: Estimate,
     /// Σ_{k≤K} terms + tail: the whole image.
     pub total: Estimate,
+    /// How many equal events would carry as much noise: `(Σ x)²/Σ x²` over everything that was added, for each of the terms,
+    /// the tail, the sum and the total. Empty if not known. Where few events carry a mean, its error is not known either.
+    #[serde(default)]
+    pub events: Vec<f64>,
 }
 
 /// What a world returns.
