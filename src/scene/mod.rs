@@ -391,6 +391,12 @@ impl Scene {
         (pdf > 0.0).then_some(pdf * probability)
     }
 
+    /// Whether the side is one of a sphere that is sampled by solid angle.
+    #[inline(always)]
+    pub(crate) fn is_ball(&self, side: Side) -> bool {
+        self.lights.ball(side / 2).is_some()
+    }
+
     /// A point outside the scene in direction `d` from `x`.
     #[inline(always)]
     pub(crate) fn beyond(&self, x: Vec3, d: Vec3) -> Vec3 {
