@@ -122,9 +122,11 @@ impl SceneTransport<'_> {
             return None;
         }
         let light = self.scene.sample_light(at.p, u);
+        if !(light.pdf > 0.0) {
+            return None;
+        }
         // no point of a ball sees its front, though rounding may put the receiver above it and the light point beside it
-        let itself = light.state.side / 2 == at.side / 2 && self.scene.is_ball(at.side);
-        if itself || !(light.pdf > 0.0) {
+        if light.state.side / 2 == at.side / 2 && self.scene.is_ball(at.side) {
             return None;
         }
         let (weight, scatter_pdf, normal) = match self.scene.bsdf(at) {

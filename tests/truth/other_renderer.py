@@ -254,10 +254,11 @@ def check(path, size):
 
 
 SCENES = [  # file, size, samples per pixel and batch, batches
-    ("scenes/cornell-spheres.toml", (32, 32), 1024, 64),
-    ("tests/scenes/metals.toml", (32, 32), 1024, 64),
-    ("tests/scenes/coats.toml", (32, 32), 1024, 64),
-    ("tests/scenes/lamps.toml", (32, 32), 1024, 64),
+    ("scenes/cornell-spheres.toml", (32, 32), 1024, 48),
+    ("tests/scenes/metals.toml", (32, 32), 1024, 48),
+    ("tests/scenes/coats.toml", (32, 32), 1024, 48),
+    ("tests/scenes/lamps.toml", (32, 32), 1024, 48),
+    ("tests/scenes/tiles.toml", (32, 32), 1024, 48),
 ]
 
 
