@@ -81,6 +81,7 @@ def material(m, folder):
         if not alpha:  # ρ that has under the fitted F_in the base ρ/(1 - ρ F_in) of the exact one
             base = rho / (1 - rho * f_in(eta))
             rho = base / (1 + base * f_in_fitted(eta))
+        # under a rough coat it takes another F_in: 0.552 for α = 0.1 and η = 1.5, where 1 - T̄/η² is 0.590
         b = {"type": "roughplastic" if alpha else "plastic", "int_ior": eta, "ext_ior": 1.0, "nonlinear": True}
         b = {**b, **rough, "diffuse_reflectance": rgb(rho)}
     return b if m.get("sides") == "front" else {"type": "twosided", "bsdf": b}
