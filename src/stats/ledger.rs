@@ -114,6 +114,9 @@ pub const ENTRIES: &[Entry] = &[
     entry("no_bounce_gains_energy", 768, 1e-8),
     entry("a_uniform_room_keeps_the_share_of_its_albedo", 144, 1e-8),
     entry("terms_do_not_depend_on_the_axes", 45, 1e-8),
+    // tests/other_renderer.rs
+    entry("terms_are_those_of_another_renderer", 1_050, 1e-8),
+    entry("a_scene_that_is_a_little_wrong_is_told_apart", 9, 1e-8),
     // tests/bsdf.rs
     entry("directions_have_the_density_they_claim", 1_000, 1e-8),
     entry("a_million_directions_have_the_density_they_claim", 1_000, 1e-8),

@@ -40,4 +40,10 @@ impl Case {
     pub fn table(&self, key: &str) -> Vec<Vec<f64>> {
         self.get(key).as_array().unwrap().iter().map(numbers).collect()
     }
+
+    /// Lists of lists of lists: `terms[k][part][channel]`.
+    pub fn tables(&self, key: &str) -> Vec<Vec<Vec<f64>>> {
+        let tables = self.get(key).as_array().unwrap().iter();
+        tables.map(|t| t.as_array().unwrap().iter().map(numbers).collect()).collect()
+    }
 }
