@@ -362,11 +362,17 @@ fn compare_paths(d: &Description, seed: u64, samples: u32, seen: &mut Compared) 
         theirs.retain(|f| f.2 != Rgb::ZERO);
         let ours = finds.iter().filter(|f| f.value != Rgb::ZERO);
         let ours: Vec<_> = ours.map(|f| (f.s, f.path.len() - 1, f.value, f.weight)).collect();
+        assert!(ours.iter().all(|f| f.2.is_finite() && f.3.is_finite()), "scene {seed}: {ours:?}");
         assert_eq!(ours, theirs);
 
         for f in finds.iter().filter(|f| f.value.min_element() > 1e-20) {
             let Some((contribution, densities)) = reference.path(&f.path, &f.delta) else { continue };
-            let what = || format!("s = {}, {:#?}, delta {:?}, of {:#?}", f.s, f.path, f.delta, d);
+            let material = |v: &Vertex| match v.side {
+                side if side < LIGHT => format!("{:?}", d.materials[d.shapes[d.primitives()[(side / 2) as usize].0].material].bsdf),
+                _ => "light".into(),
+            };
+            let path = || f.path.iter().zip(&f.delta).map(|(v, delta)| format!("  {v:?} delta {delta} {}", material(v)));
+            let what = || format!("s = {}, scene {seed}\n{}", f.s, path().collect::<Vec<_>>().join("\n"));
             let (sum, mine) = (densities.iter().sum::<f64>(), densities[f.s]);
             assert!(mine > 0.0, "found where it cannot be: {densities:?} {}", what());
             let total = mine / sum;
@@ -418,4 +424,350 @@ fn weights_are_those_of_the_path() {
     for n in [seen.delta, seen.refracted, seen.sky, seen.point, seen.beam] {
         assert!(n > 300);
     }
+}
+
+// ------------------------------------------------------------------------------------------------ any scene at all
+
+const AMOUNT: (u32, usize) = (8, 8);
+
+fn small(mut d: Description) -> Description {
+    d.camera.size = [6, 4];
+    d
+}
+
+proptest! {
+    #![proptest_config(cases(160))]
+
+    #[test]
+    fn every_sample_is_finite_and_none_negative(d in world()) {
+        let d = small(d);
+        let scene = Scene::new(&d);
+        for (kind, technique) in ways() {
+            let plan = plan(K, technique, &Roulette::LECTURE);
+            let film = film(&scene, &scene.camera, kind, &plan, AMOUNT, Key::new(1, "finite"));
+            prop_assert_eq!(film.non_finite, 0, "{:?} {}", kind, technique);
+            for p in 0..film.shape.pixels() {
+                for slot in 0..film.shape.slots {
+                    let (mean, _) = film.pixel(p, slot..slot + 1);
+                    prop_assert!(mean.is_finite() && mean.min_element() >= 0.0, "{:?} {}: {}", kind, technique, mean);
+                }
+            }
+        }
+        // and from everywhere, where that sensor is known
+        let strip = SurfaceStrip { sensor: SurfaceSensor::new(&scene), pixels: 16 };
+        for technique in Technique::ALL {
+            let plan = plan(K, technique, &Roulette::LECTURE);
+            prop_assert_eq!(film(&scene, &strip, Kind::Prefix, &plan, AMOUNT, Key::new(2, "finite")).non_finite, 0);
+        }
+    }
+
+    /// Σ X_k + tail is the path tracer's sample.
+    #[test]
+    fn terms_and_tail_are_the_path_tracer_in_any_scene(d in world(), roulette in schedule()) {
+        let d = small(d);
+        let scene = Scene::new(&d);
+        let t = SceneTransport::new(&scene);
+        let key = Key::new(3, "identity");
+        // white surfaces must not keep a path for ever
+        let ends = match roulette {
+            Roulette::Albedo { from } | Roulette::Throughput { from } => Roulette::Constant { from, q: 0.4 },
+            other => other,
+        };
+        for technique in Technique::ALL {
+            let plan = plan(2, technique, &ends);
+            let terms = collect(&t, &scene.camera, &Prefix(plan.clone()), 8, 8, key);
+            let paths = collect(&t, &scene.camera, &PathTracer(plan), 8, 8, key);
+            for (terms, path) in terms.paths().zip(paths.paths()) {
+                let sum: DVec3 = terms.iter().sum();
+                let scale = 2e-5 * path[0].abs().max(DVec3::splat(1e-6));
+                prop_assert!((sum - path[0]).abs().cmple(scale).all(), "{}, {}: {} {}", technique, ends, sum, path[0]);
+            }
+        }
+    }
+
+    /// Lengths times s, intensities of points times s²: s a power of two, so not one bit changes.
+    #[test]
+    fn a_scaled_scene_has_the_same_bits(d in world()) {
+        let d = small(d);
+        let (one, eight) = (Scene::new(&d), Scene::new(&scaled(&d, 8.0)));
+        let quarter = Scene::new(&scaled(&d, 0.25));
+        for (kind, technique) in ways() {
+            let plan = plan(3, technique, &Roulette::LECTURE);
+            let of = |scene: &Scene| bits(&film(scene, &scene.camera, kind, &plan, (4, 4), Key::new(4, "scale")));
+            let bits = of(&one);
+            prop_assert!(of(&eight) == bits && of(&quarter) == bits, "{:?} {}", kind, technique);
+        }
+    }
+
+    /// Batched and one by one, in waves of any size.
+    #[test]
+    fn waves_have_the_bits_of_single_paths(d in world()) {
+        let d = small(d);
+        let (packets, single) = (Scene::new(&d), Scene::new(&d).one_by_one());
+        for (kind, technique) in ways() {
+            let plan = plan(3, technique, &Roulette::LECTURE);
+            let of = |scene: &Scene| bits(&film(scene, &scene.camera, kind, &plan, (4, 4), Key::new(5, "waves")));
+            prop_assert!(of(&packets) == of(&single), "{:?} {}", kind, technique);
+        }
+        let t = SceneTransport::new(&packets);
+        for technique in Technique::ALL {
+            let estimator = Prefix(plan(3, technique, &Roulette::LECTURE));
+            let of = |wave| collect(&t, &packets.camera, &estimator, 8, wave, Key::new(6, "waves")).values;
+            prop_assert!(of(8) == of(1), "{}", technique);
+        }
+    }
+
+    /// A particle among surfaces that lose nothing keeps its power: E π A/P, 4π I/P, step by step.
+    #[test]
+    fn a_particle_keeps_its_power(things in prop::collection::vec(lossless(), 1..5), items in items(), point in any::<bool>()) {
+        let mut d = common::random::furnished(DVec3::ONE, &items);
+        for (m, bsdf) in d.materials.iter_mut().zip(things.iter().cycle()) {
+            (m.bsdf, m.sides) = (bsdf.clone(), Sides::Both);
+        }
+        if point {
+            d.shapes.iter_mut().for_each(|s| s.emission = DVec3::ZERO);
+            d.lights = vec![LightDescription::Point { position: DVec3::new(0.7, 0.8, -0.9), intensity: DVec3::new(1.0, 2.0, 3.0) }];
+        }
+        let scene = Scene::new(&d);
+        let t = SceneTransport::new(&scene);
+        let powers: Vec<DVec3> = match point {
+            true => vec![4.0 * PI * DVec3::new(1.0, 2.0, 3.0)],
+            false => {
+                let area = |i: usize| d.primitives().iter().filter(|(s, _)| *s == i).map(|(_, p)| p.area()).sum::<f64>();
+                let glow = (0..d.shapes.len()).filter(|&i| d.shapes[i].emission != DVec3::ZERO);
+                glow.map(|i| PI * area(i) * d.shapes[i].emission).collect()
+            }
+        };
+        for sample in 0..64 {
+            let rng = |v: usize, purpose| Rng::at(Key::new(7, "power"), 0, sample, v, purpose);
+            let (mut y, density) = t.emit(&mut rng(0, Purpose::Start)).unwrap();
+            let (mut through, mut role) = (1.0 / f64::from(density) * DVec3::ONE, Role::Emission);
+            for v in 0..12 {
+                let Some(step) = t.walk(&y, role, &mut rng(v, Purpose::Scatter)) else { break };
+                through *= step.weight.as_dvec3();
+                (y, role) = (step.state, Role::Flux);
+                let kept = powers.iter().any(|p| (through / (p * powers.len() as f64) - 1.0).abs().max_element() < 1e-4);
+                prop_assert!(kept, "{} after {} steps, powers {:?}", through, v + 1, powers);
+            }
+        }
+    }
+}
+
+/// What loses nothing whatever happens: weights are exactly 1.
+fn lossless() -> impl Strategy<Value = BsdfDescription> {
+    use fredholm::scene::description::{Choice, Colour, Metal};
+    prop_oneof![
+        Just(BsdfDescription::Diffuse { reflectance: Colour::Uniform(DVec3::ONE) }),
+        Just(BsdfDescription::Mirror { reflectance: DVec3::ONE }),
+        Just(BsdfDescription::Conductor { metal: Metal::Reflectance(DVec3::ONE), rough: None }),
+        (1.1..2.5f64).prop_map(|ior| BsdfDescription::Dielectric { ior, ior_outside: 1.0, choice: Choice::Fresnel, rough: None }),
+    ]
+}
+
+/// All lengths times s.
+fn scaled(d: &Description, s: f64) -> Description {
+    transformed(d, DQuat::IDENTITY, s, true)
+}
+
+/// Turned about the origin and scaled by s. Kept whole where the turn allows it, else taken apart into primitives.
+fn transformed(d: &Description, turn: DQuat, s: f64, whole: bool) -> Description {
+    let mut all = d.clone();
+    let map = |p: DVec3| turn * p * s;
+    (all.camera.origin, all.camera.target) = (map(d.camera.origin), map(d.camera.target));
+    all.camera.up = turn * d.camera.up;
+    for light in &mut all.lights {
+        match light {
+            LightDescription::Point { position, intensity } => (*position, *intensity) = (map(*position), *intensity * s * s),
+            LightDescription::Directional { direction, .. } => *direction = turn * *direction,
+            LightDescription::Environment { .. } => {}
+        }
+    }
+    if whole {
+        for shape in &mut all.shapes {
+            match &mut shape.geometry {
+                Geometry::Mesh { vertices, .. } => vertices.iter_mut().for_each(|v| *v *= s),
+                Geometry::Quad { origin, edge_u, edge_v } => [origin, edge_u, edge_v].into_iter().for_each(|v| *v *= s),
+                Geometry::Box { min, max, .. } => [min, max].into_iter().for_each(|v| *v *= s),
+                Geometry::Sphere { center, radius, .. } | Geometry::Disk { center, radius, .. } => {
+                    *center *= s;
+                    *radius *= s;
+                }
+            }
+        }
+        return all;
+    }
+    all.shapes.clear();
+    for (shape, primitive) in d.primitives() {
+        let geometry = match primitive {
+            Primitive::Triangle(p) => {
+                Geometry::Mesh { vertices: p.map(map).to_vec(), faces: vec![[0, 1, 2]], uvs: vec![] }
+            }
+            Primitive::Parallelogram { origin, edge_u, edge_v } => {
+                Geometry::Quad { origin: map(origin), edge_u: map(edge_u), edge_v: map(edge_v) }
+            }
+            Primitive::Sphere { center, radius, z, inward } => {
+                Geometry::Sphere { center: map(center), radius: radius * s, z, inward }
+            }
+            Primitive::Disk { center, normal, radius } => {
+                Geometry::Disk { center: map(center), normal: turn * normal, radius: radius * s }
+            }
+        };
+        all.shapes.push(Shape { geometry, ..d.shapes[shape].clone() });
+    }
+    all
+}
+
+// ------------------------------------------------------------------------------------------------ means
+
+fn difference(a: &Estimate, b: &Estimate) -> Estimate {
+    let std_error = (a.std_error * a.std_error + b.std_error * b.std_error).map(f64::sqrt);
+    Estimate { mean: a.mean - b.mean, std_error, replicates: a.replicates }
+}
+
+/// Judges the slots of two images of what should be one.
+fn same(jury: &mut Jury, what: &str, a: &Replicates, b: &Replicates) {
+    let whole = a.estimate(0..K + 2).mean;
+    for k in 0..K + 2 {
+        let (a, b) = (a.estimate(k..k + 1), b.estimate(k..k + 1));
+        // the larger, so that what one of them has not seen at all is not taken for nothing
+        let size = a.mean.max(b.mean);
+        let delta = 0.02 * size + 0.01 * whole;
+        jury.judge(&format!("{what}, slot {k}"), &difference(&a, &b), DVec3::ZERO, delta, 0.3 * size + 0.03 * whole);
+    }
+}
+
+/// Whether an estimator sees all there is; a path from a light without area through glass or a mirror it might not.
+fn sees_all(scene: &Scene, kind: Kind, technique: Technique) -> bool {
+    let (point, delta) = (scene.lights.any_delta(), scene.any_delta_surface());
+    match kind {
+        Kind::Light => !delta,
+        _ => !point || !delta && (technique != Technique::Scatter || kind == Kind::Bidirectional),
+    }
+}
+
+const WAYS: [(Kind, Technique, u32); 5] = [
+    (Kind::Prefix, Technique::Mis, 512),
+    (Kind::Path, Technique::Mis, 512),
+    (Kind::Single, Technique::Power, 256),
+    (Kind::Light, Technique::Mis, 512),
+    (Kind::Bidirectional, Technique::Mis, 256),
+];
+
+#[test]
+fn all_estimators_agree_in_any_scene() {
+    let mut jury = Jury::open("all_estimators_agree_in_any_scene");
+    for (i, d) in draw(world(), 24).enumerate() {
+        let d = small(d);
+        let scene = Scene::new(&d);
+        let images: Vec<_> = WAYS.into_iter().filter(|w| sees_all(&scene, w.0, w.1)).map(|(kind, technique, spp)| {
+            let key = Key::new(jury.seed(), &format!("{kind:?}")).branch(i as u32);
+            let plan = plan(K, technique, &Roulette::Constant { from: K, q: 0.3 });
+            (kind, image_replicates(&film(&scene, &scene.camera, kind, &plan, (spp, 256), key)))
+        }).collect();
+        let Some((_, first)) = images.first() else { continue };
+        for (kind, image) in &images[1..] {
+            if *kind == Kind::Path {
+                let (a, b) = (first.estimate(0..K + 2), image.estimate(0..1));
+                let size = a.mean.max(b.mean);
+                jury.judge(&format!("scene {i}, path"), &difference(&a, &b), DVec3::ZERO, 0.02 * size, 0.3 * size);
+            } else {
+                same(&mut jury, &format!("scene {i}, {kind:?}"), first, image);
+            }
+        }
+    }
+    jury.assert_power(0.2, 0.4);
+}
+
+#[test]
+fn means_do_not_depend_on_the_axes() {
+    let mut jury = Jury::open("means_do_not_depend_on_the_axes");
+    let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.4, 1.3, -2.0);
+    let upright = |d: &Description| {
+        let image = |l: &LightDescription| matches!(l, LightDescription::Environment { sky: fredholm::scene::description::Sky::LatLong(_), .. });
+        !d.lights.iter().any(image)
+    };
+    for (i, d) in draw(world(), 24).enumerate().filter(|(_, d)| upright(d)).take(10) {
+        let d = small(d);
+        // the same primitives in both, so that lights are as many
+        let scenes = [DQuat::IDENTITY, turn].map(|turn| Scene::new(&transformed(&d, turn, 1.7, false)));
+        for (kind, technique, spp) in [(Kind::Prefix, Technique::Mis, 512), (Kind::Light, Technique::Mis, 256), (Kind::Bidirectional, Technique::Mis, 256)] {
+            let [a, b] = [0, 1].map(|j: usize| {
+                let key = Key::new(jury.seed(), &format!("{kind:?} {j}")).branch(i as u32);
+                let plan = plan(K, technique, &Roulette::Constant { from: K, q: 0.3 });
+                image_replicates(&film(&scenes[j], &scenes[j].camera, kind, &plan, (spp, 256), key))
+            });
+            same(&mut jury, &format!("scene {i}, {kind:?}"), &a, &b);
+        }
+    }
+    jury.assert_power(0.2, 0.4);
+}
+
+/// ‖T‖₁ ≤ the largest albedo, for surfaces that let nothing through.
+#[test]
+fn no_material_gains_energy() {
+    let mut account = common::open("no_material_gains_energy");
+    let threshold = critical(ledger::share("no_material_gains_energy").level(), 255.0);
+    let scenes = (items(), prop::collection::vec(opaque(0.8), 6), prop::collection::vec(opaque(1.0), 6));
+    for (i, (items, dim, bright)) in draw(scenes, 40).enumerate() {
+        let mut d = common::random::furnished(DVec3::ONE, &items);
+        let materials = if i % 2 == 0 { dim } else { bright };
+        d.materials.iter_mut().zip(materials).for_each(|(m, bsdf)| m.bsdf = bsdf);
+        let scene = Scene::new(&d);
+        let strip = SurfaceStrip { sensor: SurfaceSensor::new(&scene), pixels: 16 };
+        let bound = scene.max_albedo().as_dvec3();
+        let key = Key::new(account.seed(), "gain").branch(i as u32);
+        let means = image_replicates(&film(&scene, &strip, Kind::Prefix, &plan(K, Technique::Mis, &Roulette::Never), (512, 256), key));
+        for k in 0..K {
+            account.spend(3);
+            let n = means.deviation.len() as f64;
+            let squares: DVec3 = means.deviation.iter().map(|d| (d[k + 1] - bound * d[k]).powf(2.0)).sum();
+            let excess = means.mean[k + 1] - bound * means.mean[k];
+            let limit = threshold * (squares * (n / (n - 1.0))).map(f64::sqrt) + 1e-6 * means.mean[k];
+            assert!(excess.cmple(limit).all(), "scene {i}, T{}: {excess} above {limit}", k + 1);
+        }
+    }
+}
+
+/// Two patches of the same albedo in one room with anything between: light from A seen at B is light from B seen at A.
+#[test]
+fn two_patches_may_change_places() {
+    let mut jury = Jury::open("two_patches_may_change_places");
+    let between = (prop::collection::vec((prop_oneof![opaque(1.0), glass()], any::<bool>()), 3), 0.2..0.45f64);
+    for (i, (materials, size)) in draw(between, 10).enumerate() {
+        // A on the floor, B on the wall, of different areas
+        let a = quad(DVec3::new(-0.9, -0.99, 0.6), DVec3::X * 0.7, DVec3::NEG_Z * 0.9);
+        let b = quad(DVec3::new(0.99, -0.2, -0.5), DVec3::Z * 0.6, DVec3::Y * 0.5);
+        let area = [0.7 * 0.9, 0.6 * 0.5];
+        let ball = sphere(DVec3::new(0.1, -0.3, 0.1), size, false);
+        let block = Geometry::Box { min: DVec3::new(-0.6, 0.2, -0.7), max: DVec3::new(-0.1, 0.8, -0.2), rotate_y: 30.0, inward: false };
+        let rho = DVec3::new(0.9, 0.7, 0.5);
+        let mut d = description(&[
+            (a, rho, DVec3::ZERO),
+            (b, rho, DVec3::ZERO),
+            (room(DVec3::splat(-1.0), DVec3::ONE, 0.0), rho, DVec3::ZERO),
+            (ball, rho, DVec3::ZERO),
+            (block, rho, DVec3::ZERO),
+        ]);
+        for (j, (bsdf, both)) in materials.into_iter().enumerate() {
+            // the room itself does not let light out
+            let bsdf = if j == 0 && matches!(bsdf, BsdfDescription::Dielectric { .. }) { d.materials[0].bsdf.clone() } else { bsdf };
+            d.materials[j + 2].bsdf = bsdf;
+            d.materials[j + 2].sides = if both { Sides::Both } else { Sides::Front };
+        }
+        let [to_b, to_a] = [0, 1].map(|lit: usize| {
+            let mut d = d.clone();
+            d.shapes[lit].emission = DVec3::ONE;
+            let scene = Scene::new(&d);
+            let at = Starts(vec![Start::On(2 * (1 - lit as u32)); 16]);
+            let key = Key::new(jury.seed(), ["a", "b"][lit]).branch(i as u32);
+            let plan = plan(K, Technique::Mis, &Roulette::Constant { from: K, q: 0.3 });
+            let mut r = image_replicates(&film(&scene, &at, Kind::Prefix, &plan, (2048, 256), key));
+            let scale = area[1 - lit];
+            r.mean.iter_mut().for_each(|m| *m *= scale);
+            r.deviation.iter_mut().flatten().for_each(|m| *m *= scale);
+            r
+        });
+        same(&mut jury, &format!("scene {i}"), &to_b, &to_a);
+    }
+    jury.assert_power(0.4, 0.2);
 }

@@ -114,6 +114,11 @@ pub const ENTRIES: &[Entry] = &[
     entry("no_bounce_gains_energy", 768, 1e-8),
     entry("a_uniform_room_keeps_the_share_of_its_albedo", 144, 1e-8),
     entry("terms_do_not_depend_on_the_axes", 45, 1e-8),
+    // tests/material_properties.rs
+    entry("all_estimators_agree_in_any_scene", 2_000, 1e-8),
+    entry("means_do_not_depend_on_the_axes", 600, 1e-8),
+    entry("no_material_gains_energy", 480, 1e-8),
+    entry("two_patches_may_change_places", 180, 1e-8),
     // tests/bsdf.rs
     entry("directions_have_the_density_they_claim", 1_000, 1e-8),
     entry("a_million_directions_have_the_density_they_claim", 1_000, 1e-8),
