@@ -9,7 +9,7 @@
 
 mod common;
 
-use common::judge::{Judged, Jury};
+use common::judge::Jury;
 use common::random::{cases, draw, glass, items, opaque, schedule, world};
 use common::sampling::{Start, Starts, collect, plan};
 use common::scenes::{description, quad, room, sphere};
@@ -151,7 +151,8 @@ impl<'a> Reference<'a> {
             let f = bsdf.eval(o, i, Carried::Radiance).as_dvec3() * f64::from(i.z.abs());
             return (f, f64::from(bsdf.pdf(o, i, Sampling::Bsdf)));
         }
-        let draws = [0.0, 1.0 - f32::EPSILON / 2.0].map(|u| bsdf.sample(o, Sampling::Bsdf, Carried::Radiance, [0.5, 0.5, u]));
+        let draws =
+            [0.0, 1.0 - f32::EPSILON / 2.0].map(|u| bsdf.sample(o, Sampling::Bsdf, Carried::Radiance, [0.5, 0.5, u]));
         let s = draws.into_iter().flatten().find(|s| s.delta && (s.wi.z > 0.0) == (i.z > 0.0)).unwrap();
         let relative = match bsdf {
             Bsdf::Dielectric(d) if i.z < 0.0 => f64::from(d.interface.eta),
@@ -201,7 +202,11 @@ impl<'a> Reference<'a> {
             return (light * cos, cos / PI * self.angle(z, x));
         }
         let arrives = self.cosine(x, to);
-        let density = if self.parallel(z) { arrives / (PI * self.radius * self.radius) } else { arrives / (4.0 * PI * self.r2(z, x)) };
+        let density = if self.parallel(z) {
+            arrives / (PI * self.radius * self.radius)
+        } else {
+            arrives / (4.0 * PI * self.r2(z, x))
+        };
         (light, density)
     }
 
@@ -256,7 +261,8 @@ impl<'a> Reference<'a> {
             if s > 0 && (delta[t] || t > 0 && delta[t - 1]) {
                 return 0.0;
             }
-            let light: f64 = if s == 1 && t > 0 { self.connect(&z[k - 1], &z[k]) } else { from_light[t..].iter().product() };
+            let light: f64 =
+                if s == 1 && t > 0 { self.connect(&z[k - 1], &z[k]) } else { from_light[t..].iter().product() };
             from_eye[..t].iter().product::<f64>() * light
         };
         Some((f, (0..=k + 1).map(density).collect()))
@@ -358,7 +364,13 @@ fn compare_paths(d: &Description, seed: u64, samples: u32, seen: &mut Compared) 
         let finds = finds(&t, key, pixel, sample, LAST);
         // the estimator finds just these
         let mut theirs = vec![];
-        bidirectional.find(&t, &scene.camera, (key, pixel, sample), |f| theirs.push((f.s, f.k, f.value, f.weight)), |_| ());
+        bidirectional.find(
+            &t,
+            &scene.camera,
+            (key, pixel, sample),
+            |f| theirs.push((f.s, f.k, f.value, f.weight)),
+            |_| (),
+        );
         theirs.retain(|f| f.2 != Rgb::ZERO);
         let ours = finds.iter().filter(|f| f.value != Rgb::ZERO);
         let ours: Vec<_> = ours.map(|f| (f.s, f.path.len() - 1, f.value, f.weight)).collect();
@@ -368,10 +380,13 @@ fn compare_paths(d: &Description, seed: u64, samples: u32, seen: &mut Compared) 
         for f in finds.iter().filter(|f| f.value.min_element() > 1e-20) {
             let Some((contribution, densities)) = reference.path(&f.path, &f.delta) else { continue };
             let material = |v: &Vertex| match v.side {
-                side if side < LIGHT => format!("{:?}", d.materials[d.shapes[d.primitives()[(side / 2) as usize].0].material].bsdf),
+                side if side < LIGHT => {
+                    format!("{:?}", d.materials[d.shapes[d.primitives()[(side / 2) as usize].0].material].bsdf)
+                }
                 _ => "light".into(),
             };
-            let path = || f.path.iter().zip(&f.delta).map(|(v, delta)| format!("  {v:?} delta {delta} {}", material(v)));
+            let path =
+                || f.path.iter().zip(&f.delta).map(|(v, delta)| format!("  {v:?} delta {delta} {}", material(v)));
             let what = || format!("s = {}, scene {seed}\n{}", f.s, path().collect::<Vec<_>>().join("\n"));
             let (sum, mine) = (densities.iter().sum::<f64>(), densities[f.s]);
             assert!(mine > 0.0, "found where it cannot be: {densities:?} {}", what());
@@ -384,9 +399,14 @@ fn compare_paths(d: &Description, seed: u64, samples: u32, seen: &mut Compared) 
                 if densities[r].max(q) < 1e-6 * sum { 0.0 } else { (q / densities[r] - 1.0).abs() }
             });
             let error = density_error.fold(weight_error.max(value_error), f64::max);
-            assert!(error < 0.1, "weight {} for {total}, value·p/F {}, densities {densities:?} against {:?}, {}",
-                f.weight, f.value.as_dvec3() * mine / contribution,
-                (0..densities.len()).map(|r| f.densities.density(r)).collect::<Vec<_>>(), what());
+            assert!(
+                error < 0.1,
+                "weight {} for {total}, value·p/F {}, densities {densities:?} against {:?}, {}",
+                f.weight,
+                f.value.as_dvec3() * mine / contribution,
+                (0..densities.len()).map(|r| f.densities.density(r)).collect::<Vec<_>>(),
+                what()
+            );
             seen.errors.push(error);
             seen.ways[f.s] += 1;
             let inner = || (1..f.path.len() - 1).filter(|&i| f.delta[i]);
@@ -417,9 +437,18 @@ fn weights_are_those_of_the_path() {
     eprintln!(
         "{} paths, ways {:?}, {} with delta vertices, {} refracted, {} from the sky, {} from a point, {} from a direction; \
          errors: median {:.1e}, 99 % {:.1e}, largest {:.1e}",
-        seen.errors.len(), seen.ways, seen.delta, seen.refracted, seen.sky, seen.point, seen.beam, at(0.5), at(0.99), at(1.0)
+        seen.errors.len(),
+        seen.ways,
+        seen.delta,
+        seen.refracted,
+        seen.sky,
+        seen.point,
+        seen.beam,
+        at(0.5),
+        at(0.99),
+        at(1.0)
     );
-    assert!(at(0.5) < 1e-5 && at(0.99) < 1e-2);
+    assert!(at(0.5) < 5e-5 && at(0.99) < 2e-3);
     assert!(seen.ways.iter().all(|&n| n > 300));
     for n in [seen.delta, seen.refracted, seen.sky, seen.point, seen.beam] {
         assert!(n > 300);
@@ -560,7 +589,12 @@ fn lossless() -> impl Strategy<Value = BsdfDescription> {
         Just(BsdfDescription::Diffuse { reflectance: Colour::Uniform(DVec3::ONE) }),
         Just(BsdfDescription::Mirror { reflectance: DVec3::ONE }),
         Just(BsdfDescription::Conductor { metal: Metal::Reflectance(DVec3::ONE), rough: None }),
-        (1.1..2.5f64).prop_map(|ior| BsdfDescription::Dielectric { ior, ior_outside: 1.0, choice: Choice::Fresnel, rough: None }),
+        (1.1..2.5f64).prop_map(|ior| BsdfDescription::Dielectric {
+            ior,
+            ior_outside: 1.0,
+            choice: Choice::Fresnel,
+            rough: None
+        }),
     ]
 }
 
@@ -577,7 +611,9 @@ fn transformed(d: &Description, turn: DQuat, s: f64, whole: bool) -> Description
     all.camera.up = turn * d.camera.up;
     for light in &mut all.lights {
         match light {
-            LightDescription::Point { position, intensity } => (*position, *intensity) = (map(*position), *intensity * s * s),
+            LightDescription::Point { position, intensity } => {
+                (*position, *intensity) = (map(*position), *intensity * s * s)
+            }
             LightDescription::Directional { direction, .. } => *direction = turn * *direction,
             LightDescription::Environment { .. } => {}
         }
@@ -659,11 +695,15 @@ fn all_estimators_agree_in_any_scene() {
     for (i, d) in draw(world(), 24).enumerate() {
         let d = small(d);
         let scene = Scene::new(&d);
-        let images: Vec<_> = WAYS.into_iter().filter(|w| sees_all(&scene, w.0, w.1)).map(|(kind, technique, spp)| {
-            let key = Key::new(jury.seed(), &format!("{kind:?}")).branch(i as u32);
-            let plan = plan(K, technique, &Roulette::Constant { from: K, q: 0.3 });
-            (kind, image_replicates(&film(&scene, &scene.camera, kind, &plan, (spp, 256), key)))
-        }).collect();
+        let images: Vec<_> = WAYS
+            .into_iter()
+            .filter(|w| sees_all(&scene, w.0, w.1))
+            .map(|(kind, technique, spp)| {
+                let key = Key::new(jury.seed(), &format!("{kind:?}")).branch(i as u32);
+                let plan = plan(K, technique, &Roulette::Constant { from: K, q: 0.3 });
+                (kind, image_replicates(&film(&scene, &scene.camera, kind, &plan, (spp, 256), key)))
+            })
+            .collect();
         let Some((_, first)) = images.first() else { continue };
         for (kind, image) in &images[1..] {
             if *kind == Kind::Path {
@@ -683,14 +723,20 @@ fn means_do_not_depend_on_the_axes() {
     let mut jury = Jury::open("means_do_not_depend_on_the_axes");
     let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.4, 1.3, -2.0);
     let upright = |d: &Description| {
-        let image = |l: &LightDescription| matches!(l, LightDescription::Environment { sky: fredholm::scene::description::Sky::LatLong(_), .. });
+        let image = |l: &LightDescription| {
+            matches!(l, LightDescription::Environment { sky: fredholm::scene::description::Sky::LatLong(_), .. })
+        };
         !d.lights.iter().any(image)
     };
     for (i, d) in draw(world(), 24).enumerate().filter(|(_, d)| upright(d)).take(10) {
         let d = small(d);
         // the same primitives in both, so that lights are as many
         let scenes = [DQuat::IDENTITY, turn].map(|turn| Scene::new(&transformed(&d, turn, 1.7, false)));
-        for (kind, technique, spp) in [(Kind::Prefix, Technique::Mis, 512), (Kind::Light, Technique::Mis, 256), (Kind::Bidirectional, Technique::Mis, 256)] {
+        for (kind, technique, spp) in [
+            (Kind::Prefix, Technique::Mis, 512),
+            (Kind::Light, Technique::Mis, 256),
+            (Kind::Bidirectional, Technique::Mis, 256),
+        ] {
             let [a, b] = [0, 1].map(|j: usize| {
                 let key = Key::new(jury.seed(), &format!("{kind:?} {j}")).branch(i as u32);
                 let plan = plan(K, technique, &Roulette::Constant { from: K, q: 0.3 });
@@ -716,7 +762,14 @@ fn no_material_gains_energy() {
         let strip = SurfaceStrip { sensor: SurfaceSensor::new(&scene), pixels: 16 };
         let bound = scene.max_albedo().as_dvec3();
         let key = Key::new(account.seed(), "gain").branch(i as u32);
-        let means = image_replicates(&film(&scene, &strip, Kind::Prefix, &plan(K, Technique::Mis, &Roulette::Never), (512, 256), key));
+        let means = image_replicates(&film(
+            &scene,
+            &strip,
+            Kind::Prefix,
+            &plan(K, Technique::Mis, &Roulette::Never),
+            (512, 256),
+            key,
+        ));
         for k in 0..K {
             account.spend(3);
             let n = means.deviation.len() as f64;
@@ -739,7 +792,12 @@ fn two_patches_may_change_places() {
         let b = quad(DVec3::new(0.99, -0.2, -0.5), DVec3::Z * 0.6, DVec3::Y * 0.5);
         let area = [0.7 * 0.9, 0.6 * 0.5];
         let ball = sphere(DVec3::new(0.1, -0.3, 0.1), size, false);
-        let block = Geometry::Box { min: DVec3::new(-0.6, 0.2, -0.7), max: DVec3::new(-0.1, 0.8, -0.2), rotate_y: 30.0, inward: false };
+        let block = Geometry::Box {
+            min: DVec3::new(-0.6, 0.2, -0.7),
+            max: DVec3::new(-0.1, 0.8, -0.2),
+            rotate_y: 30.0,
+            inward: false,
+        };
         let rho = DVec3::new(0.9, 0.7, 0.5);
         let mut d = description(&[
             (a, rho, DVec3::ZERO),
@@ -750,7 +808,11 @@ fn two_patches_may_change_places() {
         ]);
         for (j, (bsdf, both)) in materials.into_iter().enumerate() {
             // the room itself does not let light out
-            let bsdf = if j == 0 && matches!(bsdf, BsdfDescription::Dielectric { .. }) { d.materials[0].bsdf.clone() } else { bsdf };
+            let bsdf = if j == 0 && matches!(bsdf, BsdfDescription::Dielectric { .. }) {
+                d.materials[0].bsdf.clone()
+            } else {
+                bsdf
+            };
             d.materials[j + 2].bsdf = bsdf;
             d.materials[j + 2].sides = if both { Sides::Both } else { Sides::Front };
         }
@@ -761,7 +823,7 @@ fn two_patches_may_change_places() {
             let at = Starts(vec![Start::On(2 * (1 - lit as u32)); 16]);
             let key = Key::new(jury.seed(), ["a", "b"][lit]).branch(i as u32);
             let plan = plan(K, Technique::Mis, &Roulette::Constant { from: K, q: 0.3 });
-            let mut r = image_replicates(&film(&scene, &at, Kind::Prefix, &plan, (2048, 256), key));
+            let mut r = image_replicates(&film(&scene, &at, Kind::Prefix, &plan, (6144, 256), key));
             let scale = area[1 - lit];
             r.mean.iter_mut().for_each(|m| *m *= scale);
             r.deviation.iter_mut().flatten().for_each(|m| *m *= scale);
@@ -769,5 +831,5 @@ fn two_patches_may_change_places() {
         });
         same(&mut jury, &format!("scene {i}"), &to_b, &to_a);
     }
-    jury.assert_power(0.4, 0.2);
+    jury.assert_power(0.25, 0.4);
 }

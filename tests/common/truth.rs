@@ -40,4 +40,9 @@ impl Case {
     pub fn table(&self, key: &str) -> Vec<Vec<f64>> {
         self.get(key).as_array().unwrap().iter().map(numbers).collect()
     }
+
+    /// A list of whatever the case holds.
+    pub fn rows(&self, key: &str) -> Vec<Value> {
+        self.get(key).as_array().unwrap().clone()
+    }
 }
