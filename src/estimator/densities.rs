@@ -58,7 +58,7 @@ pub fn walk<T: Adjoint>(
         if v > 0 {
             let before = nodes[v - 1].state;
             nodes[v - 1].reverse = match step.delta {
-                Some(choice) => t.delta_density(&state, &before, choice),
+                Some(choice) => t.delta_density(&t.facing(&state, &step.state), &before, choice),
                 None => t.density(&step.state, &state, &before, other),
             };
         }

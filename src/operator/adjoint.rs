@@ -67,8 +67,8 @@ pub trait Adjoint: Transport {
     fn walk(&self, at: &Self::State, role: Role, rng: &mut Rng) -> Option<Walk<Self::State>>;
     /// What goes from `at` to `to`; `at` has been asked from where its walk came from.
     fn toward(&self, at: &Self::State, to: &Self::State, role: Role) -> Toward;
-    /// Stands for the density of a delta step from `at` to `to` chosen with probability `choice`: the delta function, which
-    /// is the same from both ends, is left out.
+    /// Stands for the density of a delta step from `at` to `to` chosen with probability `choice`; `at` has been asked from
+    /// where its walk came from. The delta function, which is the same from both ends, is left out.
     fn delta_density(&self, at: &Self::State, to: &Self::State, choice: f32) -> f32;
     /// The same place, asked from another.
     fn facing(&self, at: &Self::State, other: &Self::State) -> Self::State;

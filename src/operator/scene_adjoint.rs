@@ -14,7 +14,8 @@ use super::scene_transport::SceneTransport;
 use super::transport::Seen;
 use crate::math::direction::{about, cos_sin_turn, cosine_hemisphere, uniform_sphere};
 use crate::math::{Rgb, Rng};
-use crate::scene::{Camera, ESCAPED, Vertex, bsdf::Carried, emitter::Light};
+use crate::scene::bsdf::{Bsdf, Carried};
+use crate::scene::{Camera, ESCAPED, Vertex, emitter::Light};
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
 
@@ -111,8 +112,13 @@ impl Adjoint for SceneTransport<'_> {
 
     fn delta_density(&self, at: &Vertex, to: &Vertex, choice: f32) -> f32 {
         let direction = self.direction(at, to);
-        // a delta function of projected solid angle is the same from both ends
-        choice * at.n.dot(direction).abs() * self.angle(at, to, direction)
+        let cos = at.n.dot(direction);
+        // a delta function of n² times projected solid angle is the same from both ends: its factor n² over the indices of both
+        let relative = match self.scene.bsdf(at) {
+            Bsdf::Dielectric(glass) if cos < 0.0 => glass.interface.eta,
+            _ => 1.0,
+        };
+        choice * relative * cos.abs() * self.angle(at, to, direction)
     }
 
     fn facing(&self, at: &Vertex, other: &Vertex) -> Vertex {

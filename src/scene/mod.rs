@@ -275,9 +275,11 @@ impl Scene {
             Light::Ball { prim, center, radius } => match cone::sample(x, center, radius, [u[2], u[3]]) {
                 Some((p, pdf)) => {
                     let n = (p - center) * (1.0 / radius);
-                    let (to, ..) = connection(x, Vec3::ZERO, p, n);
+                    let (to, r2, ..) = connection(x, Vec3::ZERO, p, n);
                     let state = Vertex { p, n, omega: -to, side: 2 * prim };
-                    LightSample { state, to, pdf: pdf * probability, delta: false }
+                    // seen from its own surface, rounding may choose x itself: there is no direction to it
+                    let pdf = if r2 > 0.0 { pdf * probability } else { 0.0 };
+                    LightSample { state, to, pdf, delta: false }
                 }
                 None => self.by_area(x, prim, [u[2], u[3]]),
             },

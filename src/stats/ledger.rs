@@ -117,6 +117,20 @@ pub const ENTRIES: &[Entry] = &[
     // tests/other_renderer.rs
     entry("terms_are_those_of_another_renderer", 1_050, 1e-8),
     entry("a_scene_that_is_a_little_wrong_is_told_apart", 9, 1e-8),
+    // tests/light_and_surface_truths.rs
+    entry("direct_light_is_the_closed_form_from_both_ends", 300, 1e-8),
+    entry("a_mirror_wall_doubles_the_light", 200, 1e-8),
+    entry("glass_in_a_white_furnace_has_its_terms", 500, 1e-8),
+    entry("bidirectional_sees_glass", 100, 1e-8),
+    entry("glass_disappears_in_a_furnace", 60, 1e-8),
+    entry("convex_bodies_show_their_albedo", 500, 1e-8),
+    entry("bodies_reflect_their_share_of_the_sky", 100, 1e-8),
+    entry("bowls_under_the_sky_have_their_terms", 300, 1e-8),
+    // tests/material_properties.rs
+    entry("all_estimators_agree_in_any_scene", 2_000, 1e-8),
+    entry("means_do_not_depend_on_the_axes", 600, 1e-8),
+    entry("no_material_gains_energy", 480, 1e-8),
+    entry("two_patches_may_change_places", 180, 1e-8),
     // tests/bsdf.rs
     entry("directions_have_the_density_they_claim", 1_000, 1e-8),
     entry("a_million_directions_have_the_density_they_claim", 1_000, 1e-8),

@@ -4,10 +4,15 @@ use super::scenes::{description, quad, room, sphere};
 use fredholm::estimator::Roulette;
 use fredholm::math::Rgb;
 use fredholm::operator::MatrixWalk;
-use fredholm::scene::description::{Description, Geometry};
+use fredholm::scene::description::{
+    BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
+};
+use fredholm::scene::raster::Raster;
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
-use proptest::test_runner::{FileFailurePersistence, RngAlgorithm, RngSeed};
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{FileFailurePersistence, RngAlgorithm, RngSeed, TestRunner};
+use std::sync::Arc;
 
 /// `n` cases, always the same; `PROPTEST_CASES` and `PROPTEST_RNG_SEED` override. What once failed is kept beside the
 /// test and tried first.
@@ -19,6 +24,12 @@ pub fn cases(n: u32) -> ProptestConfig {
         failure_persistence: Some(Box::new(FileFailurePersistence::WithSource("regressions"))),
         ..ProptestConfig::default()
     }
+}
+
+/// The first `n` values of a strategy; the same in every run.
+pub fn draw<S: Strategy>(strategy: S, n: usize) -> impl Iterator<Item = S::Value> {
+    let mut runner = TestRunner::new(cases(n as u32));
+    (0..n).map(move |_| strategy.new_tree(&mut runner).unwrap().current())
 }
 
 /// A thing in a room.
@@ -142,4 +153,101 @@ pub fn schedule() -> impl Strategy<Value = Roulette> {
         (0usize..4).prop_map(|from| Roulette::Albedo { from }),
         (0usize..4).prop_map(|from| Roulette::Throughput { from }),
     ]
+}
+
+// ------------------------------------------------------------------------------------------------ worlds of any material
+
+fn any_albedo(top: f64) -> impl Strategy<Value = DVec3> {
+    prop_oneof![6 => vector(0.05, top), 1 => Just(DVec3::splat(top))]
+}
+
+/// Microfacets or none.
+fn rough() -> impl Strategy<Value = Option<Ggx>> {
+    let masking = prop_oneof![Just(Masking::HeightCorrelated), Just(Masking::Separable)];
+    prop_oneof![Just(None), (0.1..1.0f64, masking).prop_map(|(alpha, masking)| Some(Ggx { alpha, masking }))]
+}
+
+/// A surface that lets nothing through, of albedo at most `top`.
+pub fn opaque(top: f64) -> impl Strategy<Value = BsdfDescription> {
+    let metal = prop_oneof![
+        any_albedo(top).prop_map(Metal::Reflectance),
+        (vector(0.1, 3.0), vector(1.0, 4.0)).prop_map(move |(eta, k)| {
+            // an index reflects everything at grazing angles
+            if top < 1.0 { Metal::Reflectance(DVec3::splat(top)) } else { Metal::Fresnel { eta, k } }
+        }),
+    ];
+    let coated = (any_albedo(1.0), 1.1..2.0f64, rough());
+    let phong = (vector(0.0, 0.5 * top), vector(0.05, 0.5 * top), 0.0..60.0f64);
+    prop_oneof![
+        3 => any_albedo(top).prop_map(|c| BsdfDescription::Diffuse { reflectance: Colour::Uniform(c) }),
+        1 => any_albedo(top).prop_map(|reflectance| BsdfDescription::Mirror { reflectance }),
+        2 => (metal, rough()).prop_map(|(metal, rough)| BsdfDescription::Conductor { metal, rough }),
+        2 => coated.prop_map(move |(c, ior, rough)| match top < 1.0 {
+            true => BsdfDescription::Diffuse { reflectance: Colour::Uniform(c * top) },
+            false => BsdfDescription::Plastic { reflectance: Colour::Uniform(c), ior, rough },
+        }),
+        1 => phong.prop_map(|(c, specular, exponent)| {
+            BsdfDescription::Phong { reflectance: Colour::Uniform(c), specular, exponent }
+        }),
+    ]
+}
+
+/// Glass, smooth or rough.
+pub fn glass() -> impl Strategy<Value = BsdfDescription> {
+    let choice = prop_oneof![2 => Just(Choice::Fresnel), 1 => (0.2..0.8f64).prop_map(Choice::Constant)];
+    (1.1..2.2f64, choice, rough()).prop_map(|(ior, choice, rough)| BsdfDescription::Dielectric {
+        ior,
+        ior_outside: 1.0,
+        choice,
+        rough,
+    })
+}
+
+fn sides() -> impl Strategy<Value = Sides> {
+    prop_oneof![Just(Sides::Both), Just(Sides::Front)]
+}
+
+/// A light without a surface.
+pub fn light() -> impl Strategy<Value = LightDescription> {
+    let colour = || vector(0.3, 3.0);
+    let texels = prop::collection::vec(prop_oneof![vector(0.0, 2.0), Just(DVec3::ZERO)], 8);
+    let sky = prop_oneof![
+        colour().prop_map(Sky::Constant),
+        texels.prop_map(|t| Sky::LatLong(Arc::new(Raster::new([4, 2], t.iter().map(|c| c.as_vec3()).collect())))),
+    ];
+    prop_oneof![
+        (vector(-0.9, 0.9), colour()).prop_map(|(position, intensity)| LightDescription::Point { position, intensity }),
+        (vector(-1.0, 1.0), colour()).prop_map(|(direction, irradiance)| LightDescription::Directional {
+            direction: direction + DVec3::new(0.0, -1.5, 0.0),
+            irradiance
+        }),
+        (sky, 0.0..360.0f64).prop_map(|(sky, rotate)| LightDescription::Environment { sky, rotate, scale: 0.7 }),
+    ]
+}
+
+/// Anything at all: up to five things of any material, the first of which glows, in a room or under the open sky, with up
+/// to two lights without a surface.
+pub fn world() -> impl Strategy<Value = Description> {
+    let any = || prop_oneof![3 => opaque(1.0), 1 => glass()];
+    let lights = prop::collection::vec(light(), 0..3);
+    let walls = prop::option::of((any(), sides()));
+    let materials = prop::collection::vec((any(), sides()), 6);
+    (items(), materials, walls, lights).prop_map(|(items, materials, walls, mut lights)| {
+        let mut d = furnished(DVec3::splat(0.5), &items);
+        for (m, (bsdf, sides)) in d.materials[1..].iter_mut().zip(materials) {
+            (m.bsdf, m.sides) = (bsdf, sides);
+        }
+        match walls {
+            Some((bsdf, sides)) => (d.materials[0].bsdf, d.materials[0].sides) = (bsdf, sides),
+            // open: a floor is left of the room
+            None => d.shapes[0].geometry = quad(DVec3::new(-1.0, -0.9, 1.0), DVec3::X * 2.0, DVec3::NEG_Z * 2.0),
+        }
+        // one sky is enough
+        let is_sky = |l: &LightDescription| matches!(l, LightDescription::Environment { .. });
+        if lights.len() == 2 && lights.iter().all(is_sky) {
+            lights.pop();
+        }
+        d.lights = lights;
+        d
+    })
 }

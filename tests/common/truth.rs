@@ -46,4 +46,9 @@ impl Case {
         let tables = self.get(key).as_array().unwrap().iter();
         tables.map(|t| t.as_array().unwrap().iter().map(numbers).collect()).collect()
     }
+
+    /// A list of whatever the case holds.
+    pub fn rows(&self, key: &str) -> Vec<Value> {
+        self.get(key).as_array().unwrap().clone()
+    }
 }
