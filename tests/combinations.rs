@@ -38,7 +38,7 @@ use fredholm::operator::SceneTransport;
 use fredholm::scene::Selection;
 use fredholm::stats::ledger;
 use fredholm::worlds::{sampled::Estimator, unseen::unseen};
-use judge::{Findings, compare};
+use judge::{Findings, Sees, compare};
 use measure::{Measurement, measure, scene};
 use rayon::prelude::*;
 use rules::{Ruled, Rules, Through, Violation, rules, violations};
@@ -68,8 +68,8 @@ fn check(known: &Known, c: &Combination, effort: u32, seed: u64, level: f64) -> 
     let key = |what| Key::new(seed, &format!("{}, {c}, {what}", known.case.name));
     let run = measure(&t, &scene.camera, c, effort, key("run"));
     let pilot = measure(&t, &scene.camera, c, effort, key("pilot"));
-    let supported = unseen(&scene, c.estimator, c.technique).is_empty();
-    compare(&known.case, c, (&run, &pilot, &known.reference), supported, level)
+    let sees = Sees { all: unseen(&scene, c.estimator, c.technique).is_empty(), delta: scene.any_delta_surface() };
+    compare(&known.case, c, (&run, &pilot, &known.reference), sees, level)
 }
 
 /// Every combination in every scene, side by side.
@@ -145,6 +145,8 @@ fn assert_sound(found: &[Vec<Findings>], proved: f64, both_sides: f64) {
         share(|f| f.unseen)
     );
     eprintln!("{text}");
+    let extreme: Vec<&String> = found.iter().flatten().flat_map(|f| &f.extreme).collect();
+    eprintln!("beyond 5 standard errors, though not beyond t*: {extreme:#?}");
     let wrong: Vec<&String> = found.iter().flatten().flat_map(|f| &f.wrong).collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
     assert!(share(|f| f.equivalent) >= proved && share(Findings::both_sides) >= both_sides, "{text}");
@@ -158,7 +160,11 @@ fn every_pair_of_choices_has_the_same_terms() {
     let known: Vec<Known> = scenes::all().into_iter().map(|case| known(case, 16, seed)).collect();
     let found = check_all(&known, &rows, 1, &mut account, name);
     eprintln!("{}", table(&known, &rows, &found));
-    assert_sound(&found, 0.0, 0.0);
+    assert_sound(&found, 0.10, 0.35);
+    for (known, found) in known.iter().zip(&found) {
+        let judged = found.iter().filter(|f| ["agrees", "consistent"].contains(&f.verdict())).count();
+        assert!(judged >= 2, "in {} only {judged} combinations are judged from both sides", known.case.name);
+    }
 }
 
 #[test]
@@ -174,11 +180,11 @@ fn every_combination_has_the_same_terms() {
     cases.retain(|c| only.as_ref().is_none_or(|only| only.split(',').any(|o| o == c.name)));
     let seed = account.seed();
     let known: Vec<Known> = cases.into_iter().map(|case| known(case, 32, seed)).collect();
-    let found = check_all(&known, &rows, 2, &mut account, name);
+    let found = check_all(&known, &rows, 3, &mut account, name);
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("target/combinations.md");
     std::fs::write(&file, table(&known, &rows, &found)).unwrap();
     eprintln!("{}", file.display());
-    assert_sound(&found, 0.0, 0.0);
+    assert_sound(&found, 0.10, 0.35);
 }
 
 /// Runs a walk by a table of rules that may be broken, after a pilot run by the one that is not; `scale` is that of [`Ruled`].
@@ -191,7 +197,8 @@ fn ruled(known: &Known, c: &Combination, rules: Rules, scale: [f32; 2], seed: u6
         measure::with_eye(&t, &Through(&scene.camera), &as_mis, 1, key, rules.eye)
     };
     let (wrong, pilot) = (run("run", rules, scale), run("pilot", self::rules(c.technique), [1.0; 2]));
-    compare(&known.case, c, (&wrong, &pilot, &known.reference), true, level)
+    let sees = Sees { all: true, delta: scene.any_delta_surface() };
+    compare(&known.case, c, (&wrong, &pilot, &known.reference), sees, level)
 }
 
 /// The tables with nothing broken pass, and with any cell broken they do not: in the room of mirror and glass, where hits count
@@ -241,7 +248,8 @@ fn every_broken_emission_rule_is_found() {
     assert!(missed.is_empty(), "{missed:#?}");
 }
 
-/// A strategy that counts 10 % too much is found, whichever end it walks from.
+/// A strategy that counts too much is found, whichever end it walks from: by 10 %, and by more where it is one of
+/// many.
 #[test]
 fn a_strategy_that_counts_too_much_is_found() {
     let name = "a_strategy_that_counts_too_much_is_found";
@@ -252,8 +260,9 @@ fn a_strategy_that_counts_too_much_is_found() {
         (Some(Estimator::Prefix), [1.1, 1.0]),
         (None, [1.1, 1.0]),
         (Some(Estimator::Light), [1.0, 1.1]),
-        (Some(Estimator::Bidirectional), [1.1, 1.0]),
-        (Some(Estimator::Bidirectional), [1.0, 1.1]),
+        // one of k + 2 ways has a small share, so it must err more to be seen
+        (Some(Estimator::Bidirectional), [2.0, 1.0]),
+        (Some(Estimator::Bidirectional), [1.0, 1.5]),
     ] {
         let c = Combination { estimator, selection: Selection::Power, ..measure::best("furnace") };
         let mut wrong = |scale| {

@@ -36,6 +36,8 @@ use fredholm::worlds::sampled::Estimator;
 /// δ as a share of the term, and of the image.
 const OF_TERM: f64 = 0.05;
 const OF_IMAGE: f64 = 1e-3;
+/// A part of the image that cannot be missed in it.
+const SLIGHT: f64 = 5e-3;
 
 /// The slots of a functional: k = 0..=K, the tail, and `None` for the whole.
 fn quantities(f: &Functional) -> Vec<(Option<usize>, Estimate)> {
@@ -58,6 +60,8 @@ pub struct Findings {
     /// Least and largest effect in standard errors, of what was judged from both sides; and largest of all.
     pub z: (f64, f64),
     pub highest: f64,
+    /// What differs from both sides by more than five standard errors, but not by t*.
+    pub extreme: Vec<String>,
     /// What differs.
     pub wrong: Vec<String>,
 }
@@ -82,12 +86,21 @@ impl Findings {
     }
 }
 
+/// What the combination sees of the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Sees {
+    /// All paths.
+    pub all: bool,
+    /// Mirrors or glass, behind which no connection finds anything.
+    pub delta: bool,
+}
+
 /// Compares.
 pub fn compare(
     case: &Case,
     c: &Combination,
     (run, pilot, reference): (&Measurement, &Measurement, &Measurement),
-    supported: bool,
+    sees: Sees,
     level: f64,
 ) -> Findings {
     let mut found =
@@ -97,11 +110,14 @@ pub fn compare(
     }
     let image = quantities(&reference.functionals[0]);
     let whole = reference.functionals[0].total.mean;
-    let seeks =
-        c.technique != Technique::Scatter || matches!(c.estimator, Some(Estimator::Light | Estimator::Bidirectional));
+    let supported = sees.all;
+    let from_light = matches!(c.estimator, Some(Estimator::Light | Estimator::Bidirectional));
+    let seeks = !sees.delta && (c.technique != Technique::Scatter || from_light);
     let expect: &[f64] = case.description.expect.as_ref().map_or(&[], |e| &e.terms);
     for ((f, p), r) in run.functionals.iter().zip(&pilot.functionals).zip(&reference.functionals) {
         let truth = quantities(r);
+        // the whole is heard only if each of its parts is that has a part in it
+        let mut parts = [true; 3];
         for ((slot, e), (_, trial)) in quantities(f).into_iter().zip(quantities(p)) {
             let at = truth.iter().position(|(s, _)| *s == slot).unwrap();
             let exact = slot.filter(|_| f.name == "image").filter(|&k| k <= K).and_then(|k| expect.get(k));
@@ -122,7 +138,10 @@ pub fn compare(
                 let pilot = Measured::of(&trial, channel);
                 let reach = 2.0 * critical(level, pilot.dof) * pilot.std_error;
                 let dark = pilot.mean == 0.0 && pilot.std_error == 0.0;
-                let heard = if dark { seeks && slot != Some(0) } else { reach <= size[channel].min(loud(pilot.mean)) };
+                let empty = seeks && slot != Some(0) || size[channel] == 0.0;
+                let fits = if dark { empty } else { reach <= size[channel].min(loud(pilot.mean)) };
+                parts[channel] &= fits || size[channel] <= SLIGHT * whole[channel];
+                let heard = fits && (slot.is_some() || parts[channel]);
                 let delta = OF_TERM * image[at].1.mean[channel] + OF_IMAGE * whole[channel];
                 let (above, below) = (d.mean > half + rounding, -d.mean > half + rounding);
                 let both = supported && steady && heard;
@@ -142,10 +161,11 @@ pub fn compare(
                     }
                 }
                 let wrong = if both { above || below } else { above && !signed };
-                if !d.mean.is_finite() || wrong {
+                if !d.mean.is_finite() || wrong || both && z.abs() > 5.0 {
                     let slot = slot.map_or("whole".into(), |k| if k > K { "tail".into() } else { format!("T{k}") });
                     let colour = ["red", "green", "blue"][channel];
-                    found.wrong.push(format!(
+                    let differs = !d.mean.is_finite() || wrong;
+                    (if differs { &mut found.wrong } else { &mut found.extreme }).push(format!(
                         "{}, {c}, {slot}, {}, {colour}: {:.5e} ± {:.1e}, reference {:.5e} ± {:.1e}, z = {z:.1}",
                         case.name, f.name, e.mean[channel], e.std_error[channel], known.mean, known.std_error
                     ));
