@@ -160,10 +160,10 @@ fn every_pair_of_choices_has_the_same_terms() {
     let known: Vec<Known> = scenes::all().into_iter().map(|case| known(case, 16, seed)).collect();
     let found = check_all(&known, &rows, 1, &mut account, name);
     eprintln!("{}", table(&known, &rows, &found));
-    assert_sound(&found, 0.10, 0.35);
+    assert_sound(&found, 0.13, 0.35);
     for (known, found) in known.iter().zip(&found) {
-        let judged = found.iter().filter(|f| ["agrees", "consistent"].contains(&f.verdict())).count();
-        assert!(judged >= 2, "in {} only {judged} combinations are judged from both sides", known.case.name);
+        let (both, all) = found.iter().fold((0, 0), |n, f| (n.0 + f.both_sides(), n.1 + f.scalars()));
+        assert!(both * 50 >= all, "in {} only {both} of {all} scalars are judged from both sides", known.case.name);
     }
 }
 
