@@ -110,6 +110,11 @@ pub const ENTRIES: &[Entry] = &[
     // tests/branching.rs
     entry("a_tree_has_the_powers_of_the_matrix", 2_000, 1e-8),
     entry("variances_follow_the_recursion_of_independent_children", 108, 1e-8),
+    // tests/combinations.rs
+    entry("every_pair_of_choices_has_the_same_terms", 60_000, 1e-8),
+    entry("every_combination_has_the_same_terms", 600_000, 1e-8),
+    entry("every_broken_emission_rule_is_found", 60_000, 1e-8),
+    entry("a_strategy_that_counts_too_much_is_found", 2_000, 1e-8),
     // tests/scene_properties.rs
     entry("no_bounce_gains_energy", 768, 1e-8),
     entry("a_uniform_room_keeps_the_share_of_its_albedo", 144, 1e-8),
