@@ -5,7 +5,7 @@
 
 use fredholm::estimator::render::{Amount, Unwatched, render};
 use fredholm::estimator::{
-    Batch, PathTracer, Paths, Plan, Prefix, Roulette, SingleTerm, Technique, TermEstimator, TermSink,
+    Batch, Bidirectional, LightTracer, PathTracer, Paths, Plan, Prefix, Roulette, SingleTerm, Technique, TermEstimator, TermSink,
 };
 use fredholm::math::{Columns, Key};
 use fredholm::operator::{SceneTransport, Sensor, Transport};
@@ -54,13 +54,22 @@ fn main() {
             "prefix, all terms" => render(&t, camera, &Prefix(cut.clone()), amount, &mut Unwatched, &stop),
             "prefix, sum only" => render(&t, camera, &OnlyTheSum(Prefix(cut.clone())), amount, &mut Unwatched, &stop),
             "prefix, all terms and tail" => render(&t, camera, &Prefix(tail.clone()), amount, &mut Unwatched, &stop),
+            "light" => render(&t, camera, &LightTracer(cut.clone()), amount, &mut Unwatched, &stop),
+            "bidirectional" => render(&t, camera, &Bidirectional(cut.clone()), amount, &mut Unwatched, &stop),
             "path tracer (scalar)" => render(&t, camera, &PathTracer(cut.clone()), amount, &mut Unwatched, &stop),
             _ => render(&t, camera, &SingleTerm(cut.clone()), amount, &mut Unwatched, &stop),
         };
         start.elapsed().as_secs_f64() * 1e9 / (film.shape.pixels() as f64 * f64::from(spp))
     };
-    let names =
-        ["prefix, all terms", "prefix, sum only", "prefix, all terms and tail", "path tracer (scalar)", "single"];
+    let names = [
+        "prefix, all terms",
+        "prefix, sum only",
+        "prefix, all terms and tail",
+        "path tracer (scalar)",
+        "single",
+        "light",
+        "bidirectional",
+    ];
     let mut times = names.map(|_| vec![]);
     for _ in 0..5 {
         for (name, times) in names.iter().zip(&mut times) {
