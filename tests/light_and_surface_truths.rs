@@ -412,11 +412,12 @@ fn glass_in_a_white_furnace_has_its_terms() {
                 let starts = Starts(vec![Start::At(tilted(&scene, degrees))]);
                 for technique in Technique::ALL {
                     let plan = plan(LAST, technique, &Roulette::Constant { from: 40, q: 0.5 });
+                    let n = if technique == Technique::Mis { N } else { 1024 };
                     let samples = collect(
                         &t,
                         &starts,
                         &Prefix(plan),
-                        N,
+                        n,
                         1024,
                         Key::new(account.seed(), &format!("{name} {eta} {degrees} {p}")),
                     );
