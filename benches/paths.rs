@@ -5,7 +5,8 @@
 
 use fredholm::estimator::render::{Amount, Unwatched, render};
 use fredholm::estimator::{
-    Batch, Bidirectional, LightTracer, PathTracer, Paths, Plan, Prefix, Roulette, SingleTerm, Technique, TermEstimator, TermSink,
+    Batch, Bidirectional, LightTracer, PathTracer, Paths, Plan, Prefix, Roulette, SingleTerm, Technique, TermEstimator,
+    TermSink,
 };
 use fredholm::math::{Columns, Key};
 use fredholm::operator::{SceneTransport, Sensor, Transport};
