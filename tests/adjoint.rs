@@ -92,6 +92,6 @@ fn bidirectional_matches_matrix_powers() {
         6,
         &Bidirectional(plan(Technique::Mis)),
         1 << 17,
-        0.3,
+        0.1,
     );
 }

@@ -25,6 +25,9 @@ fn cornell(size: [u32; 2]) -> Description {
 
 const WHITE: DVec3 = DVec3::new(0.8, 0.7, 0.6);
 
+/// The spherical light: centre and radius.
+const BALL: (DVec3, f64) = (DVec3::new(-0.6, 0.5, -0.6), 0.15);
+
 /// A room with a ball, a disk light, a spherical light and a mesh.
 fn lamps() -> Description {
     let tent = Geometry::Mesh {
@@ -38,7 +41,7 @@ fn lamps() -> Description {
     description(&[
         (room(DVec3::splat(-1.0), DVec3::ONE, 0.0), WHITE, DVec3::ZERO),
         (sphere(DVec3::new(0.4, -0.6, -0.5), 0.35, false), DVec3::new(0.2, 0.5, 0.9), DVec3::ZERO),
-        (sphere(DVec3::new(-0.6, 0.5, -0.6), 0.15, false), DVec3::splat(0.5), DVec3::new(4.0, 3.0, 2.0)),
+        (sphere(BALL.0, BALL.1, false), DVec3::splat(0.5), DVec3::new(4.0, 3.0, 2.0)),
         (disk, DVec3::splat(0.3), DVec3::new(2.0, 5.0, 3.0)),
         (tent, DVec3::new(0.7, 0.3, 0.2), DVec3::ZERO),
     ])
@@ -262,9 +265,14 @@ fn seeds_choose_the_bits() {
     }
 }
 
-/// The density of next-event estimation at y, seen from x, per solid angle: the plain formula in `f64`.
+/// The density of next-event estimation at y, seen from x, per solid angle: the plain formulae in `f64`.
 fn light_density(scene: &Scene, x: &Vertex, y: &Vertex) -> f64 {
     let (d, m) = (y.p.as_dvec3() - x.p.as_dvec3(), y.n.as_dvec3());
+    if ((y.p.as_dvec3() - BALL.0).length() - BALL.1).abs() < 1e-4 {
+        // the ball is sampled by solid angle: one over that of its cap, 2π(1 − cos θ)
+        let cos = (1.0 - (BALL.1 / (BALL.0 - x.p.as_dvec3()).length()).powi(2)).sqrt();
+        return 1.0 / (scene.lights.len() as f64 * std::f64::consts::TAU * (1.0 - cos));
+    }
     f64::from(scene.light_density(y.side)) * d.length_squared() / -d.normalize().dot(m)
 }
 

@@ -134,9 +134,9 @@ fn branching_takes_powers_of_its_children() {
 fn every_setting_has_its_usual_values() {
     for (over, values) in [
         ("spp", vec!["16", "64", "256"]),
-        ("technique", vec!["scatter", "connect", "mis"]),
+        ("technique", vec!["scatter", "connect", "mis", "mis-power"]),
         ("sampling", vec!["uniform", "cosine", "bsdf"]),
-        ("estimator", vec!["prefix", "single", "branching"]),
+        ("estimator", vec!["prefix", "single", "branching", "light", "bidirectional"]),
         ("points", vec!["independent", "sobol"]),
         ("roulette", vec!["none", "lecture", "albedo"]),
     ] {
@@ -197,12 +197,12 @@ fn what_makes_no_sense_is_refused() {
         ("--over technique --values guess", "`guess` is none of scatter, connect, mis"),
         ("--over sampling --values mis", "`mis` is none of uniform"),
         ("--over points --values halton", "`halton` is none of"),
-        ("--over estimator --values light", "`light` is none of"),
+        ("--over estimator --values dark", "`dark` is none of"),
         ("--over roulette --values half", "unknown roulette"),
         ("--over spp --values 0", "`0` is not a whole number"),
         ("--over spp --equal-rays", "--equal-rays"),
         ("--over spp --patches 100", "--patches has no part in a sweep"),
-        ("--over branching --values 1000", "1000 children at every vertex make 1.7e19 rays at depth 4"),
+        ("--over branching --values 1000", "1000 children at every vertex make 2.1e18 rays at depth 4"),
     ] {
         let said = run(desk.path(), &format!("sweep cornell {line}"));
         assert_eq!(said.code, 2, "{line}: {}", said.err);
