@@ -78,6 +78,9 @@ pub fn render<T: Transport>(
     film
 }
 
+/// What of the film one job fills: sums, squares, counts.
+type Part<'a> = ((&'a mut [f64], &'a mut [f64]), &'a mut [u32]);
+
 #[allow(clippy::too_many_arguments)] // one call site; a struct of them would only rename the list
 fn pass<T: Transport>(
     t: &T,
@@ -95,8 +98,7 @@ fn pass<T: Transport>(
     let counts = film.samples.par_chunks_mut(BLOCK);
     // the first pass is always finished, so that every pixel holds something
     let may_stop = samples.start > 0;
-    let job = |paths: &mut Paths<T::Wave>,
-               (i, ((sums, squares), counts)): (usize, ((&mut [f64], &mut [f64]), &mut [u32]))| {
+    let job = |paths: &mut Paths<T::Wave>, (i, ((sums, squares), counts)): (usize, Part)| {
         if may_stop && stop.load(Ordering::Relaxed) {
             return (vec![0; shape.slots], 0);
         }

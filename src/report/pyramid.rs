@@ -88,11 +88,11 @@ pub fn draw(
     };
 
     let mut text = text_element(GAP, GAP + TITLE * 0.8, TITLE, SANS, "", title);
-    for k in 0..rows {
+    for (k, &gain) in gains.iter().enumerate() {
         let y = top + k as f64 * cell_h + LABEL * LINE + 0.5 * image_h;
         text += &text_element(GAP, y, TITLE, SANS, "font-weight=\"bold\"", &format!("T{}E", superscript(k)));
         if common {
-            text += &text_element(GAP, y + LABEL * LINE, LABEL, SANS, "fill=\"#333333\"", &gain_label(gains[k]));
+            text += &text_element(GAP, y + LABEL * LINE, LABEL, SANS, "fill=\"#333333\"", &gain_label(gain));
         }
     }
     for (stone, (_, gain)) in stones.iter().zip(&images) {

@@ -94,7 +94,7 @@ impl Lights {
                 up_to as f32
             });
             let light = match shape.geometry {
-                Geometry::Sphere { center, radius, z, inward: false } if z == [-1.0, 1.0] => {
+                Geometry::Sphere { center, radius, z: [-1.0, 1.0], inward: false } => {
                     Light::Ball { prim: mine[0], center: center.as_vec3(), radius: radius as f32 }
                 }
                 _ => Light::Surface { cdf: cdf.collect(), prims: mine },
