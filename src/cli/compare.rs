@@ -69,7 +69,7 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
             foot += "\nz map: ";
             foot += &if two.is_finite() {
                 let (two, three) = (100.0 * two, 100.0 * three);
-                format!("{two:.1} % of the pixels beyond 2 (4.6 % if equal), {three:.2} % beyond 3 (0.27 %)")
+                format!("{two:.1} % of the pixels beyond 2 (4.6 % if equal and normal), {three:.2} % beyond 3 (0.27 %)")
             } else {
                 "no pixel has a known error".into()
             };

@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | x, ω | [`Vertex`] | [`vertex`] |
 //! | ray(x, ω) | [`Scene::trace`] | `accel`, `packets`, `shape` |
-//! | f(ω_o, ω_i) | [`Bsdf`](bsdf::Bsdf) | [`bsdf`] |
+//! | f(ω_o, ω_i) | [`Bsdf`] | [`bsdf`] |
 //! | E(x, ω) | [`Scene::emission`], [`Scene::light`] | [`emitter`] |
 //! | W(x, ω) | [`Camera`], [`SurfaceSensor`] | [`sensor`] |
 

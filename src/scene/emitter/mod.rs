@@ -5,7 +5,7 @@
 //! | notation | meaning | place |
 //! |---|---|---|
 //! | P_i | probability of light i: 1/n, or Φ_i/ΣΦ | [`Selection`] |
-//! | p_A = P_i/A_i | density on a surface, m⁻² | [`Lights::density`] |
+//! | p_A = P_i/A_i | density on a surface, m⁻² | `Lights::density` |
 //! | p_ω | density in solid angle at the receiver: p_A r²/cos θ_y; of a sphere, P_i over its solid angle ([`cone`]) | `LightSample::pdf` |
 //! | Φ | power, W: π A L, 4π I, π R² H, 4π² R² L̄ (R the radius of the scene) | `power` |
 //!
