@@ -395,7 +395,6 @@ impl Scene {
         (pdf > 0.0).then_some(pdf * probability)
     }
 
-
     /// A point outside the scene in direction `d` from `x`.
     #[inline(always)]
     pub(crate) fn beyond(&self, x: Vec3, d: Vec3) -> Vec3 {
