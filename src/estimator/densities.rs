@@ -138,29 +138,66 @@ impl PathDensities {
         Self { from_eye: wide(from_eye), from_light: wide(from_light), connect, delta, s }
     }
 
+    /// Density of z_i by strategy s: p→ before the junction, p← behind it, c where s = 1.
+    fn of_vertex(&self, i: usize, s: usize) -> f64 {
+        let k = self.delta.len() - 1;
+        if i + s <= k {
+            self.from_eye[i]
+        } else if s == 1 && k > 0 {
+            self.connect
+        } else {
+            self.from_light[i]
+        }
+    }
+
+    /// Whether strategy s can find the path: at a delta vertex nothing is linked.
+    fn links(&self, s: usize) -> bool {
+        let t = self.delta.len() - s;
+        s == 0 || !(self.delta[t] || t > 0 && self.delta[t - 1])
+    }
+
     /// p_s.
     pub fn density(&self, s: usize) -> f64 {
-        let t = self.delta.len() - s;
-        // at a delta vertex nothing is linked
-        let linked = t < self.delta.len() && (self.delta[t] || t > 0 && self.delta[t - 1]);
-        if linked {
-            return 0.0;
+        if self.links(s) { (0..self.delta.len()).map(|i| self.of_vertex(i, s)).product() } else { 0.0 }
+    }
+
+    /// p_s/p_r for the strategy r that found the path, vertex by vertex: of a long path the products themselves leave the
+    /// range of `f64` when lengths are in millimetres.
+    fn ratio(&self, s: usize) -> f64 {
+        if self.links(s) {
+            (0..self.delta.len()).map(|i| self.of_vertex(i, s) / self.of_vertex(i, self.s)).product()
+        } else {
+            0.0
         }
-        let (eye, light) = (&self.from_eye[..t], &self.from_light[t..]);
-        let light: f64 = match (s, t) {
-            (1, 1..) => self.connect,
-            _ => light.iter().product(),
-        };
-        eye.iter().product::<f64>() * light
     }
 
     /// The share of the strategy that found the path: p_s/Σ p_r, or the same of squares.
     pub fn weight(&self, squared: bool) -> f32 {
-        let mine = self.density(self.s);
-        let ratio = |r: usize| {
-            let q = self.density(r) / mine;
-            if squared { q * q } else { q }
-        };
+        let ratio = |s: usize| if squared { self.ratio(s).powi(2) } else { self.ratio(s) };
         (1.0 / (0..=self.delta.len()).map(ratio).sum::<f64>()) as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A path of 64 vertices whose densities per area are as small, or as large, as those of a room measured in micrometres
+    /// or in kilometres: its densities are 0 or infinite in `f64`, its weights are what the ratios say.
+    #[test]
+    fn weights_survive_long_paths_in_any_unit() {
+        for unit in [1e-12, 1.0, 1e12] {
+            for s in [0, 1, 2, 40, 63, 64] {
+                let densities = PathDensities {
+                    from_eye: vec![unit; 64],
+                    from_light: vec![unit; 64],
+                    connect: unit,
+                    delta: vec![false; 64],
+                    s,
+                };
+                assert!((densities.weight(false) - 1.0 / 65.0).abs() < 1e-7, "{unit} {s}");
+                assert!((densities.weight(true) - 1.0 / 65.0).abs() < 1e-7, "{unit} {s}");
+            }
+        }
     }
 }

@@ -166,9 +166,11 @@ fn splat<T: Transport>(
 ) {
     let (shape, pixels) = (film.shape, film.shape.pixels() as u32);
     let blocks: Vec<u32> = (0..pixels).step_by(BLOCK).collect();
-    // a pass that is left half-way would darken every pixel, so that a pass is all or nothing but for whole samples
+    // a sample that is left half-way would darken every pixel, so that it is all or nothing; the first pass is always
+    // finished, so that every replicate holds something: of empty ones the errors would be 0
+    let may_stop = samples.start > 0;
     for sample in samples {
-        if sample > 0 && stop.load(Ordering::Relaxed) {
+        if may_stop && stop.load(Ordering::Relaxed) {
             return;
         }
         for some in blocks.chunks(AT_ONCE) {

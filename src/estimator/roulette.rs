@@ -9,6 +9,9 @@
 use crate::math::Rgb;
 use std::{fmt, str::FromStr};
 
+/// The largest probability of survival by albedo.
+const LONGEST: f32 = 1023.0 / 1024.0;
+
 /// A schedule of termination probabilities.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Roulette {
@@ -23,7 +26,8 @@ pub enum Roulette {
     },
     /// q\[v\] as listed; the last entry holds for all later vertices.
     Table(Vec<f64>),
-    /// 0 before `from`, then q = 1 − the largest channel of the albedo: the analog walk, whose variance is always finite.
+    /// 0 before `from`, then q = 1 − the largest channel of the albedo: the analog walk, whose variance is always finite. At
+    /// least 1/1024: an albedo may be a bound that is 1 where light is lost, as in a hollow ball of rough metal.
     Albedo {
         /// First vertex with roulette.
         from: usize,
@@ -56,7 +60,7 @@ impl Roulette {
                 if v < *from {
                     0.0
                 } else {
-                    1.0 - albedo.max_element().clamp(0.0, 1.0)
+                    1.0 - albedo.max_element().clamp(0.0, LONGEST)
                 }
             }
             Self::Throughput { from } => {
@@ -163,6 +167,15 @@ mod tests {
         for s in ["half", "constant:1@0", "table:0.1,x", "constant:-0.1", "lecture:2"] {
             assert!(s.parse::<Roulette>().is_err(), "{s}");
         }
+    }
+
+    /// Also where the albedo is only known to be at most 1.
+    #[test]
+    fn albedo_ends_every_path() {
+        let r = Roulette::Albedo { from: 2 };
+        assert_eq!(r.termination(1, Rgb::ONE, Rgb::ONE), 0.0);
+        assert_eq!(r.termination(2, Rgb::ONE, Rgb::ONE), 1.0 / 1024.0);
+        assert_eq!(r.termination(2, Rgb::ONE, Rgb::splat(0.25)), 0.75);
     }
 
     #[test]
