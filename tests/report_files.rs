@@ -343,6 +343,7 @@ fn full_summary() -> Summary {
         functionals: vec![functional],
         cost,
         unseen: vec![],
+        by_luck: vec![],
     };
     let verdict = Verdict {
         name: "T1: terms − radiosity".into(),

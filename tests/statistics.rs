@@ -47,7 +47,14 @@ fn simulated(rng: &mut Noise, design: Design, truth: impl Fn(usize, usize) -> f6
             events: vec![],
         })
         .collect();
-    Series { world: World::Terms, label: "simulated".into(), functionals, cost: Cost::default(), unseen: vec![] }
+    Series {
+        world: World::Terms,
+        label: "simulated".into(),
+        functionals,
+        cost: Cost::default(),
+        unseen: vec![],
+        by_luck: vec![],
+    }
 }
 
 fn null(_functional: usize, k: usize) -> f64 {

@@ -30,7 +30,14 @@ fn functional(name: &str, cv: f64) -> Functional {
 
 fn series(cv: f64) -> Series {
     let functionals = vec![functional("image", cv), functional("region 0,0", 4.0 * cv)];
-    Series { world: World::Terms, label: "test".into(), functionals, cost: Cost::default(), unseen: vec![] }
+    Series {
+        world: World::Terms,
+        label: "test".into(),
+        functionals,
+        cost: Cost::default(),
+        unseen: vec![],
+        by_luck: vec![],
+    }
 }
 
 fn path(cv: f64) -> Series {

@@ -65,6 +65,11 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
             head += "\nwarning: both were made by the same command with the same seed: equal bits prove nothing";
         }
         let mut foot = facts::judgement(&comparison);
+        if comparison.outcome == fredholm::stats::Outcome::Differs
+            && let Some(luck) = facts::luck([x, y].into_iter())
+        {
+            foot += &format!("\nwarning: {luck}");
+        }
         if let Some((two, three)) = map {
             foot += "\nz map: ";
             foot += &if two.is_finite() {

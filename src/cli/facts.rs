@@ -1,6 +1,7 @@
 //! What a run says beside its tables: the judgement, facts about the matrix and the decay, warnings.
 
 use super::solve::Found;
+use fredholm::report::summary;
 use fredholm::stats::{self, Comparison, TermMeans, observed_rate};
 use fredholm::terms::Series;
 use fredholm::worlds::discrete::Discrete;
@@ -104,9 +105,25 @@ pub fn orders(meshes: &[Series]) -> Vec<String> {
     )]
 }
 
+/// What to think of before a difference is believed.
+pub fn luck<'a>(results: impl Iterator<Item = &'a Series>) -> Option<String> {
+    let found: Vec<String> =
+        results.filter(|s| !s.by_luck.is_empty()).map(|s| format!("{}: {}", s.label, s.by_luck.join(", "))).collect();
+    (!found.is_empty()).then(|| {
+        format!(
+            "the difference may be light that one side has not found yet; what is found by luck only:\n{}\n\
+             compare again with more samples",
+            found.join("\n")
+        )
+    })
+}
+
 /// What the reader must know before trusting an error bar.
 pub fn warnings(found: &Found) -> Vec<String> {
     let mut out = vec![];
+    if found.verdicts.iter().any(|v| v.outcome == summary::Outcome::Differs) {
+        out.extend(luck(found.terms.iter().chain(&found.path).map(|s| &s.series)));
+    }
     let all = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
     for s in all.filter(|s| s.series.cost.non_finite > 0) {
         out.push(format!(

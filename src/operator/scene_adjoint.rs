@@ -164,7 +164,7 @@ impl SceneTransport<'_> {
                 let (c, s) = cos_sin_turn(u[1]);
                 let r = self.scene.radius() * u[0].sqrt();
                 let o = self.scene.center() + about(at.omega, r * c, r * s, 0.0);
-                (self.scene.beyond(o, -at.omega), at.omega, light * self.disk())
+                (o - at.omega * (2.0 * self.scene.radius()), at.omega, light * self.disk())
             }
         };
         let state = self.scene.trace(o, d)?;

@@ -134,7 +134,7 @@ impl SceneTransport<'_> {
                 (f * (1.0 / light.pdf), pdf, normal)
             }
         };
-        let other_pdf = if light.delta { 0.0 } else { scatter_pdf };
+        let other_pdf = if light.can_be_hit { scatter_pdf } else { 0.0 };
         Some((Step { state: light.state, weight, pdf: light.pdf, other_pdf }, normal))
     }
 }

@@ -34,7 +34,7 @@ pub use vertex::{ESCAPED, LIGHT, Side, Vertex, VertexWave};
 use crate::math::Rgb;
 use accel::Accel;
 use bsdf::Bsdf;
-use description::{BsdfDescription, Sides};
+use description::{BsdfDescription, LightDescription, Sides};
 pub use emitter::Selection;
 use emitter::{Light, Lights, cone};
 use glam::{DVec3, Vec3};
@@ -52,8 +52,8 @@ pub(crate) struct LightSample {
     pub(crate) to: Vec3,
     /// Density in solid angle; r² P for a point and P for a direction, so that f cos θ/pdf is the weight in every case.
     pub(crate) pdf: f32,
-    /// Whether no ray can hit it.
-    pub(crate) delta: bool,
+    /// Whether it has an area, so that a ray can hit it.
+    pub(crate) can_be_hit: bool,
 }
 
 /// The change of measure: a density per area at y, seen from a point at distance r, per solid angle.
@@ -89,9 +89,11 @@ pub struct Scene {
     textures: Option<Textures>,
     /// How far the next ray starts off the surface, metres.
     offset: f32,
-    /// A sphere around everything.
+    /// A sphere around the shapes.
     center: Vec3,
     radius: f32,
+    /// A distance that leaves the scene from everywhere in it, camera and point lights included.
+    beyond: f32,
     /// Whether some surface has a delta part.
     any_delta: bool,
 }
@@ -132,9 +134,15 @@ impl Scene {
             Some(t) => t.brightest(side / 2).map_or(*b, |rho| b.with_reflectance(rho)).max_albedo(),
             None => b.max_albedo(),
         });
-        let camera = description.camera.origin;
-        let (low, high) = (all[0].min(camera), all[1].max(camera));
-        let radius = 0.5 * (high - low).length();
+        // lights without area shine on the shapes; what is beyond lies beyond the camera, too
+        let radius = 0.5 * (all[1] - all[0]).length();
+        let center = 0.5 * (all[0] + all[1]);
+        let mut outside = vec![description.camera.origin];
+        outside.extend(description.lights.iter().filter_map(|l| match l {
+            LightDescription::Point { position, .. } => Some(*position),
+            _ => None,
+        }));
+        let reach = outside.iter().map(|p| (*p - center).length()).fold(radius, f64::max);
         Self {
             packets: plain && packets::suit(&shapes),
             camera: Camera::new(&description.camera),
@@ -142,8 +150,9 @@ impl Scene {
             accel: Accel::new(shapes, &widened),
             albedo: albedo.collect(),
             any_delta: bsdf.iter().any(Bsdf::has_delta),
-            center: (0.5 * (low + high)).as_vec3(),
+            center: center.as_vec3(),
             radius: radius as f32,
+            beyond: (4.0 * reach) as f32,
             bsdf,
             textures,
             emission,
@@ -261,16 +270,21 @@ impl Scene {
             Light::Point { position, .. } => {
                 let (to, r2, ..) = connection(x, Vec3::ZERO, position, Vec3::ZERO);
                 let state = Vertex { p: position, n: Vec3::ZERO, omega: -to, side: LIGHT + light };
-                LightSample { state, to, pdf: r2 * probability, delta: true }
+                LightSample { state, to, pdf: r2 * probability, can_be_hit: false }
             }
             Light::Directional { direction, .. } => {
                 let state = Vertex { side: LIGHT + light, ..Vertex::escaped(self.beyond(x, -direction), -direction) };
-                LightSample { state: Vertex { n: Vec3::ZERO, ..state }, to: -direction, pdf: probability, delta: true }
+                LightSample {
+                    state: Vertex { n: Vec3::ZERO, ..state },
+                    to: -direction,
+                    pdf: probability,
+                    can_be_hit: false,
+                }
             }
             Light::Environment => {
                 let (to, density) = self.sky_sample([u[2], u[3]]);
                 let state = Vertex { n: Vec3::ZERO, ..Vertex::escaped(self.beyond(x, to), to) };
-                LightSample { state, to, pdf: density * probability, delta: false }
+                LightSample { state, to, pdf: density * probability, can_be_hit: true }
             }
             Light::Ball { prim, center, radius } => match cone::sample(x, center, radius, [u[2], u[3]]) {
                 Some((p, pdf)) => {
@@ -279,7 +293,7 @@ impl Scene {
                     let state = Vertex { p, n, omega: -to, side: 2 * prim };
                     // seen from its own surface, rounding may choose x itself: there is no direction to it
                     let pdf = if r2 > 0.0 { pdf * probability } else { 0.0 };
-                    LightSample { state, to, pdf, delta: false }
+                    LightSample { state, to, pdf, can_be_hit: true }
                 }
                 None => self.by_area(x, prim, [u[2], u[3]]),
             },
@@ -297,7 +311,7 @@ impl Scene {
         let n = shape.normal(p);
         let (to, r2, _, cos) = connection(x, Vec3::ZERO, p, n);
         let pdf = solid_angle(self.lights.density[prim as usize], r2, cos);
-        LightSample { state: Vertex { p, n, omega: -to, side: 2 * prim }, to, pdf, delta: false }
+        LightSample { state: Vertex { p, n, omega: -to, side: 2 * prim }, to, pdf, can_be_hit: true }
     }
 
     fn sky_sample(&self, u: [f32; 2]) -> (Vec3, f32) {
@@ -374,7 +388,7 @@ impl Scene {
         }
     }
 
-    /// Centre of a sphere around everything.
+    /// Centre of a sphere around the shapes.
     pub(crate) fn center(&self) -> Vec3 {
         self.center
     }
@@ -398,7 +412,7 @@ impl Scene {
     /// A point outside the scene in direction `d` from `x`.
     #[inline(always)]
     pub(crate) fn beyond(&self, x: Vec3, d: Vec3) -> Vec3 {
-        x + d * (4.0 * self.radius)
+        x + d * self.beyond
     }
 
     /// The light points of a wave: positions in `rays.o`, normals in `rays.d`, densities in `rays.t`, primitives in `rays.prim`.

@@ -87,6 +87,10 @@ pub struct Series {
     /// Kinds of paths that this way of sampling cannot find in this scene; empty if it finds all light.
     #[serde(default)]
     pub unseen: Vec<String>,
+    /// Kinds of paths that it finds by rare and bright events only: until it has found enough of them its error bars are too
+    /// small, and nothing in its samples says so.
+    #[serde(default)]
+    pub by_luck: Vec<String>,
 }
 
 impl Series {

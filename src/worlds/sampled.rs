@@ -1,6 +1,9 @@
 //! The continuous world: terms and path tracer, from rays to series and images.
 
-use super::{Observer, Settings, unseen::unseen};
+use super::{
+    Observer, Settings,
+    unseen::{by_luck, unseen},
+};
 use crate::estimator::render::{Amount, Watch, render};
 use crate::estimator::{Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, SingleTerm, TermEstimator};
 use crate::math::Points;
@@ -93,6 +96,7 @@ pub fn terms(
     let label = format!("{estimator}, {}{}", settings.technique, spread(settings.points));
     let mut result = run.finish(&film, World::Terms, label);
     result.series.unseen = unseen(scene, Some(estimator), settings.technique);
+    result.series.by_luck = by_luck(scene, Some(estimator));
     if !settings.roulette.ends() {
         cut(&mut result.series, settings);
     }
@@ -108,6 +112,7 @@ pub fn path(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &
     let mut result =
         sample(&t, &scene.camera, &PathTracer(plan), "path", (World::Path, label), settings, observer, stop);
     result.series.unseen = unseen(scene, None, settings.technique);
+    result.series.by_luck = by_luck(scene, None);
     if !settings.path_roulette.ends() {
         cut(&mut result.series, settings);
     }
@@ -173,7 +178,7 @@ impl<'a> Run<'a> {
         };
         let image = |s: usize| TermImage::of(film, s..s + 1);
         Sampled {
-            series: Series { world, label, functionals: functionals(film), cost, unseen: vec![] },
+            series: Series { world, label, functionals: functionals(film), cost, unseen: vec![], by_luck: vec![] },
             terms: (0..slots - 1).map(image).collect(),
             tail: if slots > 1 { image(slots - 1) } else { TermImage::default() },
             sum: if slots > 1 { TermImage::of(film, 0..slots - 1) } else { TermImage::default() },

@@ -141,6 +141,10 @@ impl Lights {
             Some(*sum as f32)
         });
         self.cdf = sums.collect();
+        // rounding must not let the last number choose a light without power
+        if let Some(last) = self.probability.iter().rposition(|&p| p > 0.0) {
+            self.cdf[last..].fill(1.0);
+        }
         let density = |&light: &u32| match light {
             NONE => 0.0,
             i if uniform => (1.0 / (n * self.area[i as usize])) as f32,
