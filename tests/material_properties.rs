@@ -94,9 +94,8 @@ struct Reference<'a> {
 
 impl<'a> Reference<'a> {
     fn new(scene: &'a Scene, description: &'a Description) -> Self {
-        let eye = description.camera.origin;
         let bounds = description.primitives().into_iter().map(|(_, p)| p.bounds());
-        let [low, high] = bounds.fold([eye, eye], |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let [low, high] = bounds.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         let sky = description.lights.iter().find_map(|l| match l {
             LightDescription::Environment { sky, rotate, scale } => Some(Environment::new(sky, *rotate, *scale)),
             _ => None,

@@ -194,7 +194,7 @@ pub struct Run {
     ///   lecture              q = 0, 0, then 0.5
     ///   constant:Q[@V]       q = Q from vertex V on (2)
     ///   table:q0,q1,…        as listed, the last for all that follow
-    ///   albedo[@V]           q = 1 − albedo from vertex V on (2), at least 1/1024
+    ///   albedo[@V]           q = 1 − albedo from vertex V on (2)
     ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
     #[arg(long, value_name = "SCHEDULE", verbatim_doc_comment)]
     pub roulette: Option<Roulette>,

@@ -9,8 +9,9 @@
 use crate::math::Rgb;
 use std::{fmt, str::FromStr};
 
-/// The largest probability of survival by albedo.
-const LONGEST: f32 = 1023.0 / 1024.0;
+/// From this vertex on roulette by albedo ends every path, with at least this probability: an albedo may be a bound that is 1
+/// where light is lost, as in a hollow ball of rough metal. Earlier it would only add noise to what keeps all its light.
+const AT_LAST: (usize, f32) = (128, 1.0 / 64.0);
 
 /// A schedule of termination probabilities.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +28,7 @@ pub enum Roulette {
     /// q\[v\] as listed; the last entry holds for all later vertices.
     Table(Vec<f64>),
     /// 0 before `from`, then q = 1 − the largest channel of the albedo: the analog walk, whose variance is always finite. At
-    /// least 1/1024: an albedo may be a bound that is 1 where light is lost, as in a hollow ball of rough metal.
+    /// least 1/64 from vertex 128 on, so that paths end where the albedo is only known to be at most 1.
     Albedo {
         /// First vertex with roulette.
         from: usize,
@@ -60,7 +61,8 @@ impl Roulette {
                 if v < *from {
                     0.0
                 } else {
-                    1.0 - albedo.max_element().clamp(0.0, LONGEST)
+                    let q = 1.0 - albedo.max_element().clamp(0.0, 1.0);
+                    if v < AT_LAST.0 { q } else { q.max(AT_LAST.1) }
                 }
             }
             Self::Throughput { from } => {
@@ -174,7 +176,8 @@ mod tests {
     fn albedo_ends_every_path() {
         let r = Roulette::Albedo { from: 2 };
         assert_eq!(r.termination(1, Rgb::ONE, Rgb::ONE), 0.0);
-        assert_eq!(r.termination(2, Rgb::ONE, Rgb::ONE), 1.0 / 1024.0);
+        assert_eq!(r.termination(127, Rgb::ONE, Rgb::ONE), 0.0);
+        assert_eq!(r.termination(128, Rgb::ONE, Rgb::ONE), 1.0 / 64.0);
         assert_eq!(r.termination(2, Rgb::ONE, Rgb::splat(0.25)), 0.75);
     }
 
