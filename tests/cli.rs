@@ -498,3 +498,27 @@ fn help_fits_the_screen_and_says_how_k_counts() {
     130 interrupted (what exists is saved).
     "#);
 }
+
+/// What one side cannot see is named and not compared; what both see is.
+#[test]
+fn terms_that_one_side_does_not_see_are_not_compared() {
+    let desk = Desk::new();
+    desk.small("p", "series cornell-spheres --worlds terms");
+    let said = desk.small("l", "series cornell-spheres --worlds terms --estimator light");
+    let missing = "not supported by light, from k = 1 on: what the eye sees in mirrors or glass";
+    assert!(said.err.contains(missing), "{}", said.err);
+    let said = desk.run("compare p l -o c");
+    assert_eq!(said.code, 1, "{}", said.out);
+    assert!(said.out.contains("T1 and everything longer: not supported, light does not see"), "{}", said.out);
+    let rows = desk.summary("c").verdicts;
+    assert!(rows.iter().all(|v| v.name.contains("T0")) && rows.len() == 1, "{rows:?}");
+    // a light that no ray hits is refused where rays must hit it
+    let lamp = "[[lights]]\ntype = \"point\"\nposition = [0, 0.5, 0]\nintensity = [1, 1, 1]\n";
+    let furnace = fredholm::scene::builtin::find("furnace").unwrap().source;
+    let dark: Vec<&str> = furnace.lines().filter(|l| !l.starts_with("emission")).collect();
+    std::fs::write(desk.path("point.toml"), format!("{}\n{lamp}", dark.join("\n"))).unwrap();
+    let said = desk.run("series point.toml --technique scatter");
+    assert_eq!(said.code, 2, "{}", said.err);
+    assert!(said.err.contains("help: use --technique connect or mis"), "{}", said.err);
+    assert_eq!(desk.run("render cornell --estimator light").code, 2);
+}

@@ -149,13 +149,13 @@ pub struct Run {
     /// [default in a sweep over branching: 4]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=1000))]
     pub max_bounces: Option<u16>,
-    /// Estimator of the terms: prefix, single, light, …
+    /// Estimator of the terms: prefix, single, light, … [default: prefix]
     ///
     /// single: each term from paths of its own; prefix: all terms from the prefixes of one path;
     /// branching: a tree, --branching children at every vertex; light: particles from the lights;
     /// bidirectional: walks from both ends, joined in every way. The tour runs the first two.
-    #[arg(long, value_enum, default_value_t = EstimatorName::Prefix, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
-    pub estimator: EstimatorName,
+    #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
+    pub estimator: Option<EstimatorName>,
     /// With --estimator bidirectional: every strategy apart
     ///
     /// Writes strategies.png, strategies-alone.png and strategies.exr, and prints a table:

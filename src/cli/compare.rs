@@ -20,12 +20,16 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
     let Some((x, y)) = pair(&a.1, &b.1) else {
         return Err(Failure::Input("error: one of the results holds no world\nhelp: render it again".into()));
     };
-    if let Err(why) = x.comparable(y) {
-        let help = "compare results that see the same paths: another --technique or --estimator";
-        return Err(Failure::Unsupported(format!(
-            "not supported: the two estimate different things; {why}\nhelp: {help}"
-        )));
-    }
+    // terms that one of them does not see in full are not compared
+    let gap = x.gap(y);
+    let cut;
+    let x = match &gap {
+        Some((from, _)) => {
+            cut = x.before(*from);
+            &cut
+        }
+        None => x,
+    };
     // what the mesh may matter, where one side is a matrix and the other is not
     let allowance = match (x.world, y.world) {
         (World::Radiosity, World::Radiosity) => vec![],
@@ -65,6 +69,9 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
             head += "\nwarning: both were made by the same command with the same seed: equal bits prove nothing";
         }
         let mut foot = facts::judgement(&comparison);
+        if let Some((from, why)) = &gap {
+            foot += &format!("\nT{from} and everything longer: not supported, {why}");
+        }
         if comparison.outcome == fredholm::stats::Outcome::Differs
             && let Some(luck) = facts::luck([x, y].into_iter())
         {
@@ -82,7 +89,11 @@ pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
         }
         super::say(&super::paragraphs(&[head, table::verdicts(&verdicts), foot]))?;
     }
-    Ok(if comparison.outcome == fredholm::stats::Outcome::Agrees { Ending::Ok } else { Ending::Failed })
+    Ok(if comparison.outcome == fredholm::stats::Outcome::Agrees && gap.is_none() {
+        Ending::Ok
+    } else {
+        Ending::Failed
+    })
 }
 
 type Result2 = (PathBuf, summary::Summary);

@@ -82,7 +82,9 @@ pub fn light_is_seen(
     for walk in walks {
         for missing in unseen(scene, walk, settings.technique) {
             let who = walk.map_or("the path tracer".into(), |e| e.to_string());
-            super::note(&format!("note: not supported by {who}, {}: {missing}", settings.technique));
+            let who = if walk == Some(Estimator::Light) { who } else { format!("{who}, {}", settings.technique) };
+            let (from, what) = (missing.from, missing.what);
+            super::note(&format!("note: not supported by {who}, from k = {from} on: {what}"));
         }
     }
     Ok(())

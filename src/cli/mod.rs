@@ -27,8 +27,6 @@ pub enum Failure {
     Input(String),
     /// The arguments do not make sense together: exit code 2.
     Usage(String),
-    /// What was asked for cannot be judged: exit code 1.
-    Unsupported(String),
 }
 
 impl<E: std::error::Error> From<E> for Failure {
@@ -93,10 +91,6 @@ pub fn run(cli: Cli) -> ExitCode {
         Err(Failure::Usage(text)) => {
             note(&text);
             ExitCode::from(2)
-        }
-        Err(Failure::Unsupported(text)) => {
-            note(&text);
-            ExitCode::from(1)
         }
         Err(Failure::Input(text)) => {
             note(&text);

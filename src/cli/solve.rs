@@ -127,11 +127,21 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let by_name = !run.worlds.is_empty() || default.worlds.len() == 1;
     guard::suits_a_matrix(&description, &mut worlds, by_name)?;
     guard::fits_in_a_matrix(&scene, &mut worlds, by_name)?;
-    let estimators = match (worlds.contains(&WorldName::Terms), default.both_estimators, run.estimator) {
+    let estimators = match (
+        worlds.contains(&WorldName::Terms),
+        default.both_estimators,
+        run.estimator.unwrap_or(EstimatorName::Prefix),
+    ) {
         (false, ..) => vec![],
         (_, true, _) => vec![Estimator::Single, Estimator::Prefix],
         (_, _, name) => vec![estimator(name, run.branching)],
     };
+    if let (true, Some(_)) = (estimators.is_empty(), run.estimator) {
+        let help = "leave --estimator out, or use `fredholm series`";
+        return Err(Failure::Usage(format!(
+            "error: --estimator is for the terms, which are not asked for\nhelp: {help}"
+        )));
+    }
     for &estimator in &estimators {
         guard::tree_can_be_walked(estimator, &settings, description.camera.size)?;
     }
@@ -271,9 +281,12 @@ fn verdicts(found: &Found) -> Vec<summary::Verdict> {
     let criterion = Criterion::default();
     let mut all = vec![];
     let mut judge = |name: &str, a: &Series, b: &Series, allowance: &[fredholm::terms::Functional]| {
-        if a.comparable(b).is_ok() {
-            all.extend(summary::verdicts(name, &compare(a, b, &criterion, allowance)));
-        }
+        // terms that one of them does not see in full are not compared
+        let comparison = match a.gap(b) {
+            None => compare(a, b, &criterion, allowance),
+            Some((from, _)) => compare(&a.before(from), b, &criterion, allowance),
+        };
+        all.extend(summary::verdicts(name, &comparison));
     };
     let Some(terms) = found.terms.first().map(|t| &t.series) else { return all };
     if let Some(other) = found.terms.get(1) {

@@ -3,7 +3,7 @@
 //! Every row is what `fredholm series` gives with that value and the same seed, so rows may share random numbers: their
 //! means are not independent of each other.
 
-use super::args::{self, Over, WorldName};
+use super::args::{self, EstimatorName, Over, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, guard, output, solve};
 use fredholm::estimator::Roulette;
@@ -174,7 +174,8 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
         Over::Roulette => "none,lecture,albedo",
     };
     let case = |value: String| {
-        let (mut estimator, mut settings) = (solve::estimator(run.estimator, run.branching), common.clone());
+        let (mut estimator, mut settings) =
+            (solve::estimator(run.estimator.unwrap_or(EstimatorName::Prefix), run.branching), common.clone());
         let set = || -> Result<(), String> {
             match over {
                 Over::Branching => estimator = Estimator::Branching { children: number(&value, 1000)? },

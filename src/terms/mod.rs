@@ -17,4 +17,4 @@ pub mod variance;
 
 pub use film::{Shape, TermFilm};
 pub use image::TermImage;
-pub use series::{Cost, Estimate, Functional, Series, World};
+pub use series::{Cost, Estimate, Functional, Series, Unseen, World};

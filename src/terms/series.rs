@@ -73,6 +73,15 @@ pub struct Functional {
     pub events: Vec<f64>,
 }
 
+/// A kind of paths that a way of sampling cannot find.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Unseen {
+    /// In words, after "does not see".
+    pub what: String,
+    /// The first term that has such paths.
+    pub from: usize,
+}
+
 /// What a world returns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series {
@@ -86,7 +95,7 @@ pub struct Series {
     pub cost: Cost,
     /// Kinds of paths that this way of sampling cannot find in this scene; empty if it finds all light.
     #[serde(default)]
-    pub unseen: Vec<String>,
+    pub unseen: Vec<Unseen>,
     /// Kinds of paths that it finds by rare and bright events only: until it has found enough of them its error bars are too
     /// small, and nothing in its samples says so.
     #[serde(default)]
@@ -94,16 +103,26 @@ pub struct Series {
 }
 
 impl Series {
-    /// Whether two results estimate the same: each finds the paths that the other finds.
-    ///
-    /// # Errors
-    /// What only one of them leaves out.
-    pub fn comparable(&self, other: &Self) -> Result<(), String> {
-        let only = |a: &Self, b: &Self| {
-            let missing: Vec<&str> = a.unseen.iter().filter(|p| !b.unseen.contains(p)).map(String::as_str).collect();
-            (!missing.is_empty()).then(|| format!("{} does not see {}", a.label, missing.join(" or ")))
+    /// The first term that two results do not both estimate, and what one of them leaves out there; nothing if each finds the
+    /// paths that the other finds.
+    pub fn gap(&self, other: &Self) -> Option<(usize, String)> {
+        let only = |a: &Self, b: &Self| -> Vec<(usize, String)> {
+            let missing = a.unseen.iter().filter(|p| !b.unseen.contains(p));
+            missing.map(|p| (p.from, format!("{} does not see {}", a.label, p.what))).collect()
         };
-        only(self, other).or_else(|| only(other, self)).map_or(Ok(()), Err)
+        only(self, other).into_iter().chain(only(other, self)).min()
+    }
+
+    /// The terms k < `end` alone: no tail, and a whole that means nothing else's.
+    #[must_use]
+    pub fn before(&self, end: usize) -> Self {
+        let mut cut = self.clone();
+        for f in &mut cut.functionals {
+            f.terms.truncate(end);
+            f.events.clear();
+            f.tail = Estimate::NONE;
+        }
+        cut
     }
 
     /// The image means.

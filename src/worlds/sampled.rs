@@ -93,7 +93,9 @@ pub fn terms(
             render(&t, &scene.camera, &Branching { plan, children }, amount, &mut run, stop)
         }
     };
-    let label = format!("{estimator}, {}{}", settings.technique, spread(settings.points));
+    // a walk from the light has no use for a technique
+    let technique = if estimator == Estimator::Light { String::new() } else { format!(", {}", settings.technique) };
+    let label = format!("{estimator}{technique}{}", spread(settings.points));
     let mut result = run.finish(&film, World::Terms, label);
     result.series.unseen = unseen(scene, Some(estimator), settings.technique);
     result.series.by_luck = by_luck(scene, Some(estimator));

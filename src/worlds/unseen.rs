@@ -4,29 +4,32 @@
 //! glass. A path can be found from the eye (E … ), from the light (… L), or by linking two walks; a link needs
 //! a vertex on each side that is no delta vertex, a hit needs a light that has area. With S a delta vertex and D any other:
 //!
-//! | way | does not see |
-//! |---|---|
-//! | walks from the eye, `scatter` | paths to a point or a direction |
-//! | walks from the eye, with connections | such paths whose last vertex is S |
-//! | walks from the light | paths whose first vertex is S |
-//! | walks from both ends | paths to a point or a direction without two neighbours that can be linked |
+//! | way | does not see | from k = |
+//! |---|---|---|
+//! | walks from the eye, `scatter` | paths to a point or a direction | 1 |
+//! | walks from the eye, with connections | such paths whose last vertex is S | 2 |
+//! | walks from the light | paths whose first vertex is S | 1 |
+//! | walks from both ends | paths to a point or a direction without two neighbours that can be linked | 3 |
+//!
+//! The reflection of a point in a mirror, E S L, is seen by nobody. A coat of smooth plastic is S, too.
 
 use super::sampled::Estimator;
 use crate::estimator::Technique;
 use crate::scene::Scene;
+use crate::terms::Unseen;
 
-/// The kinds of paths, of any term, that an estimator (`None` for the path tracer) cannot find in a scene; empty if it finds all.
-pub fn unseen(scene: &Scene, estimator: Option<Estimator>, technique: Technique) -> Vec<String> {
+/// The kinds of paths that an estimator (`None` for the path tracer) cannot find in a scene; empty if it finds all.
+pub fn unseen(scene: &Scene, estimator: Option<Estimator>, technique: Technique) -> Vec<Unseen> {
     let (no_area, delta) = (scene.lights.any_delta(), scene.any_delta_surface());
     let missing = match estimator {
-        Some(Estimator::Light) => delta.then_some("what the eye sees in mirrors or glass"),
+        Some(Estimator::Light) => delta.then_some((1, "what the eye sees in mirrors or glass")),
         Some(Estimator::Bidirectional) => {
-            (delta && no_area).then_some("light of a point or a direction between mirrors or glass at both ends")
+            (delta && no_area).then_some((3, "light of a point or a direction between mirrors or glass at both ends"))
         }
-        _ if technique == Technique::Scatter => no_area.then_some("light of a point or a direction"),
-        _ => (delta && no_area).then_some("light of a point or a direction through mirrors or glass"),
+        _ if technique == Technique::Scatter => no_area.then_some((1, "light of a point or a direction")),
+        _ => (delta && no_area).then_some((2, "light of a point or a direction through mirrors or glass")),
     };
-    missing.map(str::to_owned).into_iter().collect()
+    missing.map(|(from, what)| Unseen { what: what.to_owned(), from }).into_iter().collect()
 }
 
 /// The kinds of paths that can only be found by hitting a light of small area from afar: rare, bright, and the reason why a
