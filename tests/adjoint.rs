@@ -95,3 +95,19 @@ fn bidirectional_matches_matrix_powers() {
         0.1,
     );
 }
+
+/// Beyond K the eye's walks go on alone, with connections whatever the technique: they must find what no ray hits.
+#[test]
+fn the_tail_of_walks_from_both_ends_does_not_depend_on_the_technique() {
+    let t = matrix(6, 5);
+    let film = |technique| {
+        let amount = Amount { spp: 64, replicates: 16, key: Key::new(1, "tail") };
+        render(&t, &Rows(6), &Bidirectional(plan(technique)), amount, &mut Unwatched, &AtomicBool::new(false))
+    };
+    let [mis, scatter, connect] = [Technique::Mis, Technique::Scatter, Technique::Connect].map(film);
+    for i in 0..6 {
+        let tail = mis.pixel(i, K + 1..K + 2);
+        assert!(tail.0.min_element() > 0.0);
+        assert_eq!((scatter.pixel(i, K + 1..K + 2), connect.pixel(i, K + 1..K + 2)), (tail, tail));
+    }
+}

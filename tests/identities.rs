@@ -15,7 +15,7 @@ use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Scene, Vertex};
 use fredholm::terms::functional::image_replicates;
 use fredholm::terms::{Estimate, TermFilm};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 fn cornell(size: [u32; 2]) -> Description {
     let mut d = load::scene("cornell", &Options::default()).unwrap().description;
@@ -357,4 +357,17 @@ fn a_sphere_cut_into_bands_is_the_same_sphere() {
         bits(&camera_film(&whole, Kind::Prefix, &plan, 256, 8))
             == bits(&camera_film(&cut, Kind::Prefix, &plan, 256, 8))
     );
+}
+
+/// A lamp that a receiver sees from exactly beside it sends nothing, not an infinite density.
+#[test]
+fn a_lamp_seen_from_beside_is_not_seen() {
+    let lamp = quad(DVec3::new(-0.5, 0.5, -0.5), DVec3::X, DVec3::Z);
+    let wall = quad(DVec3::new(2.0, 0.0, -1.0), DVec3::Z * 2.0, DVec3::Y);
+    let scene = Scene::new(&description(&[(lamp, DVec3::ZERO, DVec3::ONE), (wall, WHITE, DVec3::ZERO)]));
+    let x = Vertex { p: Vec3::new(2.0, 0.5, 0.1), n: Vec3::NEG_X, omega: Vec3::NEG_X, side: 2 };
+    for sample in 0..1000 {
+        let rng = &mut Rng::at(Key::new(1, "beside"), 0, sample, 0, Purpose::Connect);
+        assert_eq!(SceneTransport::new(&scene).connect(&x, rng), None);
+    }
 }

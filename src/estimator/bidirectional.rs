@@ -20,11 +20,12 @@
 
 use super::densities::{Node, PathDensities};
 use super::light_tracer::LIGHT_STREAM;
-use super::{Batch, Paths, Plan, SingleTerm, TermEstimator, TermSink};
+use super::{Batch, Paths, Plan, SingleTerm, Technique, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
 use crate::operator::{Adjoint, Role, Sensor};
 
-/// The bidirectional estimator. The technique of the plan is that of the tail; with `Power` the weights are squared.
+/// The bidirectional estimator. It always hits, connects and links; of the techniques only `Power` matters: the weights are
+/// then those of squared densities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bidirectional(pub Plan);
 
@@ -54,7 +55,7 @@ impl Bidirectional {
         mut rays: impl FnMut(usize),
     ) {
         let last = self.0.max_bounces;
-        let squared = self.0.technique == super::Technique::Power;
+        let squared = self.0.technique == Technique::Power;
         let [w, h] = sensor.size();
         let share = 1.0 / (w * h) as f32;
         let eye_numbers = |v: usize, purpose: Purpose| Rng::at(key, pixel, sample, v, purpose);
@@ -173,7 +174,9 @@ impl<T: Adjoint> TermEstimator<T> for Bidirectional {
             sink.add(f.k, &[f.pixel], &[sample], &value);
         });
         rays.iter().enumerate().for_each(|(k, &n)| sink.rays(k, n));
-        SingleTerm(self.0.clone()).tail(t, sensor, batch, paths, sink);
+        // beyond K the eye's walks go on alone, and must find what has no area, too
+        let technique = if self.0.technique == Technique::Power { Technique::Power } else { Technique::Mis };
+        SingleTerm(Plan { technique, ..self.0.clone() }).tail(t, sensor, batch, paths, sink);
     }
 }
 

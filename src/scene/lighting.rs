@@ -70,8 +70,8 @@ impl Scene {
             },
             Light::Surface { .. } => self.by_area(x, self.lights.primitive(light, u[1])?, [u[2], u[3]]),
         };
-        // a density that is not positive: the light's front looks away
-        (sample.pdf > 0.0).then_some(sample)
+        // a density that is not positive: the light's front looks away; infinite: it is seen from exactly beside it
+        (sample.pdf > 0.0 && sample.pdf < f32::INFINITY).then_some(sample)
     }
 
     /// A point of a primitive, uniformly by area. The density is not positive where the front looks away.
@@ -106,7 +106,8 @@ impl Scene {
             return pdf;
         }
         let (_, r2, _, cos) = connection(x, Vec3::ZERO, at.p, at.n);
-        solid_angle(density, r2, cos)
+        // rounding may put a grazing hit behind the plane of the light
+        solid_angle(density, r2, cos.abs())
     }
 
     /// The light without a surface that a vertex stands for.
