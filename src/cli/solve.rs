@@ -2,7 +2,7 @@
 
 use super::args::{EstimatorName, Run, WorldName};
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, facts, guard, output, strategies, write};
+use super::{Ending, Failure, facts, guard, output, write};
 use fredholm::estimator::Roulette;
 use fredholm::math::Points;
 use fredholm::report::{summary, table};
@@ -321,7 +321,7 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     let world = |s: &Sampled, rays: &[u64]| table::series(&s.series.label, s.series.image(), rays);
     blocks.extend(found.terms.iter().map(|t| world(t, &t.rays)));
     if !found.strategies.is_empty() {
-        blocks.push(strategies::text(&found.strategies));
+        blocks.push(fredholm::report::pyramid::table(&found.strategies));
     }
     blocks.extend(found.path.iter().map(|p| world(p, &[])));
     blocks.extend(found.radiosity.iter().map(|r| world(&r.fine, &[])));

@@ -1,7 +1,7 @@
-//! `--strategies`: the pyramid of the bidirectional estimator, as pictures, layers and a table.
+//! `--strategies`: the pyramid of the bidirectional estimator, as pictures and layers.
 
 use super::Failure;
-use fredholm::report::pyramid::{Stone, draw, name};
+use fredholm::report::pyramid::{Stone, draw};
 use fredholm::report::typeset::Caption;
 use fredholm::report::{exr, table};
 use fredholm::worlds::pyramid::Strategy;
@@ -43,37 +43,4 @@ pub fn write(
         .collect();
     exr::write(&folder.join(FILES[2]), w, h, &layers, attributes)?;
     Ok(())
-}
-
-/// A row for every strategy: what it adds, what it would give alone, and the noise of both.
-pub fn text(all: &[Strategy]) -> String {
-    let head = ["k", "strategy", "weighted", "± 95 %", "alone", "± 95 %", "variance weighted", "alone"];
-    let mut rows = vec![head.map(str::to_owned)];
-    for s in all {
-        let [(mean, error), (alone, alone_error)] = [0, 1].map(|i| table::average(&s.means[i]));
-        let number = |x: f64| table::significant(x, 4);
-        let short = |x: f64| table::significant(x, 2);
-        rows.push([
-            s.k.to_string(),
-            name(s.k, s.s),
-            number(mean),
-            short(1.96 * error),
-            number(alone),
-            short(1.96 * alone_error),
-            short(s.variances[0]),
-            short(s.variances[1]),
-        ]);
-    }
-    let width: Vec<usize> =
-        (0..head.len()).map(|c| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0)).collect();
-    let line = |r: &[String; 8]| {
-        let cell = |(c, text): (usize, &String)| {
-            if c == 1 { format!("{text:<w$}", w = width[c]) } else { format!("{text:>w$}", w = width[c]) }
-        };
-        r.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ").trim_end().to_owned()
-    };
-    format!(
-        "strategies: s vertices walked from the light, k + 1 − s from the eye\n{}",
-        rows.iter().map(line).collect::<Vec<_>>().join("\n")
-    )
 }

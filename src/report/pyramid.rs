@@ -6,8 +6,11 @@
 use super::{
     ReportError,
     picture::{Picture, auto_gain, develop, gain_label, shrink},
+    table::{Side, aligned, average, known, significant},
     typeset::{Caption, LINE, SANS, caption_elements, page, superscript, text_element, text_width},
 };
+
+use crate::worlds::pyramid::Strategy;
 
 const LABEL: f64 = 13.0;
 const NOTE: f64 = 10.5;
@@ -108,4 +111,20 @@ pub fn draw(
         picture.paste(image, x.round() as usize, (y + LABEL * LINE).round() as usize);
     }
     Ok(picture)
+}
+
+/// A row for every strategy: what it adds, what it would give alone, and the noise of both.
+pub fn table(all: &[Strategy]) -> String {
+    let head = ["k", "strategy", "weighted", "± 95 %", "alone", "± 95 %", "variance weighted", "alone"];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    rows.extend(all.iter().map(|s| {
+        let [(mean, error), (alone, alone_error)] = s.means.each_ref().map(average);
+        let [noise, noise_alone] = s.variances.map(known);
+        let number = |x: f64| significant(x, 4);
+        let numbers = [number(mean), known(error), number(alone), known(alone_error), noise, noise_alone];
+        [s.k.to_string(), name(s.k, s.s)].into_iter().chain(numbers).collect()
+    }));
+    let mut sides = vec![Side::Right; head.len()];
+    sides[1] = Side::Left;
+    format!("strategies: s vertices walked from the light, k + 1 − s from the eye\n{}", aligned(&rows, &sides))
 }
