@@ -215,17 +215,13 @@ impl<T: Adjoint> TermEstimator<T> for Pyramid {
 
     fn sample(&self, t: &T, sensor: &impl Sensor<T>, batch: &Batch, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
         let behind = Self::len(self.0.max_bounces);
+        let mut column = Columns::new(1);
         Bidirectional(self.0.clone()).batch(t, sensor, batch, |f, sample| {
             let slot = Self::slot(f.k, f.s);
             for (slot, value) in [(slot, f.value * f.weight), (slot + behind, f.value)] {
-                sink.add(slot, &[f.pixel], &[sample], &one(value));
+                column.set(0, value);
+                sink.add(slot, &[f.pixel], &[sample], &column);
             }
         });
     }
-}
-
-fn one(value: Rgb) -> Columns {
-    let mut column = Columns::new(1);
-    column.set(0, value);
-    column
 }

@@ -47,10 +47,7 @@ impl<T: Transport> TermEstimator<T> for Branching {
         paths: &mut Paths<T::Wave>,
         sink: &mut impl TermSink,
     ) {
-        paths.start(t, sensor, batch);
-        paths.emission(t);
-        paths.add(0, sink);
-        sink.rays(0, batch.len());
+        prefix::start(t, sensor, batch, paths, sink);
         let mut below: Vec<Paths<T::Wave>> = (0..self.plan.max_bounces).map(|_| Paths::default()).collect();
         self.descend(t, 0, batch.key, paths, &mut below, sink);
     }
@@ -78,29 +75,8 @@ impl Branching {
         for c in 0..self.children {
             let key = lineage(key, v, c, self.children);
             child.descend_from(parents, key, 1.0 / self.children as f32);
-            self.step(t, v, child, sink);
+            prefix::step(t, &self.plan, v, v + 1, child, sink);
             self.descend(t, v + 1, key, child, below, sink);
-        }
-    }
-
-    /// x_v → x_{v+1} as in [`prefix`]: term v + 1 is scored by connection and by hit.
-    fn step<T: Transport>(&self, t: &T, v: usize, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
-        let Plan { max_bounces, technique, ref roulette } = self.plan;
-        let slot = v + 1;
-        if technique.connects() {
-            sink.rays(slot, paths.n);
-            paths.connect(t, v);
-            paths.score_connections(technique, slot, sink);
-        }
-        if slot == max_bounces && !technique.hits(t) && !roulette.ends() {
-            return; // nothing is left to be found
-        }
-        paths.roulette(t, v, roulette);
-        sink.rays(slot, paths.n);
-        paths.scatter(t, v);
-        if technique.hits(t) {
-            paths.emission(t);
-            paths.score_hits(technique, slot, sink);
         }
     }
 }

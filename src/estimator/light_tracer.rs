@@ -10,12 +10,12 @@
 //!
 //! There are as many particles as there are camera paths, one for each (pixel, sample), and each may add to any pixel:
 //! a splat is divided by the number of pixels, and errors come from whole replicates. What the eye sees in a mirror or
-//! through glass no particle can reach, because no connection to the eye passes a delta vertex there: [`LightTracer::blind`].
+//! through glass no particle can reach, because no connection to the eye passes a delta vertex there: `worlds::unseen`.
 //! Reference: Arvo, *Backward Ray Tracing* (1986); Dutré, Lafortune, Willems, *Monte Carlo Light Tracing* (1993).
 
 use super::{Batch, Paths, Plan, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
-use crate::operator::{Adjoint, Role, Sensor, Transport};
+use crate::operator::{Adjoint, Role, Sensor};
 
 /// The light tracer. [`Plan::technique`] has no part in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,11 +25,6 @@ pub struct LightTracer(pub Plan);
 pub(super) const LIGHT_STREAM: u32 = 0x4c49_4748;
 
 impl LightTracer {
-    /// Whether there are terms that particles cannot see in this world.
-    pub fn blind<T: Transport>(t: &T) -> bool {
-        !t.connects_to_all()
-    }
-
     /// One particle; gives each splat's slot, pixel and value to `splat`, and each ray's slot to `rays`.
     fn particle<T: Adjoint>(
         &self,

@@ -31,12 +31,23 @@ impl<T: Transport> TermEstimator<T> for Prefix {
         paths: &mut Paths<T::Wave>,
         sink: &mut impl TermSink,
     ) {
-        paths.start(t, sensor, batch);
-        paths.emission(t);
-        paths.add(0, sink);
-        sink.rays(0, batch.len());
+        start(t, sensor, batch, paths, sink);
         follow(t, &self.0, 0, paths, sink);
     }
+}
+
+/// Starts the paths of a batch and scores term 0.
+pub(super) fn start<T: Transport>(
+    t: &T,
+    sensor: &impl Sensor<T>,
+    batch: &Batch,
+    paths: &mut Paths<T::Wave>,
+    sink: &mut impl TermSink,
+) {
+    paths.start(t, sensor, batch);
+    paths.emission(t);
+    paths.add(0, sink);
+    sink.rays(0, batch.len());
 }
 
 /// Follows paths that stand at vertex `first`, scoring every term beyond it; terms beyond K go to the tail's slot.
@@ -47,8 +58,6 @@ pub(super) fn follow<T: Transport>(
     paths: &mut Paths<T::Wave>,
     sink: &mut impl TermSink,
 ) {
-    let technique = plan.technique;
-    let hits = technique.hits(t);
     let tail = plan.max_bounces + 1;
     for v in first.. {
         // the next term, or the tail; without roulette the tail would never end, and is left out
@@ -57,25 +66,41 @@ pub(super) fn follow<T: Transport>(
             break;
         }
 
-        // next-event estimation of term v + 1
-        if technique.connects() {
-            sink.rays(slot, paths.n);
-            paths.connect(t, v);
-            paths.score_connections(technique, slot, sink);
-        }
-        if v + 1 == tail - 1 && !hits && !plan.roulette.ends() {
-            break;
-        }
+        step(t, plan, v, slot, paths, sink);
+    }
+}
 
-        // roulette, once vertex v has been scored
-        paths.roulette(t, v, &plan.roulette);
+/// Scores term v + 1 from paths that stand at vertex v, which move on to v + 1; it goes to `slot`. Where nothing is left to
+/// be found beyond the last connection, the paths stay.
+pub(super) fn step<T: Transport>(
+    t: &T,
+    plan: &Plan,
+    v: usize,
+    slot: usize,
+    paths: &mut Paths<T::Wave>,
+    sink: &mut impl TermSink,
+) {
+    let Plan { max_bounces, technique, ref roulette } = *plan;
+    let hits = technique.hits(t);
 
-        // x_v → x_{v+1}, and its emission if hits count
+    // next-event estimation of term v + 1
+    if technique.connects() {
         sink.rays(slot, paths.n);
-        paths.scatter(t, v);
-        if hits {
-            paths.emission(t);
-            paths.score_hits(technique, slot, sink);
-        }
+        paths.connect(t, v);
+        paths.score_connections(technique, slot, sink);
+    }
+    if v + 1 == max_bounces && !hits && !roulette.ends() {
+        return;
+    }
+
+    // roulette, once vertex v has been scored
+    paths.roulette(t, v, roulette);
+
+    // x_v → x_{v+1}, and its emission if hits count
+    sink.rays(slot, paths.n);
+    paths.scatter(t, v);
+    if hits {
+        paths.emission(t);
+        paths.score_hits(technique, slot, sink);
     }
 }

@@ -203,10 +203,6 @@ impl Transport for SceneTransport<'_> {
         !self.scene.any_delta_surface()
     }
 
-    fn scatters_to_all(&self) -> bool {
-        !self.scene.lights.any_delta()
-    }
-
     fn emission_wave(&self, wave: &mut VertexWave, n: usize, value: &mut Columns) {
         if !self.scene.in_packets() {
             return (0..n).for_each(|i| value.set(i, self.scene.light(&wave.get(i))));

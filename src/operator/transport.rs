@@ -50,10 +50,6 @@ pub trait Transport: Sync {
     fn connects_to_all(&self) -> bool {
         true
     }
-    /// Whether [`Transport::scatter`] finds all of E: no lights without area.
-    fn scatters_to_all(&self) -> bool {
-        true
-    }
 
     /// `value[i] = E(state i)`. An override of this or the next two must give the same bits as the default.
     fn emission_wave(&self, wave: &mut Self::Wave, n: usize, value: &mut Columns) {

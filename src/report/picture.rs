@@ -143,8 +143,8 @@ pub fn gain_label(gain: f64) -> String {
 }
 
 /// Luminance of linear Rec. 709 components.
-pub fn luminance([r, g, b]: [f32; 3]) -> f64 {
-    0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
+pub fn luminance(rgb: [f32; 3]) -> f64 {
+    crate::math::luminance(glam::Vec3::from(rgb).as_dvec3())
 }
 
 /// Mean over all pixels and the three channels.

@@ -15,6 +15,7 @@ pub mod sampled;
 pub mod surface;
 pub mod unseen;
 
+use crate::estimator::render::Watch;
 use crate::estimator::{Plan, Roulette, Technique};
 use crate::math::{Key, Points};
 use crate::scene::bsdf::Sampling;
@@ -89,3 +90,12 @@ pub trait Observer: Sync {
 /// Nobody watches.
 pub struct Unobserved;
 impl Observer for Unobserved {}
+
+/// Passes on how far a render has come, and nothing else.
+struct Advance<'a>(&'a dyn Observer);
+
+impl Watch for Advance<'_> {
+    fn paths(&self, paths: u64) {
+        self.0.advance(paths);
+    }
+}

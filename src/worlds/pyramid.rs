@@ -3,9 +3,9 @@
 //! `T^k E = Σ_s (w_s-weighted strategy s)`: the weighted images of a row add up to the term, to rounding, because the same
 //! walks are walked as by the estimator itself.
 
-use super::{Observer, Settings, sampled::Estimator, sampled::amount};
+use super::{Advance, Observer, Settings, sampled::Estimator, sampled::amount};
 use crate::estimator::Pyramid;
-use crate::estimator::render::{Amount, Watch, render};
+use crate::estimator::render::{Amount, render};
 use crate::operator::SceneTransport;
 use crate::scene::Scene;
 use crate::terms::functional::image_replicates;
@@ -50,12 +50,4 @@ pub fn strategies(scene: &Scene, settings: &Settings, observer: &dyn Observer, s
         Strategy { k, s, weighted, alone, means, variances: slots.map(|i| variances[i].value * spp) }
     };
     Pyramid::strategies(settings.max_bounces).map(strategy).collect()
-}
-
-struct Advance<'a>(&'a dyn Observer);
-
-impl Watch for Advance<'_> {
-    fn paths(&self, paths: u64) {
-        self.0.advance(paths);
-    }
 }

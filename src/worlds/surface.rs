@@ -3,8 +3,8 @@
 //! `∫∫ (T^k E)(x, ω) cos θ dω dA / (πA)`, the plain mean over uniform surface points and cosine-distributed directions: camera-free,
 //! unbiased, and the same number as `Σ A_i (T_h^k E)_i / A` of the matrix. The bounds of ‖T‖₁ ≤ max albedo hold for it.
 
-use super::{Observer, Settings, sampled::Estimator};
-use crate::estimator::render::{Amount, Watch, render};
+use super::{Advance, Observer, Settings, sampled::Estimator};
+use crate::estimator::render::{Amount, render};
 use crate::estimator::{Branching, Prefix, SingleTerm};
 use crate::operator::{SceneTransport, scene_transport::SurfaceStrip};
 use crate::scene::{Scene, SurfaceSensor};
@@ -44,12 +44,4 @@ pub fn norms(
         }
     };
     image_replicates(&film)
-}
-
-struct Advance<'a>(&'a dyn Observer);
-
-impl Watch for Advance<'_> {
-    fn paths(&self, paths: u64) {
-        self.0.advance(paths);
-    }
 }

@@ -28,7 +28,7 @@
 //! Greg Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 12.5 (infinite area lights).
 
 use super::mirror_ball::lat_long;
-use crate::math::{Rgb, distribution::Table};
+use crate::math::{Rgb, distribution::Table, luminance};
 use crate::scene::{description::Sky, raster::Raster};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -70,7 +70,8 @@ impl Environment {
         let [w, h] = image.size;
         let heights: Vec<f64> = (0..=h).map(|j| (0.5 * PI * f64::from(j) / f64::from(h)).sin().powi(2)).collect();
         let share = |row: u32| (heights[row as usize + 1] - heights[row as usize]) / f64::from(w);
-        let weight = |column, row| if black { 1.0 } else { luminance(image.texel(column, row)) * share(row) };
+        let weight =
+            |column, row| if black { 1.0 } else { luminance(image.texel(column, row).as_dvec3()) * share(row) };
         let Some(table) = Table::new([w, h], weight) else { unreachable!("one texel at least is not black") };
         let row_sum = |row| (0..w).map(|column| image.texel(column, row).as_dvec3()).sum::<DVec3>();
         let mean = (0..h).map(|row| share(row) * row_sum(row)).sum::<DVec3>() * f64::from(scale as f32);
@@ -128,9 +129,4 @@ impl Environment {
     pub fn mean(&self) -> DVec3 {
         self.mean
     }
-}
-
-/// Y of linear Rec. 709; positive unless all components are 0.
-fn luminance(c: Rgb) -> f64 {
-    c.as_dvec3().dot(DVec3::new(0.2126, 0.7152, 0.0722))
 }

@@ -18,9 +18,9 @@ mod mirror_ball;
 
 use super::description::{Description, Geometry, LightDescription};
 use super::primitive::Primitive;
-use crate::math::Rgb;
+use crate::math::{Rgb, luminance};
 use environment::Environment;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::f64::consts::PI;
 
 /// How a light is selected.
@@ -72,10 +72,6 @@ pub struct Lights {
 }
 
 const NONE: u32 = u32::MAX;
-
-fn luminance(c: DVec3) -> f64 {
-    c.dot(DVec3::new(0.2126, 0.7152, 0.0722))
-}
 
 impl Lights {
     /// `radius` is that of the scene.
@@ -151,11 +147,6 @@ impl Lights {
             i => (self.probability[i as usize] / self.area[i as usize]) as f32,
         };
         self.density = self.of_prim.iter().map(density).collect();
-    }
-
-    /// How lights are selected.
-    pub fn selection(&self) -> Selection {
-        self.selection
     }
 
     /// Number of lights.
