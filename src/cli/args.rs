@@ -91,6 +91,16 @@ Example:
 Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged
 over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for the same error.")]
     Sweep(Sweep),
+    /// The same estimators on the radiosity matrix, beside its powers
+    #[command(after_help = "Examples:
+  fredholm walk cornell --patches 500 --estimator prefix
+  fredholm walk cornell --patches 500 --estimator absorption --spp 65536
+  fredholm walk cornell --patches 500 --estimator zero-variance
+
+On a matrix T^k E is known to rounding, so the walk is compared patch by patch with the truth.
+zero-variance: absorption with p_ij ∝ T_ij B_j and q_i = E_i/B_i, B the solution itself; then with worse
+and worse guides, to see what a guide is worth (walk.png, walk.csv).")]
+    Walk(super::walk::Walk),
     /// Scenes, materials, lights, bounds on the norm of T
     #[command(after_help = "Examples:
   fredholm info            the built-in scenes

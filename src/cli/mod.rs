@@ -16,6 +16,7 @@ mod progress;
 mod solve;
 mod strategies;
 mod sweep;
+mod walk;
 mod write;
 
 use args::{Cli, Command};
@@ -81,6 +82,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Radiosity(run)) => solve::radiosity(run),
         Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
+        Some(Command::Walk(args)) => walk::run(args),
         Some(Command::Info(args)) => info::run(args),
         Some(Command::Chapter(args)) => chapter::run(args),
     };

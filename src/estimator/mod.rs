@@ -9,12 +9,14 @@
 //! | prefix | all X_k from one path, by its prefixes | [`prefix`] |
 //! | light | all X_k from one particle, walked from the light | [`light_tracer`] |
 //! | bidirectional | every way to find each path from both ends, weighted | [`bidirectional`] |
+//! | absorption | one term, where the walk ends | [`absorption`] |
 //! | branching | a tree of paths, N children at every vertex | [`branching`] |
 //! | path tracer | the sum alone, independent code | [`path_tracer`] |
 //! | gather | the matrix solution, read through one sampled application of T | [`gather`] |
 //!
 //! Slots of the result: k = 0..=K for the terms, K + 1 for the tail; the path tracer has one slot.
 
+pub mod absorption;
 pub mod bidirectional;
 pub mod branching;
 pub mod densities;
@@ -28,6 +30,7 @@ pub mod roulette;
 pub mod single_term;
 pub mod technique;
 
+pub use absorption::Absorption;
 pub use bidirectional::{Bidirectional, Pyramid};
 pub use branching::Branching;
 pub use gather::Gather;

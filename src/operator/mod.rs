@@ -4,12 +4,13 @@
 //! |---|---|---|
 //! | continuous | rays in a scene: can be sampled | [`scene_transport`] |
 //! | discrete | a matrix over patches, diag(ρ) F: can be applied | [`patches`], [`form_factor`], [`matrix`] |
-//! | walk | a random walk on that matrix: can be sampled, and is known exactly | [`matrix_walk`] |
+//! | walk | a random walk on that matrix: can be sampled, and is known exactly | [`matrix_walk`], [`guided_walk`] |
 //!
 //! Sampling is the trait [`Transport`]; applying is [`matrix::LinearOperator`].
 
 pub mod adjoint;
 pub mod form_factor;
+pub mod guided_walk;
 pub mod matrix;
 pub mod matrix_walk;
 pub mod patches;
@@ -18,6 +19,7 @@ pub mod scene_transport;
 pub mod transport;
 
 pub use adjoint::{Adjoint, Role};
+pub use guided_walk::GuidedWalk;
 pub use matrix_walk::MatrixWalk;
 pub use scene_transport::SceneTransport;
-pub use transport::{Samples, Seen, Sensor, Step, Transport, Wave};
+pub use transport::{Absorbing, Samples, Seen, Sensor, Step, Transport, Wave};

@@ -69,6 +69,15 @@ pub trait Transport: Sync {
     }
 }
 
+/// A transport that knows where walks are absorbed.
+pub trait Absorbing: Transport {
+    /// q(x), the probability that a walk ends at `at`: 1 − the largest channel of the albedo, the analog walk, unless said otherwise.
+    /// Where it is 0 although light is emitted, the absorption estimator misses that light.
+    fn absorption(&self, at: &Self::State) -> f32 {
+        1.0 - self.albedo(at).max_element().clamp(0.0, 1.0)
+    }
+}
+
 /// The default of [`Transport::connect_wave`].
 pub(crate) fn connect_one_by_one<T: Transport + ?Sized>(
     t: &T,

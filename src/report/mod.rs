@@ -35,6 +35,7 @@ pub mod sweep;
 pub mod table;
 pub mod typeset;
 pub mod variance;
+pub mod walk;
 pub mod zmap;
 
 pub use error::ReportError;

@@ -112,13 +112,25 @@ impl TermFilm {
         Self { shape, samples: vec![0; shape.pixels()], rays: vec![0; shape.slots], non_finite: 0, sums, squares }
     }
 
+    /// A film of values that are known: one sample of each pixel, `slots[s][pixel]`.
+    pub(crate) fn exact(size: [u32; 2], slots: &[Vec<DVec3>]) -> Self {
+        let mut film = Self::new(Shape { size, slots: slots.len(), replicates: 1 });
+        film.samples.fill(1);
+        for (slot, values) in slots.iter().enumerate() {
+            for (pixel, v) in values.iter().enumerate() {
+                let at = film.at(pixel, 0, slot);
+                film.sums[at..at + 3].copy_from_slice(&v.to_array());
+            }
+        }
+        film
+    }
+
     /// Adds to any pixel, on behalf of sample number `sample`.
     pub(crate) fn splat(&mut self, slot: u32, pixel: u32, sample: u32, value: Rgb) {
+        let at = self.at(pixel as usize, sample as usize % self.shape.replicates, slot as usize);
         let first = pixel as usize / BLOCK * BLOCK;
         let pixels = BLOCK.min(self.samples.len() - first);
-        let (replicates, pixel) = (self.shape.replicates, pixel as usize - first);
-        let at = first * self.shape.per_pixel()
-            + place(slot as usize, sample as usize % replicates, pixel, replicates, pixels);
+        let pixel = pixel as usize - first;
         (0..3).for_each(|c| self.sums[at + c] += f64::from(value[c]));
         let all = f64::from(value.x + value.y + value.z);
         self.squares[first * self.shape.slots + slot as usize * pixels + pixel] += all * all;
@@ -128,10 +140,15 @@ impl TermFilm {
     /// Sum of the samples of one pixel, replicate and slot.
     #[inline(always)]
     pub fn sum(&self, pixel: usize, replicate: usize, slot: usize) -> DVec3 {
+        let at = self.at(pixel, replicate, slot);
+        DVec3::new(self.sums[at], self.sums[at + 1], self.sums[at + 2])
+    }
+
+    #[inline(always)]
+    fn at(&self, pixel: usize, replicate: usize, slot: usize) -> usize {
         let first = pixel / BLOCK * BLOCK;
         let pixels = BLOCK.min(self.samples.len() - first);
-        let at = first * self.shape.per_pixel() + place(slot, replicate, pixel - first, self.shape.replicates, pixels);
-        DVec3::new(self.sums[at], self.sums[at + 1], self.sums[at + 2])
+        first * self.shape.per_pixel() + place(slot, replicate, pixel - first, self.shape.replicates, pixels)
     }
 
     /// Σ (r + g + b)² of what was added to one pixel and slot.

@@ -132,6 +132,16 @@ fn weighted(film: &TermFilm, t: &Tiles, weight: impl Fn(usize) -> f64, total: f6
     }
 }
 
+/// The same functionals of images that are known without error: `slots[s][pixel]`, the terms k = 0..=K and the tail.
+pub fn exact_functionals(size: [u32; 2], slots: &[Vec<DVec3>]) -> Vec<Functional> {
+    let mut all = functionals(&TermFilm::exact(size, slots));
+    for f in &mut all {
+        f.terms.iter_mut().chain([&mut f.tail, &mut f.sum, &mut f.total]).for_each(|e| *e = Estimate::exact(e.mean));
+        f.events.clear();
+    }
+    all
+}
+
 /// Image mean, region means and projections of a film, in that order.
 pub fn functionals(film: &TermFilm) -> Vec<Functional> {
     let t = tiles(film);

@@ -7,6 +7,7 @@
 //! | path | Σ T^k E by the full path tracer | [`sampled::path`] |
 //! | radiosity | `T_h^k E` and the solve, through the same camera | [`discrete::radiosity`] |
 //! | strategies | every way to find every term from both ends | [`pyramid::strategies`] |
+//! | walk | the same estimators on the radiosity matrix | [`walk::walk`], [`zero_variance::study`] |
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 
 pub mod discrete;
@@ -14,6 +15,8 @@ pub mod pyramid;
 pub mod sampled;
 pub mod surface;
 pub mod unseen;
+pub mod walk;
+pub mod zero_variance;
 
 use crate::estimator::render::Watch;
 use crate::estimator::{Plan, Roulette, Technique};

@@ -7,7 +7,7 @@ use super::{
 use crate::estimator::render::{Amount, Watch, render};
 use crate::estimator::{Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, SingleTerm, TermEstimator};
 use crate::math::Points;
-use crate::operator::{SceneTransport, Sensor, Transport};
+use crate::operator::{Adjoint, SceneTransport, Sensor, Transport};
 use crate::scene::Scene;
 use crate::terms::functional::{Replicates, functionals, image_replicates};
 use crate::terms::norms::{SquaredNorm, squared_norm};
@@ -83,16 +83,7 @@ pub fn terms(
     let t = SceneTransport { scene, sampling: settings.sampling };
     let amount = amount(settings, &estimator.to_string());
     let mut run = Run::new(&format!("terms, {estimator}"), scene.camera.size, settings.spp, observer);
-    let plan = settings.plan();
-    let film = match estimator {
-        Estimator::Prefix => render(&t, &scene.camera, &Prefix(plan), amount, &mut run, stop),
-        Estimator::Single => render(&t, &scene.camera, &SingleTerm(plan), amount, &mut run, stop),
-        Estimator::Light => render(&t, &scene.camera, &LightTracer(plan), amount, &mut run, stop),
-        Estimator::Bidirectional => render(&t, &scene.camera, &Bidirectional(plan), amount, &mut run, stop),
-        Estimator::Branching { children } => {
-            render(&t, &scene.camera, &Branching { plan, children }, amount, &mut run, stop)
-        }
-    };
+    let film = film(&t, &scene.camera, estimator, settings.plan(), amount, &mut run, stop);
     // a walk from the light has no use for a technique
     let technique = if estimator == Estimator::Light { String::new() } else { format!(", {}", settings.technique) };
     let label = format!("{estimator}{technique}{}", spread(settings.points));
@@ -103,6 +94,25 @@ pub fn terms(
         cut(&mut result.series, settings);
     }
     result
+}
+
+/// Any estimator of the terms over any transport, through any sensor.
+pub(super) fn film<T: Adjoint>(
+    t: &T,
+    sensor: &impl Sensor<T>,
+    estimator: Estimator,
+    plan: Plan,
+    amount: Amount,
+    watch: &mut impl Watch,
+    stop: &AtomicBool,
+) -> TermFilm {
+    match estimator {
+        Estimator::Prefix => render(t, sensor, &Prefix(plan), amount, watch, stop),
+        Estimator::Single => render(t, sensor, &SingleTerm(plan), amount, watch, stop),
+        Estimator::Light => render(t, sensor, &LightTracer(plan), amount, watch, stop),
+        Estimator::Bidirectional => render(t, sensor, &Bidirectional(plan), amount, watch, stop),
+        Estimator::Branching { children } => render(t, sensor, &Branching { plan, children }, amount, watch, stop),
+    }
 }
 
 /// The full path tracer.
@@ -133,7 +143,7 @@ fn spread(points: Points) -> &'static str {
 }
 
 /// Paths that no roulette ends are cut at K: says so, and that nothing is known about what is longer.
-fn cut(series: &mut Series, settings: &Settings) {
+pub(super) fn cut(series: &mut Series, settings: &Settings) {
     series.label += &format!(", k ≤ {} only", settings.max_bounces);
     series.functionals.iter_mut().for_each(|f| f.tail = Estimate::NONE);
 }
@@ -157,19 +167,19 @@ pub(super) fn sample<T: Transport>(
 }
 
 /// A render under way.
-struct Run<'a> {
+pub(super) struct Run<'a> {
     observer: &'a dyn Observer,
     started: Instant,
     snapshots: Vec<Snapshot>,
 }
 
 impl<'a> Run<'a> {
-    fn new(what: &str, size: [u32; 2], spp: u32, observer: &'a dyn Observer) -> Self {
+    pub(super) fn new(what: &str, size: [u32; 2], spp: u32, observer: &'a dyn Observer) -> Self {
         observer.begin(what, u64::from(size[0]) * u64::from(size[1]) * u64::from(spp));
         Self { observer, started: Instant::now(), snapshots: vec![] }
     }
 
-    fn finish(self, film: &TermFilm, world: World, label: String) -> Sampled {
+    pub(super) fn finish(self, film: &TermFilm, world: World, label: String) -> Sampled {
         let slots = film.shape.slots;
         let paths = film.samples.iter().map(|&n| u64::from(n)).sum();
         let cost = Cost {

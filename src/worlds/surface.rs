@@ -3,9 +3,9 @@
 //! `∫∫ (T^k E)(x, ω) cos θ dω dA / (πA)`, the plain mean over uniform surface points and cosine-distributed directions: camera-free,
 //! unbiased, and the same number as `Σ A_i (T_h^k E)_i / A` of the matrix. The bounds of ‖T‖₁ ≤ max albedo hold for it.
 
-use super::{Advance, Observer, Settings, sampled::Estimator};
-use crate::estimator::render::{Amount, render};
-use crate::estimator::{Branching, Prefix, SingleTerm};
+use super::sampled::{self, Estimator};
+use super::{Advance, Observer, Settings};
+use crate::estimator::render::Amount;
 use crate::operator::{SceneTransport, scene_transport::SurfaceStrip};
 use crate::scene::{Scene, SurfaceSensor};
 use crate::terms::functional::{Replicates, image_replicates};
@@ -32,16 +32,11 @@ pub fn norms(
     let amount = Amount { spp, replicates: REPLICATES as usize, key };
     observer.begin(&format!("surface norms, {estimator}"), u64::from(spp) * u64::from(STRIP));
     let mut watch = Advance(observer);
-    let plan = settings.plan();
-    let film = match estimator {
-        // walks from the light cannot be led to this sensor
-        Estimator::Prefix | Estimator::Light | Estimator::Bidirectional => {
-            render(&t, &strip, &Prefix(plan), amount, &mut watch, stop)
-        }
-        Estimator::Single => render(&t, &strip, &SingleTerm(plan), amount, &mut watch, stop),
-        Estimator::Branching { children } => {
-            render(&t, &strip, &Branching { plan, children }, amount, &mut watch, stop)
-        }
+    // walks from the light cannot be led to this sensor
+    let estimator = match estimator {
+        Estimator::Light | Estimator::Bidirectional => Estimator::Prefix,
+        other => other,
     };
+    let film = sampled::film(&t, &strip, estimator, settings.plan(), amount, &mut watch, stop);
     image_replicates(&film)
 }

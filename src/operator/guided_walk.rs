@@ -1,0 +1,146 @@
+//! Walks on the matrix that are led by what they look for; led by the answer itself they have no variance.
+//!
+//! ```text
+//! whole:     p_ij = T_ij v_j / (T v)_i          weight T_ij/p_ij = (T v)_i / v_j        q_i = E_i / (E_i + (T v)_i)
+//! one term:  p_ij = T_ij x_j / (T x)_i,         x = the guide for one bounce less       ends after k bounces, without chance
+//! ```
+//!
+//! With v = B = (I − T)⁻¹ E the absorption estimator `W E/q` is B_i on every walk: (T B)_i = B_i − E_i, so the weight of a step
+//! with its survival is B_i/B_j, and the product telescopes. With x = T^{m−1} E, m the bounces left, every walk of k steps gives
+//! (T^k E)_i. With an approximate guide the estimators stay unbiased, as long as v_j > 0 wherever light can come from,
+//! and their variance says how approximate the guide is. This is why guiding works.
+//!
+//! | notation | meaning | place |
+//! |---|---|---|
+//! | T = diag(ρ) F | one channel of the matrix | [`PatchOperator`] |
+//! | v | guide of the whole series | [`GuidedWalk::whole`] |
+//! | x for m = 1, 2, … bounces left | guides of one term | [`GuidedWalk::term`] |
+//! | q | probability of termination | [`Absorbing::absorption`] |
+//!
+//! Reference: Kahn and Marshall, *Methods of Reducing Sample Size in Monte Carlo Computations* (1953); Halton, *Sequential Monte
+//! Carlo* (1962); for light transport Vorba and Křivánek, *Adjoint-Driven Russian Roulette and Splitting* (2016).
+
+use super::matrix::PatchOperator;
+use super::transport::{Absorbing, Sensor, Step, Transport};
+use crate::math::{Rgb, Rng};
+
+/// Where a led walk stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Row {
+    /// The patch.
+    pub row: u32,
+    /// Bounces left where one term is asked for; 0 where the whole is.
+    pub left: u32,
+}
+
+/// A walk on one channel of a matrix, led by guides. It finds light by arriving at it: technique scatter, or absorption.
+#[derive(Clone, Debug)]
+pub struct GuidedWalk<'a> {
+    emission: &'a [f64],
+    rho: &'a [f64],
+    guides: Vec<Guide>,
+}
+
+/// v, and the partial sums of T_ij v_j along every row; the last of a row is (T v)_i.
+#[derive(Clone, Debug)]
+struct Guide {
+    v: Vec<f64>,
+    cdf: Vec<f64>,
+}
+
+impl Guide {
+    fn new(t: &PatchOperator<'_>, v: Vec<f64>) -> Self {
+        let row = |i: usize| {
+            let mut sum = 0.0;
+            let (rho, v) = (t.rho[i], &v);
+            t.factors.row(i).iter().enumerate().map(move |(j, f)| {
+                sum += rho * f64::from(*f) * v[j];
+                sum
+            })
+        };
+        let cdf = (0..v.len()).flat_map(row).collect();
+        Self { v, cdf }
+    }
+
+    fn row(&self, i: usize) -> &[f64] {
+        let n = self.v.len();
+        &self.cdf[i * n..(i + 1) * n]
+    }
+}
+
+impl<'a> GuidedWalk<'a> {
+    /// Led to the whole series by an approximation `v` of (I − T)⁻¹ E. Memory: n² numbers for every guide.
+    pub fn whole(t: &'a PatchOperator<'a>, emission: &'a [f64], v: Vec<f64>) -> Self {
+        Self { emission, rho: &t.rho, guides: vec![Guide::new(t, v)] }
+    }
+
+    /// Led to one term by approximations of E, T E, T² E, …: the guides for 1, 2, 3, … bounces left.
+    pub fn term(t: &'a PatchOperator<'a>, emission: &'a [f64], guides: Vec<Vec<f64>>) -> Self {
+        Self { emission, rho: &t.rho, guides: guides.into_iter().map(|v| Guide::new(t, v)).collect() }
+    }
+}
+
+impl Transport for GuidedWalk<'_> {
+    type State = Row;
+    type Wave = Vec<Row>;
+
+    fn emission(&self, at: &Row) -> Rgb {
+        Rgb::splat(self.emission[at.row as usize] as f32)
+    }
+
+    fn scatter(&self, at: &Row, rng: &mut Rng) -> Option<Step<Row>> {
+        let left = at.left.saturating_sub(1);
+        let guide = &self.guides[left as usize];
+        let row = guide.row(at.row as usize);
+        let total = *row.last()?;
+        let u = rng.four();
+        // 48 bits, so that small entries get their exact share
+        let u = (f64::from(u[0]) + f64::from(u[1]) / 16_777_216.0) * total;
+        let j = row.partition_point(|&c| c <= u);
+        if j == row.len() {
+            return None; // nothing to be found this way
+        }
+        let share = row[j] - if j == 0 { 0.0 } else { row[j - 1] };
+        let (weight, pdf) = (Rgb::splat((total / guide.v[j]) as f32), (share / total) as f32);
+        Some(Step { state: Row { row: j as u32, left }, weight, pdf, other_pdf: 0.0 })
+    }
+
+    /// Nothing: a led walk finds light by arriving.
+    fn connect(&self, _: &Row, _: &mut Rng) -> Option<Step<Row>> {
+        None
+    }
+
+    fn connects_to_all(&self) -> bool {
+        false
+    }
+
+    fn albedo(&self, at: &Row) -> Rgb {
+        Rgb::splat(self.rho[at.row as usize] as f32)
+    }
+}
+
+impl Absorbing for GuidedWalk<'_> {
+    fn absorption(&self, at: &Row) -> f32 {
+        let e = self.emission[at.row as usize];
+        let reach = self.guides[0].row(at.row as usize).last().copied().unwrap_or(0.0);
+        if e > 0.0 { (e / (e + reach)) as f32 } else { 0.0 }
+    }
+}
+
+/// Pixel i asks for row i, and for the term `left`, or for the whole where that is 0.
+#[derive(Clone, Copy, Debug)]
+pub struct GuidedRows {
+    /// Number of rows.
+    pub rows: u32,
+    /// Bounces asked for.
+    pub left: u32,
+}
+
+impl Sensor<GuidedWalk<'_>> for GuidedRows {
+    fn size(&self) -> [u32; 2] {
+        [self.rows, 1]
+    }
+    fn start(&self, _: &GuidedWalk, pixel: u32, _: &mut Rng) -> Option<Row> {
+        Some(Row { row: pixel, left: self.left })
+    }
+}

@@ -1,0 +1,151 @@
+//! The walk: the estimators of the terms on the radiosity matrix, where `T_h^k E` is known to rounding.
+//!
+//! ```text
+//! E[X_k] = (T_h^k E)_i      for every patch i: no geometry and no mesh lies between the estimator and the truth
+//! ```
+//!
+//! | notation | meaning | place |
+//! |---|---|---|
+//! | `T_h^k E`, B | powers and solution of the matrix | [`Walked::exact`] |
+//! | X | samples of the same quantities, n of each patch | [`Walked::sampled`] |
+//! | z_i | (mean − truth)/error, patch by patch | [`Walked::z`] |
+//!
+//! The picture of such a run has a pixel for every patch, in one row. The zero-variance walk is [`super::zero_variance`].
+
+use super::discrete::Matrix;
+use super::sampled::{self, Estimator, Run, Sampled};
+use super::{Observer, Settings};
+use crate::estimator::render::render;
+use crate::estimator::{Absorption, PathTracer, Plan};
+use crate::operator::MatrixWalk;
+use crate::operator::matrix_walk::Rows;
+use crate::terms::functional::exact_functionals;
+use crate::terms::{Cost, Estimate, Series, World};
+use glam::DVec3;
+use std::fmt;
+use std::sync::atomic::AtomicBool;
+
+/// What walks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Walker {
+    /// An estimator of the terms.
+    Terms(Estimator),
+    /// The path tracer: the sum alone.
+    Path,
+    /// The absorption estimator.
+    Absorption,
+}
+
+impl fmt::Display for Walker {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Terms(estimator) => estimator.fmt(f),
+            Self::Path => f.write_str("path tracer"),
+            Self::Absorption => f.write_str("absorption"),
+        }
+    }
+}
+
+/// A walk beside its truth.
+pub struct Walked {
+    /// What the walks gave; pixel i is patch i.
+    pub sampled: Sampled,
+    /// The powers of the matrix, as the same functionals.
+    pub exact: Series,
+    /// z of every patch for the terms k = 0..=K, the tail and the whole; only of what has an error.
+    pub z: Vec<Vec<f64>>,
+}
+
+/// The matrix as something to walk on.
+pub fn transport(matrix: &Matrix) -> MatrixWalk {
+    let r = &matrix.radiosity;
+    let rows = r.factors.f.iter().map(|&f| f64::from(f)).collect();
+    let colours = |of: &dyn Fn(usize) -> DVec3| (0..r.patches.len()).map(|i| of(i).as_vec3()).collect();
+    let patches: Vec<_> = r.patches.iter().collect();
+    MatrixWalk::new(rows, colours(&|i| patches[i].reflectance), colours(&|i| patches[i].emission))
+}
+
+/// Walks on a matrix from every patch, `settings.spp` times.
+pub fn walk(
+    matrix: &Matrix,
+    walker: Walker,
+    settings: &Settings,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Walked {
+    let t = transport(matrix);
+    let n = matrix.radiosity.patches.len();
+    let rows = Rows(n as u32);
+    let amount = sampled::amount(settings, &format!("walk {walker}"));
+    let mut run = Run::new(&format!("walk, {walker}"), [n as u32, 1], settings.spp, observer);
+    let plan = settings.plan();
+    let (film, ends) = match walker {
+        Walker::Terms(estimator) => {
+            let ends = plan.roulette.ends();
+            (sampled::film(&t, &rows, estimator, plan, amount, &mut run, stop), ends)
+        }
+        Walker::Path => {
+            let plan = Plan { roulette: settings.path_roulette.clone(), ..plan };
+            let ends = plan.roulette.ends();
+            (render(&t, &rows, &PathTracer(plan), amount, &mut run, stop), ends)
+        }
+        Walker::Absorption => {
+            let estimator = Absorption { max_bounces: settings.max_bounces };
+            (render(&t, &rows, &estimator, amount, &mut run, stop), true)
+        }
+    };
+    let technique = match walker {
+        Walker::Absorption | Walker::Terms(Estimator::Light) => String::new(),
+        _ => format!(", {}", settings.technique),
+    };
+    let world = if walker == Walker::Path { World::Path } else { World::Terms };
+    let mut found = run.finish(&film, world, format!("walk, {walker}{technique}"));
+    let exact = exact(matrix, settings.max_bounces, walker == Walker::Path, ends);
+    if !ends {
+        sampled::cut(&mut found.series, settings);
+    }
+    let z = z(&found, &exact);
+    let functionals = exact_functionals([n as u32, 1], &exact);
+    let mut series = Series {
+        world: World::Radiosity,
+        label: format!("powers of the matrix, {n} patches"),
+        functionals,
+        cost: Cost::default(),
+        unseen: vec![],
+        by_luck: vec![],
+    };
+    if !ends {
+        series.functionals.iter_mut().for_each(|f| f.tail = Estimate::NONE);
+    }
+    Walked { sampled: found, exact: series, z }
+}
+
+/// The truth slot by slot: the terms and the tail, or the whole alone for the path tracer. The powers are those of the very numbers
+/// that the walk multiplies.
+fn exact(matrix: &Matrix, max_bounces: usize, whole: bool, ends: bool) -> Vec<Vec<DVec3>> {
+    let mut slots = transport(matrix).powers(max_bounces);
+    let n = slots[0].len();
+    let sum: Vec<DVec3> = (0..n).map(|i| slots.iter().map(|t| t[i]).sum()).collect();
+    let tail: Vec<DVec3> = match ends {
+        true => matrix.solution.radiance.iter().zip(&sum).map(|(b, s)| *b - *s).collect(),
+        false => vec![DVec3::ZERO; n],
+    };
+    if whole {
+        return vec![sum.iter().zip(&tail).map(|(s, t)| *s + *t).collect()];
+    }
+    slots.push(tail);
+    slots
+}
+
+/// z of the mean over channels, patch by patch and slot by slot, then of the whole.
+fn z(found: &Sampled, exact: &[Vec<DVec3>]) -> Vec<Vec<f64>> {
+    let grey = |v: &[f32; 3]| v.iter().map(|&x| f64::from(x)).sum::<f64>();
+    let of = |image: &crate::terms::TermImage, truth: &dyn Fn(usize) -> DVec3| -> Vec<f64> {
+        let z = |i: usize| (grey(&image.mean[i]) - truth(i).element_sum()) / grey(&image.std_error[i]);
+        (0..image.mean.len()).filter(|&i| grey(&image.std_error[i]) > 0.0).map(z).collect()
+    };
+    let slots = found.terms.iter().chain((!found.terms.is_empty()).then_some(&found.tail));
+    let mut all: Vec<Vec<f64>> = slots.zip(exact).map(|(image, truth)| of(image, &|i| truth[i])).collect();
+    all.push(of(&found.total, &|i| exact.iter().map(|slot| slot[i]).sum()));
+    all
+}
