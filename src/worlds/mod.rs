@@ -6,9 +6,11 @@
 //! | terms | every `T^k E` by its own estimator | [`sampled::terms`] |
 //! | path | Σ T^k E by the full path tracer | [`sampled::path`] |
 //! | radiosity | `T_h^k E` and the solve, through the same camera | [`discrete::radiosity`] |
+//! | batches | the same, small and one after another, for what is watched while it grows | [`batches::Side`] |
 //! | strategies | every way to find every term from both ends | [`pyramid::strategies`] |
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 
+pub mod batches;
 pub mod discrete;
 pub mod pyramid;
 pub mod sampled;

@@ -80,19 +80,9 @@ pub fn terms(
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Sampled {
-    let t = SceneTransport { scene, sampling: settings.sampling };
     let amount = amount(settings, &estimator.to_string());
     let mut run = Run::new(&format!("terms, {estimator}"), scene.camera.size, settings.spp, observer);
-    let plan = settings.plan();
-    let film = match estimator {
-        Estimator::Prefix => render(&t, &scene.camera, &Prefix(plan), amount, &mut run, stop),
-        Estimator::Single => render(&t, &scene.camera, &SingleTerm(plan), amount, &mut run, stop),
-        Estimator::Light => render(&t, &scene.camera, &LightTracer(plan), amount, &mut run, stop),
-        Estimator::Bidirectional => render(&t, &scene.camera, &Bidirectional(plan), amount, &mut run, stop),
-        Estimator::Branching { children } => {
-            render(&t, &scene.camera, &Branching { plan, children }, amount, &mut run, stop)
-        }
-    };
+    let film = film(scene, estimator, settings, amount, &mut run, stop);
     // a walk from the light has no use for a technique
     let technique = if estimator == Estimator::Light { String::new() } else { format!(", {}", settings.technique) };
     let label = format!("{estimator}{technique}{}", spread(settings.points));
@@ -103,6 +93,28 @@ pub fn terms(
         cut(&mut result.series, settings);
     }
     result
+}
+
+/// The film of an estimator of the terms.
+pub(super) fn film(
+    scene: &Scene,
+    estimator: Estimator,
+    settings: &Settings,
+    amount: Amount,
+    watch: &mut impl Watch,
+    stop: &AtomicBool,
+) -> TermFilm {
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let plan = settings.plan();
+    match estimator {
+        Estimator::Prefix => render(&t, &scene.camera, &Prefix(plan), amount, watch, stop),
+        Estimator::Single => render(&t, &scene.camera, &SingleTerm(plan), amount, watch, stop),
+        Estimator::Light => render(&t, &scene.camera, &LightTracer(plan), amount, watch, stop),
+        Estimator::Bidirectional => render(&t, &scene.camera, &Bidirectional(plan), amount, watch, stop),
+        Estimator::Branching { children } => {
+            render(&t, &scene.camera, &Branching { plan, children }, amount, watch, stop)
+        }
+    }
 }
 
 /// The full path tracer.
