@@ -91,6 +91,13 @@ Example:
 Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged
 over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for the same error.")]
     Sweep(Sweep),
+    /// Is an estimator biased? Does the equation hold?
+    #[command(after_help = "Examples:
+  fredholm check bias --estimator prefix --against path --scene cornell --alpha 1e-3
+  fredholm check equilibrium cornell
+
+Exit code 1: a bias was found, or the equation was rejected.")]
+    Check(super::check::Check),
     /// Scenes, materials, lights, bounds on the norm of T
     #[command(after_help = "Examples:
   fredholm info            the built-in scenes
@@ -349,7 +356,7 @@ pub struct Chapter {
     pub out: Option<PathBuf>,
 }
 
-fn size(s: &str) -> Result<[u32; 2], String> {
+pub(super) fn size(s: &str) -> Result<[u32; 2], String> {
     let wrong = || format!("`{s}` is not a size such as 128x128 (each side 1 to 32768)");
     let (w, h) = s.split_once('x').ok_or_else(wrong)?;
     let side = |s: &str| s.parse().ok().filter(|n| (1..=32768).contains(n)).ok_or_else(wrong);

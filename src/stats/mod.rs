@@ -14,6 +14,7 @@
 //! | E_n | evidence that may be watched while it grows, and the interval that goes with it | [`sequential`] |
 //! | | two results watched batch by batch, in every quantity | [`detector`] |
 //! | b | slope of the variance against samples | [`slope`] |
+//! | D | distance of p-values from uniform ones | [`uniformity`] |
 //! | SUITE_ALPHA | significance of this project's own tests | [`ledger`] |
 //!
 //! Two principles. *Not rejected is not agreed*: a verdict of agreement is an equivalence test, and it needs samples.
@@ -29,6 +30,7 @@ pub mod moments;
 pub mod power;
 pub mod sequential;
 pub mod slope;
+pub mod uniformity;
 pub mod verdict;
 
 pub use decay::{NoRate, Rate, TermMeans, observed_rate, ratio, tail_window};
@@ -38,4 +40,5 @@ pub use moments::{Moments, estimate};
 pub use power::{min_detectable, needed_samples};
 pub use sequential::MeanSequence;
 pub use slope::{Slope, variance_slope};
+pub use uniformity::{Uniformity, uniformity};
 pub use verdict::{Comparison, Criterion, Outcome, Verdict, compare, discretisation};

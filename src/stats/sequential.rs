@@ -31,6 +31,8 @@
 //! group invariance and anytime-valid testing*, Annals of Statistics 52 (2024); Wang and Ramdas, *Anytime-valid t-tests and confidence
 //! sequences for Gaussian means with unknown variance* (2023).
 
+use super::power::one_sided_normal;
+
 /// g. The interval is narrowest, for its n, where ng ≈ 2 ln(1/α) + …: at some hundred batches for the levels in use. It is a few
 /// percent wider than need be at ten times fewer or more.
 pub const PRIOR: f64 = 0.1;
@@ -101,6 +103,32 @@ impl MeanSequence {
         let room = 1.0 - (log_c - spread.ln()).exp();
         if room > 0.0 { (self.square * log_c.exp_m1() / (n * room)).sqrt() } else { f64::INFINITY }
     }
+}
+
+/// Batches after which a bias of `effect` standard deviations of one batch has been found with probability 1 − `beta` at level
+/// `alpha`: the first n with r_n + z_β σ/√n ≤ effect · σ.
+///
+/// ```
+/// use fredholm::stats::sequential::planned_batches;
+/// let n = planned_batches(0.1, 1e-3, 1e-3);
+/// assert!((5700..5800).contains(&n), "{n}"); // a test planned for one look needs 4071
+/// ```
+pub fn planned_batches(effect: f64, alpha: f64, beta: f64) -> u64 {
+    let z = one_sided_normal(beta);
+    let found = |n: u64| {
+        let s = MeanSequence { count: n, mean: 0.0, square: n as f64 };
+        s.radius(alpha) + z / (n as f64).sqrt() <= effect
+    };
+    let mut high = 2;
+    while !found(high) {
+        high *= 2;
+    }
+    let mut low = high / 2;
+    while high - low > 1 {
+        let middle = low + (high - low) / 2;
+        if found(middle) { high = middle } else { low = middle }
+    }
+    high
 }
 
 #[cfg(test)]
