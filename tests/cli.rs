@@ -522,3 +522,21 @@ fn terms_that_one_side_does_not_see_are_not_compared() {
     assert!(said.err.contains("help: use --technique connect or mis"), "{}", said.err);
     assert_eq!(desk.run("render cornell --estimator light").code, 2);
 }
+
+#[test]
+fn walks_on_the_matrix_are_held_against_its_powers() {
+    let desk = Desk::new();
+    let said = desk.ok("walk furnace --patches 24 --spp 64 -q -o walk");
+    assert!(said.out.contains("power of the matrix") && said.out.contains("agrees"), "{}", said.out);
+    let s = desk.summary("walk");
+    assert_eq!((s.series.len(), s.series[1].world), (2, World::Radiosity));
+    let said = desk.ok("walk furnace --patches 96 --estimator zero-variance --spp 16 -q -o led");
+    assert!(said.out.contains("B itself") && desk.path("led/walk.png").exists(), "{}", said.out);
+    assert_eq!(desk.summary("led").files, ["walk.csv", "walk.png", "walk.svg", "summary.json"]);
+    // the same bits for any number of threads
+    let csv = std::fs::read(desk.path("led/walk.csv")).unwrap();
+    desk.ok("walk furnace --patches 96 --estimator zero-variance --spp 16 -q -o one -t 1");
+    assert_eq!(std::fs::read(desk.path("one/walk.csv")).unwrap(), csv);
+    let said = desk.run("walk cornell-spheres -q -o x");
+    assert!(said.code == 2 && said.err.contains("help: "), "{}", said.err);
+}

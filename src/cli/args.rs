@@ -101,6 +101,13 @@ On a matrix T^k E is known to rounding, so the walk is compared patch by patch w
 zero-variance: absorption with p_ij ∝ T_ij B_j and q_i = E_i/B_i, B the solution itself; then with worse
 and worse guides, to see what a guide is worth (walk.png, walk.csv).")]
     Walk(super::walk::Walk),
+    /// Is an estimator biased? Does the equation hold?
+    #[command(after_help = "Examples:
+  fredholm check bias --estimator prefix --against path --scene cornell --alpha 1e-3
+  fredholm check equilibrium cornell
+
+Exit code 1: a bias was found, or the equation was rejected.")]
+    Check(super::check::Check),
     /// Scenes, materials, lights, bounds on the norm of T
     #[command(after_help = "Examples:
   fredholm info            the built-in scenes
@@ -359,7 +366,7 @@ pub struct Chapter {
     pub out: Option<PathBuf>,
 }
 
-fn size(s: &str) -> Result<[u32; 2], String> {
+pub(super) fn size(s: &str) -> Result<[u32; 2], String> {
     let wrong = || format!("`{s}` is not a size such as 128x128 (each side 1 to 32768)");
     let (w, h) = s.split_once('x').ok_or_else(wrong)?;
     let side = |s: &str| s.parse().ok().filter(|n| (1..=32768).contains(n)).ok_or_else(wrong);

@@ -7,6 +7,7 @@
 
 pub mod args;
 mod chapter;
+mod check;
 mod compare;
 mod facts;
 mod guard;
@@ -83,6 +84,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
         Some(Command::Walk(args)) => walk::run(args),
+        Some(Command::Check(args)) => check::run(args),
         Some(Command::Info(args)) => info::run(args),
         Some(Command::Chapter(args)) => chapter::run(args),
     };

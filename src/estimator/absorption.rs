@@ -1,58 +1,59 @@
-//! The absorption estimator: nothing is scored on the way, everything where the walk ends.
+//! The absorption estimator: a path scores once, where it ends.
 //!
 //! ```text
-//! X_N = W_N E(x_N) / q(x_N),     X_k = 0 for k ≠ N        W_k = Π_{v<k} weight_v / (1 − q(x_v)),  N: where the walk is absorbed
+//! X = W_N E(x_N) / q_N        W_n = Π_{v<n} weight_v / (1 − q_v),    P(N = n) = q_n Π_{v<n} (1 − q_v)
 //! ```
 //!
-//! `E[X_k] = E[ W_k 1{k reached} · q · E/q ] = (T^k E)(x_0)`, if q > 0 wherever light is emitted. One walk scores one term. The prefix
-//! estimator, which scores on the way, is the collision estimator of the literature. Absorbed with probability 1 − albedo
-//! this is the analog walk; it is exact where E = q, as in a room that radiates like a black body.
+//! `E[X 1{N = k}] = (T^k E)(x_0)`, as for the collision estimator ([`Prefix`](super::Prefix) with `Technique::Scatter`), which
+//! scores E at every vertex on the way. A path that is absorbed or gone by itself scores nothing.
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | q(x) | probability of termination, a property of the place | [`Absorbing::absorption`] |
-//! | K | terms k ≤ K have a slot, longer walks share one | [`Absorption::max_bounces`] |
+//! | q_v | probability to end at vertex v: the world's own, or else by roulette | [`Transport::absorption`], [`Roulette`](super::Roulette) |
+//! | N | the vertex where the path ends | |
 //!
-//! Reference: Forsythe and Leibler, *Matrix inversion by a Monte Carlo method* (1950); Spanier and Gelbard, *Monte Carlo
-//! Principles and Neutron Transport Problems* (1969), ch. 2.
+//! Where E = q, as in a closed room that emits 1 − ρ under roulette by albedo, X = 1 on every path: an estimator without variance.
+//! A vertex with q = 0 is never an end, and its term never scored: the schedule must have q > 0 wherever there is emission.
+//! Reference: von Neumann and Ulam, after Forsythe and Leibler (1950); Spanier and Gelbard, *Monte Carlo Principles* (1969).
 
-use super::{Batch, Paths, TermEstimator, TermSink};
-use crate::math::{Columns, Purpose, Rgb, Rng};
-use crate::operator::{Absorbing, Sensor};
+use super::{Batch, Paths, Plan, TermEstimator, TermSink};
+use crate::math::{Purpose, Rgb, Rng};
+use crate::operator::{Sensor, Transport};
 
-/// The absorption estimator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Absorption {
-    /// K.
-    pub max_bounces: usize,
-}
+/// The absorption estimator; the plan's technique has no part in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Absorption(pub Plan);
 
-impl<T: Absorbing> TermEstimator<T> for Absorption {
+impl<T: Transport> TermEstimator<T> for Absorption {
     fn slots(&self) -> usize {
-        self.max_bounces + 2
+        self.0.max_bounces + 2
     }
 
     fn sample(&self, t: &T, sensor: &impl Sensor<T>, batch: &Batch, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
-        let mut value = Columns::new(1);
-        let names = batch.samples.clone().flat_map(|s| batch.pixels.clone().map(move |p| (p, s)));
-        for (pixel, sample) in names {
-            let numbers = |v: usize, purpose: Purpose| Rng::at(batch.key, pixel, sample, v, purpose);
+        let Plan { max_bounces, ref roulette, .. } = self.0;
+        let mut value = crate::math::Columns::new(1);
+        for (pixel, sample) in batch.samples.clone().flat_map(|s| batch.pixels.clone().map(move |p| (p, s))) {
+            let rng = |v, purpose| Rng::at(batch.key, pixel, sample, v, purpose);
             sink.rays(0, 1);
-            let Some(mut x) = sensor.start(t, pixel, &mut numbers(0, Purpose::Start)) else { continue };
-            let mut through = Rgb::ONE;
+            let Some(mut x) = sensor.start(t, pixel, &mut rng(0, Purpose::Start)) else { continue };
+            let mut w = Rgb::ONE;
             for v in 0.. {
-                let slot = v.min(self.max_bounces + 1);
-                // absorbed here: the only place that counts
-                let q = t.absorption(&x);
-                if numbers(v, Purpose::Roulette).one() < q {
-                    value.set(0, through * t.emission(&x) * (1.0 / q));
+                let here = t.absorption(&x);
+                // without roulette a path has no end at which it could score
+                if here.is_none() && !roulette.ends() && v > max_bounces {
+                    break;
+                }
+                let slot = v.min(max_bounces + 1);
+                let q = here.unwrap_or_else(|| roulette.termination(v, w, t.albedo(&x)));
+                if q > 0.0 && rng(v, Purpose::Roulette).one() < q {
+                    value.set(0, w * t.emission(&x) / q);
                     sink.add(slot, &[pixel], &[sample], &value);
                     break;
                 }
-                sink.rays((v + 1).min(self.max_bounces + 1), 1);
-                let Some(next) = t.scatter(&x, &mut numbers(v, Purpose::Scatter)) else { break };
-                through *= next.weight * (1.0 / (1.0 - q));
-                x = next.state;
+                sink.rays((v + 1).min(max_bounces + 1), 1);
+                let Some(step) = t.scatter(&x, &mut rng(v, Purpose::Scatter)) else { break };
+                w *= step.weight * (1.0 / (1.0 - q));
+                x = step.state;
             }
         }
     }

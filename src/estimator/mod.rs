@@ -9,9 +9,10 @@
 //! | prefix | all X_k from one path, by its prefixes | [`prefix`] |
 //! | light | all X_k from one particle, walked from the light | [`light_tracer`] |
 //! | bidirectional | every way to find each path from both ends, weighted | [`bidirectional`] |
-//! | absorption | one term, where the walk ends | [`absorption`] |
 //! | branching | a tree of paths, N children at every vertex | [`branching`] |
 //! | path tracer | the sum alone, independent code | [`path_tracer`] |
+//! | absorption | one term from one path: the one where it ends | [`absorption`] |
+//! | equilibrium | both sides of L = E + T L, from independent paths | [`equilibrium`] |
 //! | gather | the matrix solution, read through one sampled application of T | [`gather`] |
 //!
 //! Slots of the result: k = 0..=K for the terms, K + 1 for the tail; the path tracer has one slot.
@@ -20,6 +21,7 @@ pub mod absorption;
 pub mod bidirectional;
 pub mod branching;
 pub mod densities;
+pub mod equilibrium;
 pub mod gather;
 pub mod light_tracer;
 pub mod path_tracer;
@@ -33,6 +35,7 @@ pub mod technique;
 pub use absorption::Absorption;
 pub use bidirectional::{Bidirectional, Pyramid};
 pub use branching::Branching;
+pub use equilibrium::Equilibrium;
 pub use gather::Gather;
 pub use light_tracer::LightTracer;
 pub use path_tracer::PathTracer;

@@ -15,13 +15,13 @@
 //! | T = diag(ρ) F | one channel of the matrix | [`PatchOperator`] |
 //! | v | guide of the whole series | [`GuidedWalk::whole`] |
 //! | x for m = 1, 2, … bounces left | guides of one term | [`GuidedWalk::term`] |
-//! | q | probability of termination | [`Absorbing::absorption`] |
+//! | q | probability of termination | [`Transport::absorption`] |
 //!
 //! Reference: Kahn and Marshall, *Methods of Reducing Sample Size in Monte Carlo Computations* (1953); Halton, *Sequential Monte
 //! Carlo* (1962); for light transport Vorba and Křivánek, *Adjoint-Driven Russian Roulette and Splitting* (2016).
 
 use super::matrix::PatchOperator;
-use super::transport::{Absorbing, Sensor, Step, Transport};
+use super::transport::{Sensor, Step, Transport};
 use crate::math::{Rgb, Rng};
 
 /// Where a led walk stands.
@@ -114,16 +114,15 @@ impl Transport for GuidedWalk<'_> {
         false
     }
 
+    /// q_i, where the whole is asked for.
+    fn absorption(&self, at: &Row) -> Option<f32> {
+        let e = self.emission[at.row as usize];
+        let reach = self.guides[0].row(at.row as usize).last().copied()?;
+        Some(if e > 0.0 { (e / (e + reach)) as f32 } else { 0.0 })
+    }
+
     fn albedo(&self, at: &Row) -> Rgb {
         Rgb::splat(self.rho[at.row as usize] as f32)
-    }
-}
-
-impl Absorbing for GuidedWalk<'_> {
-    fn absorption(&self, at: &Row) -> f32 {
-        let e = self.emission[at.row as usize];
-        let reach = self.guides[0].row(at.row as usize).last().copied().unwrap_or(0.0);
-        if e > 0.0 { (e / (e + reach)) as f32 } else { 0.0 }
     }
 }
 

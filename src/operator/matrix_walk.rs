@@ -14,7 +14,7 @@
 //! | c_j | `1/(number of emitting rows)` | density of next-event estimation |
 
 use super::adjoint::{Adjoint, Role, Toward, Walk};
-use super::transport::{Absorbing, Seen, Sensor, Step, Transport};
+use super::transport::{Seen, Sensor, Step, Transport};
 use crate::math::{Rgb, Rng};
 
 /// A random walk on the rows of T = diag(ρ) F.
@@ -107,8 +107,6 @@ impl Transport for MatrixWalk {
         self.rho[i as usize]
     }
 }
-
-impl Absorbing for MatrixWalk {}
 
 impl MatrixWalk {
     /// The exact `((T*)^k W)_j`, k = 0..=`k_max`, for an importance W of rows; T* is the transpose.

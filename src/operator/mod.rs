@@ -22,4 +22,4 @@ pub use adjoint::{Adjoint, Role};
 pub use guided_walk::GuidedWalk;
 pub use matrix_walk::MatrixWalk;
 pub use scene_transport::SceneTransport;
-pub use transport::{Absorbing, Samples, Seen, Sensor, Step, Transport, Wave};
+pub use transport::{Samples, Seen, Sensor, Step, Transport, Wave};

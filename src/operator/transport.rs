@@ -46,6 +46,11 @@ pub trait Transport: Sync {
     /// A bound on (T 1)(x).
     fn albedo(&self, at: &Self::State) -> Rgb;
 
+    /// The probability that a walk is absorbed at `at`, where that is a property of the place; elsewhere roulette decides.
+    fn absorption(&self, _at: &Self::State) -> Option<f32> {
+        None
+    }
+
     /// Whether [`Transport::connect`] finds all of E from every state: no delta vertices, so that hits need not be looked at.
     fn connects_to_all(&self) -> bool {
         true
@@ -66,15 +71,6 @@ pub trait Transport: Sync {
     /// State i moves on and `out.value[i]` is its weight; the indices of paths that live are pushed to `alive`, ascending.
     fn scatter_wave(&self, wave: &mut Self::Wave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
         scatter_one_by_one(self, wave, streams, out, alive);
-    }
-}
-
-/// A transport that knows where walks are absorbed.
-pub trait Absorbing: Transport {
-    /// q(x), the probability that a walk ends at `at`: 1 − the largest channel of the albedo, the analog walk, unless said otherwise.
-    /// Where it is 0 although light is emitted, the absorption estimator misses that light.
-    fn absorption(&self, at: &Self::State) -> f32 {
-        1.0 - self.albedo(at).max_element().clamp(0.0, 1.0)
     }
 }
 

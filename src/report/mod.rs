@@ -9,6 +9,7 @@
 //! | `T00.png`, `terms.png`, `partial_00.png` | [`picture`], [`sheet`] |
 //! | z maps of `compare` | [`zmap`] |
 //! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
+//! | `bias.svg`, `equilibrium.svg` and their PNGs | [`watch`], [`equilibrium`] |
 //! | `summary.json` | [`summary`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
@@ -17,6 +18,7 @@ mod axis;
 mod base64;
 mod canvas;
 pub mod decay;
+pub mod equilibrium;
 mod error;
 pub mod exr;
 mod files;
@@ -36,6 +38,7 @@ pub mod table;
 pub mod typeset;
 pub mod variance;
 pub mod walk;
+pub mod watch;
 pub mod zmap;
 
 pub use error::ReportError;

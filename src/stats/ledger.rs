@@ -67,6 +67,12 @@ pub const ENTRIES: &[Entry] = &[
     entry("the_planned_power_is_reached", 2, 1e-8),
     entry("rates_have_the_error_they_claim", 4, 1e-8),
     entry("variance_slopes_have_the_error_they_claim", 2, 1e-8),
+    // tests/sequential.rs
+    entry("watching_raises_no_false_alarms", 6, 1e-8),
+    entry("a_bias_is_found_after_the_planned_batches", 3, 1e-8),
+    entry("watching_renders_raises_no_false_alarms", 2, 1e-8),
+    entry("a_bias_of_one_percent_is_found_in_renders", 2, 1e-8),
+    entry("watching_the_cornell_box_raises_no_false_alarms", 1, 1e-8),
     // tests/matrix_walk.rs
     entry("estimators_match_a_random_substochastic_matrix", 12_000, 2e-8),
     entry("estimators_match_two_plates", 4_000, 1e-8),
@@ -79,6 +85,9 @@ pub const ENTRIES: &[Entry] = &[
     // tests/adjoint.rs
     entry("light_tracing_matches_matrix_powers", 200, 1e-8),
     entry("bidirectional_matches_matrix_powers", 200, 1e-8),
+    // tests/walk.rs
+    entry("any_guide_keeps_the_mean", 405, 1e-8),
+    entry("led_walks_have_their_variance", 81, 1e-8),
     // tests/identities.rs
     entry("a_scene_scaled_by_ten_has_the_same_terms", 72, 1e-8),
     // tests/truth_scenes.rs

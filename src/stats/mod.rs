@@ -11,7 +11,10 @@
 //! | δ, α | margin of equivalence, family level: verdicts on whole results | [`verdict`] |
 //! | n, β | sample sizes and what a test could have seen | [`power`] |
 //! | γ | observed rate of decay of the terms | [`decay`] |
+//! | E_n | evidence that may be watched while it grows, and the interval that goes with it | [`sequential`] |
+//! | | two results watched batch by batch, in every quantity | [`detector`] |
 //! | b | slope of the variance against samples | [`slope`] |
+//! | D | distance of p-values from uniform ones | [`uniformity`] |
 //! | SUITE_ALPHA | significance of this project's own tests | [`ledger`] |
 //!
 //! Two principles. *Not rejected is not agreed*: a verdict of agreement is an equivalence test, and it needs samples.
@@ -19,17 +22,23 @@
 //! many pixels is invisible in each and obvious in their mean.
 
 pub mod decay;
+pub mod detector;
 pub mod hypothesis;
 pub mod ledger;
 mod line;
 pub mod moments;
 pub mod power;
+pub mod sequential;
 pub mod slope;
+pub mod uniformity;
 pub mod verdict;
 
 pub use decay::{NoRate, Rate, TermMeans, observed_rate, ratio, tail_window};
+pub use detector::{Detector, Finding};
 pub use hypothesis::{Measured, critical, difference, holm, two_sided_p};
 pub use moments::{Moments, estimate};
 pub use power::{min_detectable, needed_samples};
+pub use sequential::MeanSequence;
 pub use slope::{Slope, variance_slope};
+pub use uniformity::{Uniformity, uniformity};
 pub use verdict::{Comparison, Criterion, Outcome, Verdict, compare, discretisation};

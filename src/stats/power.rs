@@ -18,7 +18,7 @@
 use super::hypothesis::critical;
 
 /// z_β with P(Z ≥ z_β) = β, for β < 1/2.
-fn one_sided_normal(beta: f64) -> f64 {
+pub(super) fn one_sided_normal(beta: f64) -> f64 {
     critical(2.0 * beta, f64::INFINITY)
 }
 

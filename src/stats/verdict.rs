@@ -98,8 +98,8 @@ pub struct Comparison {
 
 /// `Some(reason)` texts of [`Verdict::reason`].
 const NO_ERROR: &str = "the standard error is unknown: one replicate only (raise the samples per pixel)";
-const NOT_FINITE: &str = "a mean is not finite";
-const FEW: &str = "a mean rests on too few events (hits) for its error to be known: raise --spp";
+pub(super) const NOT_FINITE: &str = "a mean is not finite";
+pub(super) const FEW: &str = "a mean rests on too few events (hits) for its error to be known: raise --spp";
 const ALLOWANCE: &str = "the allowance for discretisation alone exceeds what δ can resolve: refine the mesh";
 
 /// An allowance from two meshes is itself uncertain; a rejection must exceed it by this factor, the one that Roache asks for
@@ -108,9 +108,9 @@ const SAFETY: f64 = 3.0;
 
 /// A sum of n events has a skewness of at least 1/√n, and a t-test at the depth of a family, z ≈ 5.5, is wrong by a factor
 /// of about exp(z³/6√n): 4 for this n. With fewer, a rare event that has not happened yet looks like a proof of darkness.
-const EVENTS: f64 = 400.0;
+pub(super) const EVENTS: f64 = 400.0;
 /// With fewer, an interval must fit into δ this many times more.
-const WIDER: f64 = 9.0;
+pub(super) const WIDER: f64 = 9.0;
 
 /// Whether too few events carry a mean. A result in which a quantity is dark everywhere is no rare event, and is judged.
 fn few_events(quantity: Quantity, f: &Functional, image: &Functional) -> bool {
@@ -126,7 +126,7 @@ fn largest_alike(allowance: &[Functional], name: &str, quantity: Quantity) -> DV
     alike.filter_map(|f| quantity.of(f)).fold(DVec3::ZERO, |a, e| a.max(e.mean.abs()))
 }
 
-const CHANNELS: [&str; 3] = ["red", "green", "blue"];
+pub(super) const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 /// Compares every quantity that both results have. `allowance` holds, as the means of functionals, an absolute error
 /// that is not noise, such as [`discretisation`]; a functional not named there takes the first one's. Empty: none.
@@ -190,7 +190,7 @@ pub fn discretisation(fine: &Series, coarse: &Series) -> Vec<Functional> {
 
 /// What of a functional is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Quantity {
+pub(super) enum Quantity {
     Term(usize),
     Tail,
     Sum,
@@ -198,7 +198,7 @@ enum Quantity {
 }
 
 impl Quantity {
-    fn of(self, f: &Functional) -> Option<Estimate> {
+    pub(super) fn of(self, f: &Functional) -> Option<Estimate> {
         match self {
             Self::Term(k) => f.terms.get(k).copied(),
             Self::Tail => Some(f.tail),
@@ -208,7 +208,7 @@ impl Quantity {
     }
 
     /// Of how many events, if that is known.
-    fn events(self, f: &Functional) -> Option<f64> {
+    pub(super) fn events(self, f: &Functional) -> Option<f64> {
         let k = f.terms.len();
         let at = match self {
             Self::Term(k) => k,
@@ -219,7 +219,7 @@ impl Quantity {
         f.events.get(at).copied()
     }
 
-    fn name(self) -> String {
+    pub(super) fn name(self) -> String {
         match self {
             Self::Term(k) => format!("T{k}"),
             Self::Tail => "tail".into(),
@@ -229,7 +229,7 @@ impl Quantity {
     }
 }
 
-fn shared_quantities(a: &Functional, b: &Functional) -> Vec<Quantity> {
+pub(super) fn shared_quantities(a: &Functional, b: &Functional) -> Vec<Quantity> {
     let mut all: Vec<_> = (0..a.terms.len().min(b.terms.len())).map(Quantity::Term).collect();
     let cut = [a.tail.is_none(), b.tail.is_none()];
     if !all.is_empty() && a.terms.len() == b.terms.len() {

@@ -6,11 +6,15 @@
 //! | terms | every `T^k E` by its own estimator | [`sampled::terms`] |
 //! | path | Σ T^k E by the full path tracer | [`sampled::path`] |
 //! | radiosity | `T_h^k E` and the solve, through the same camera | [`discrete::radiosity`] |
+//! | batches | the same, small and one after another, for what is watched while it grows | [`batches::Side`] |
+//! | equilibrium | both sides of L = E + T L, point by point and through the camera | [`equilibrium`] |
 //! | strategies | every way to find every term from both ends | [`pyramid::strategies`] |
 //! | walk | the same estimators on the radiosity matrix | [`walk::walk`], [`zero_variance::study`] |
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 
+pub mod batches;
 pub mod discrete;
+pub mod equilibrium;
 pub mod pyramid;
 pub mod sampled;
 pub mod surface;

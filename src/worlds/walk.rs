@@ -16,7 +16,7 @@ use super::discrete::Matrix;
 use super::sampled::{self, Estimator, Run, Sampled};
 use super::{Observer, Settings};
 use crate::estimator::render::render;
-use crate::estimator::{Absorption, PathTracer, Plan};
+use crate::estimator::{Absorption, PathTracer, Plan, Roulette};
 use crate::operator::MatrixWalk;
 use crate::operator::matrix_walk::Rows;
 use crate::terms::functional::exact_functionals;
@@ -90,7 +90,8 @@ pub fn walk(
             (render(&t, &rows, &PathTracer(plan), amount, &mut run, stop), ends)
         }
         Walker::Absorption => {
-            let estimator = Absorption { max_bounces: settings.max_bounces };
+            // a walk scores where it ends, so that it must be able to end anywhere
+            let estimator = Absorption(Plan { roulette: Roulette::Albedo { from: 0 }, ..plan });
             (render(&t, &rows, &estimator, amount, &mut run, stop), true)
         }
     };

@@ -113,12 +113,14 @@ pub fn study(
     let work = (guides.len() + settings.max_bounces) * b.len();
     observer.begin(&format!("guided walks, {}", ["red", "green", "blue"][channel]), work as u64);
     let mut found = ZeroVariance { channel, guides: vec![], terms: vec![] };
+    // the analog walk of the matrix; a led walk knows itself where to end
+    let roulette = Roulette::Albedo { from: 0 };
+    let estimator = Absorption(Plan { max_bounces: 0, technique: Technique::Scatter, roulette });
     for (stream, guide) in guides.into_iter().enumerate() {
         if stop.load(Ordering::Relaxed) {
             return found;
         }
         let key = settings.key(&format!("guided {channel}"), 1).branch(stream as u32);
-        let estimator = Absorption { max_bounces: 0 };
         let rows = GuidedRows { rows: b.len() as u32, left: 0 };
         let v = values(guide, matrix, coarse, channel, &t, &e, &b);
         let (error, spread) = match v {

@@ -1,0 +1,286 @@
+//! `fredholm check equilibrium SCENE`: the rendering equation itself as a test.
+
+use super::super::args;
+use super::super::progress::{Progress, stop_flag};
+use super::super::{Ending, Failure, guard, note, output, paragraphs, say, write};
+use super::{Common, Loaded, fraction, usage};
+use clap::Args;
+use fredholm::estimator::{Roulette, Technique};
+use fredholm::report::equilibrium::{self as figure, Dot};
+use fredholm::report::sheet::{self, Cell};
+use fredholm::report::table::significant;
+use fredholm::report::{picture, summary, table, typeset::Caption, zmap};
+use fredholm::scene::bsdf::Sampling;
+use fredholm::stats::{Outcome, estimate};
+use fredholm::terms::TermImage;
+use fredholm::worlds::Settings;
+use fredholm::worlds::equilibrium::{self, Balance, From, Group, Judgement, judge};
+use serde_json::json;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+pub(super) const EXAMPLES: &str = "Examples:
+  fredholm check equilibrium cornell
+  fredholm check equilibrium cornell --break 1.02     a step that weighs 2 % too much, and is found
+  fredholm check equilibrium box.toml --points 256 --spp 65536
+
+L is estimated by the path tracer; E + T L by one step taken by hand and the path tracer from there,
+with numbers of its own. Half of the points are uniform on all surfaces with cosine-distributed
+directions, half are what random pixels see. Tested at level α: every point (Holm), the mean over each
+half, and whether the p-values of all points are uniform.
+
+Blind to an error in T that both sides share: L' = E + 1.02 T L' holds, too.";
+
+/// Arguments of `check equilibrium`.
+#[derive(Clone, Debug, Args)]
+pub struct Equilibrium {
+    /// Built-in scene, .toml, or .obj
+    #[arg(value_name = "SCENE", default_value = "cornell")]
+    scene: String,
+    /// Number of points
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(2..=65536))]
+    points: u32,
+    /// Samples of each side at every point; the picture has 1/512 of them in every pixel
+    #[arg(long, value_name = "N", default_value_t = 32_768, value_parser = clap::value_parser!(u32).range(32..=1 << 28))]
+    spp: u32,
+    /// How L finds light: scatter, connect, mis, mis-power
+    #[arg(long, default_value = "mis", value_parser = args::technique, value_name = "NAME")]
+    technique: Technique,
+    /// Russian roulette inside L; it must end paths
+    #[arg(long, value_name = "SCHEDULE", default_value = "albedo@2")]
+    roulette: Roulette,
+    /// How directions are drawn: uniform, cosine, bsdf
+    #[arg(long, default_value = "bsdf", value_parser = args::sampling, value_name = "NAME")]
+    sampling: Sampling,
+    /// Chance to reject the equation though it holds
+    #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = fraction)]
+    alpha: f64,
+    /// δ of the means over points, as a fraction of L
+    #[arg(long, value_name = "FRACTION", default_value_t = 0.02, value_parser = fraction)]
+    delta: f64,
+    /// Breaks the equation on purpose: the step by hand weighs FACTOR times what it should
+    #[arg(long = "break", value_name = "FACTOR", default_value_t = 1.0)]
+    factor: f32,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Everything that was found.
+struct Found<'a> {
+    args: &'a Equilibrium,
+    loaded: Loaded,
+    groups: [(&'static str, Vec<Balance>); 2],
+    judgement: Judgement,
+    images: [TermImage; 2],
+    /// Samples per pixel of the images.
+    spp: u32,
+}
+
+/// Tests the equation.
+pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
+    let started = Instant::now();
+    let loaded = args.common.load(&args.scene)?;
+    let settings = Settings {
+        spp: args.spp,
+        seed: args.common.seed,
+        technique: args.technique,
+        sampling: args.sampling,
+        path_roulette: args.roulette.clone(),
+        ..Settings::default()
+    };
+    if !args.roulette.ends() {
+        let help = "use a schedule that ends paths, such as albedo";
+        return Err(usage("paths that are cut at K do not solve L = E + T L", help));
+    }
+    if loaded.scene.lights.any_delta() {
+        let help = "give the light an area";
+        return Err(usage("a step never hits a point or a direction, and this scene is lit by one", help));
+    }
+    if !(args.factor.is_finite() && args.factor > 0.0) {
+        return Err(usage("--break takes a factor above 0", "1.02 makes the step 2 % too heavy"));
+    }
+    guard::light_is_lost(&loaded.scene, &settings, &[args::WorldName::Path])?;
+    let name = format!("equilibrium-{}", loaded.description.name);
+    let folder = output::folder(args.common.out.as_deref(), &name, &loaded.command, args.common.force)?;
+
+    let (progress, stop) = (Progress::new(args.common.quiet, |_| ()), stop_flag());
+    let half = (args.points / 2).max(1);
+    let at = |from| {
+        let points = equilibrium::points(&loaded.scene, from, half, args.common.seed);
+        // streams of the two halves must not be the same
+        let seed = settings.seed ^ ((from as u64) << 63);
+        let settings = Settings { seed, ..settings.clone() };
+        equilibrium::at_points(&loaded.scene, &points, &settings, args.factor, &progress, stop)
+    };
+    let groups = [("surface", at(From::Surface)), ("camera", at(From::Camera))];
+    let seen = Settings { spp: (args.spp / 512).max(16), ..settings.clone() };
+    let images = equilibrium::through_camera(&loaded.scene, &seen, args.factor, &progress, stop);
+    progress.finish();
+    let parts: Vec<(&str, &[Balance])> = groups.iter().map(|(n, b)| (*n, b.as_slice())).collect();
+    let judgement = judge(&parts, args.alpha, args.delta);
+    let found = Found { args, loaded, groups, judgement, images, spp: seen.spp };
+    let files = write_all(&folder, &found, started)?;
+    if args.common.json {
+        say(&serde_json::to_string_pretty(&record(&found))?)?;
+    } else {
+        say(&people(&found, &folder, &files))?;
+    }
+    if stop.load(Ordering::Relaxed) {
+        note("interrupted: some points have fewer samples than asked for");
+        return Ok(Ending::Interrupted);
+    }
+    Ok(if found.judgement.outcome == Outcome::Differs { Ending::Failed } else { Ending::Ok })
+}
+
+fn people(found: &Found, folder: &Path, files: &[String]) -> String {
+    let (args, j) = (found.args, &found.judgement);
+    let all = found.groups.iter().map(|g| g.1.len()).sum::<usize>();
+    let mut head = format!(
+        "{}\nL: path tracer, {}, roulette {}; E + T L: one step, then the same with other numbers\n\
+         {all} points, {} samples of each side at every point, seed {}, α = {}",
+        found.loaded.command,
+        args.technique,
+        args.roulette,
+        table::count(args.spp.into()),
+        args.common.seed,
+        args.alpha
+    );
+    if args.factor != 1.0 {
+        head += &format!("\nbroken on purpose: the step by hand weighs {} times what it should", args.factor);
+    }
+    let mut lines = vec![];
+    for g in &j.groups {
+        let (value, difference) = (g.value.element_sum() / 3.0, g.difference.mean.element_sum() / 3.0);
+        let half = g.half.element_sum() / 3.0;
+        lines.push(format!(
+            "mean over {} {} points: L {}, L − (E + TL) {:+.2} ± {:.2} % (δ {} %), p = {}: {}",
+            g.points,
+            g.name,
+            significant(value, 4),
+            100.0 * difference / value,
+            100.0 * half / value,
+            100.0 * args.delta,
+            significant(g.p, 2),
+            table::outcome(g.outcome.into())
+        ));
+    }
+    lines.push(format!(
+        "point by point: {} of {all} have events enough to be judged, {} rejected; smallest p = {} (Holm)",
+        j.judged,
+        j.rejected.len(),
+        significant(j.smallest, 2)
+    ));
+    lines.push(format!(
+        "their p-values: at most {} away from uniform ones, p = {}",
+        significant(j.uniformity.distance, 2),
+        significant(j.uniformity.p, 2)
+    ));
+    let verdict = match j.outcome {
+        Outcome::Agrees => "The equation holds, as closely as was asked for.",
+        Outcome::Differs => "The equation does not hold.",
+        Outcome::Inconclusive => {
+            "Nothing speaks against the equation; the noise hides differences as large as δ: raise --spp."
+        }
+    };
+    let files = format!("written to {}: {}", folder.display(), files.join(", "));
+    paragraphs(&[head, lines.join("\n"), verdict.to_owned(), files])
+}
+
+fn record(found: &Found) -> serde_json::Value {
+    let j = &found.judgement;
+    let group = |g: &Group| {
+        json!({
+            "name": g.name, "points": g.points, "value": g.value, "difference": g.difference, "half_width": g.half,
+            "delta": g.delta, "p": g.p, "outcome": g.outcome,
+        })
+    };
+    let point = |(from, b): (&str, &Balance)| {
+        json!({
+            "from": from, "position": b.at.p, "normal": b.at.n, "direction": b.at.omega, "left": b.left,
+            "right": b.right, "p": b.p, "events": b.events,
+        })
+    };
+    let points = found.groups.iter().flat_map(|(from, b)| b.iter().map(move |b| (*from, b)));
+    json!({
+        "command": found.loaded.command, "alpha": found.args.alpha, "outcome": j.outcome,
+        "groups": j.groups.iter().map(group).collect::<Vec<_>>(),
+        "judged": j.judged, "rejected": j.rejected, "smallest_p": j.smallest,
+        "uniformity": { "points": j.uniformity.count, "distance": j.uniformity.distance, "p": j.uniformity.p },
+        "points": points.map(point).collect::<Vec<_>>(),
+    })
+}
+
+fn write_all(folder: &Path, found: &Found, started: Instant) -> Result<Vec<String>, Failure> {
+    let (args, loaded) = (found.args, &found.loaded);
+    let caption =
+        Caption { command: loaded.command.clone(), seed: args.common.seed, scene: loaded.description.name.clone() };
+    // the plot
+    let mut number = 0..;
+    let mut dot = |b: &Balance| {
+        let i = number.next().unwrap_or(0);
+        let mean =
+            estimate(&b.differences.iter().map(|d| glam::DVec3::splat(d.element_sum() / 3.0)).collect::<Vec<_>>());
+        Dot {
+            left: b.left.mean.element_sum() / 3.0,
+            right: b.right.mean.element_sum() / 3.0,
+            std_error: mean.std_error.x,
+            replicates: mean.replicates,
+            p: b.p,
+            rejected: found.judgement.rejected.contains(&i),
+        }
+    };
+    let words = |name: &str| if name == "camera" { "seen by pixels" } else { "on all surfaces" };
+    let groups: Vec<(String, Vec<Dot>)> =
+        found.groups.iter().map(|(name, b)| (words(name).to_owned(), b.iter().map(&mut dot).collect())).collect();
+    figure::draw(&groups, &caption)?.write(folder, "equilibrium")?;
+    // the pictures
+    let [w, h] = loaded.description.camera.size.map(|s| s as usize);
+    let [l, r] = &found.images;
+    let gain = Some(picture::auto_gain(&l.mean));
+    let cells = [("L", l), ("E + T L", r)].map(|(label, i)| Cell { label: label.into(), pixels: &i.mean, gain });
+    let title = format!("Both sides of the equation, {} spp", found.spp);
+    sheet::grid(&title, w, h, &cells, &caption)?.picture.write(&folder.join("sides.png"))?;
+    let z = write::z_values((&l.mean, &l.std_error), (&r.mean, &r.std_error));
+    zmap::draw("z of L − (E + T L)", w, h, &z, &caption)?.picture.write(&folder.join("z.png"))?;
+
+    let names = ["equilibrium.png", "equilibrium.svg", "sides.png", "z.png", "points.json", "summary.json"];
+    let files: Vec<String> = names.map(String::from).to_vec();
+    let text = serde_json::to_string_pretty(&record(found))?;
+    fredholm::report::write_atomically(&folder.join("points.json"), text.as_bytes())?;
+    let verdict = |g: &Group| {
+        let c = (g.difference.mean.abs() / g.value).max_position();
+        let (effect, half) = (g.difference.mean[c], g.half[c]);
+        summary::Verdict {
+            name: format!("L − (E + T L), mean over {} points", g.name),
+            effect,
+            interval: (effect - half, effect + half),
+            p: g.p,
+            min_detectable: fredholm::stats::min_detectable(
+                g.difference.std_error[c],
+                g.difference.replicates as f64 - 1.0,
+                args.alpha / 18.0,
+                1e-3,
+            ),
+            outcome: g.outcome.into(),
+        }
+    };
+    let record = summary::Summary {
+        command: loaded.command.clone(),
+        scene: loaded.description.name.clone(),
+        scene_hash: loaded.hash.clone(),
+        seed: args.common.seed,
+        spp: args.spp.into(),
+        threads: rayon::current_num_threads(),
+        seconds: started.elapsed().as_secs_f64(),
+        width: w,
+        height: h,
+        verdicts: found.judgement.groups.iter().map(verdict).collect(),
+        files: files.clone(),
+        ..summary::Summary::default()
+    };
+    let old = output::left_by_the_last_run(folder);
+    summary::write(&folder.join("summary.json"), &record)?;
+    output::remove_stale(folder, &old, &files);
+    Ok(files)
+}

@@ -1,0 +1,388 @@
+//! Two results watched batch by batch: is there a bias, and how small a one could still hide?
+//!
+//! ```text
+//! x_i = φ(first, batch i) − φ(second, batch i)          for every functional φ, quantity and channel
+//! Differs    some x has E_n(0) ≥ 1/α_φ at some n         Σ α_φ = α
+//! Agrees     x̄ ± r_n lies within ±δ for every image mean
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | E_n, r_n | e-value and half width of one mean, at any time | [`sequential`](super::sequential) |
+//! | α_φ | half of α is shared by the image means, half by regions and projections | [`Detector::push`] |
+//! | δ | a part of the term plus a part of the whole image | [`Criterion`] |
+//! | β | chance to miss a bias of the size that is called detectable | [`Finding::min_detectable`] |
+//! | a | error of a second side that is not sampled but was finished before | [`Detector::against_finished`] |
+//!
+//! **Why a union bound.** Each E_n is a martingale for those who see nothing but its own batches up to their scale, so their average need
+//! not be one. But the events "E_n ≥ 1/α_φ for some n" do not depend on when or why the watch ends, and their probabilities
+//! add: whatever makes one stop, some quantity is rejected wrongly with probability at most α, and all intervals
+//! hold at once, at every n, with probability 1 − α.
+//!
+//! Against a finished result half of α_φ goes to its error: it lies within a = t* s, and only what is beyond counts.
+//! As in [`verdict`](super::verdict), a mean that rests on few events rejects nothing.
+
+use super::hypothesis::{Measured, ROUNDING, critical};
+use super::power::one_sided_normal;
+use super::sequential::MeanSequence;
+use super::verdict::{CHANNELS, Criterion, EVENTS, FEW, NOT_FINITE, Outcome, Quantity, WIDER, shared_quantities};
+use crate::terms::{Estimate, Functional};
+use serde::Serialize;
+
+/// Watches a difference while it accumulates.
+#[derive(Clone, Debug)]
+pub struct Detector {
+    criterion: Criterion,
+    finished: bool,
+    tracks: Vec<Track>,
+    /// The whole image by the first side, per channel.
+    whole: [MeanSequence; 3],
+    batches: u64,
+}
+
+/// One scalar that is watched.
+#[derive(Clone, Debug)]
+struct Track {
+    quantity: Quantity,
+    /// Which functional of both lists.
+    at: [usize; 2],
+    name: String,
+    channel: usize,
+    /// α_φ, what is left of it for the batches.
+    level: f64,
+    difference: MeanSequence,
+    /// The value on both sides.
+    values: [MeanSequence; 2],
+    /// Σ m and Σ m²/events, from which the events behind the mean follow; of this functional, and of the image.
+    events: [[Events; 2]; 2],
+    /// Error of a finished second side.
+    allowance: f64,
+    /// Largest ln E_n so far where there were events enough.
+    evidence: f64,
+}
+
+/// `(Σ x)²/Σ x²` over all batches, from that of each.
+#[derive(Clone, Copy, Debug, Default)]
+struct Events {
+    known: bool,
+    sum: f64,
+    square: f64,
+}
+
+impl Events {
+    fn push(&mut self, quantity: Quantity, f: &Functional) {
+        let (Some(events), Some(e)) = (quantity.events(f), quantity.of(f)) else { return };
+        let sum = e.mean.element_sum();
+        self.known = true;
+        self.sum += sum;
+        self.square += if events > 0.0 { sum * sum / events } else { 0.0 };
+    }
+
+    fn count(&self) -> f64 {
+        if self.square > 0.0 { self.sum * self.sum / self.square } else { 0.0 }
+    }
+}
+
+impl Track {
+    fn push(&mut self, sides: [&[Functional]; 2], finished: bool) {
+        let value = |s: usize| self.quantity.of(&sides[s][self.at[s]]).map_or(f64::NAN, |e| e.mean[self.channel]);
+        let values = [value(0), value(1)];
+        self.difference.push(values[0] - values[1]);
+        for s in 0..2 {
+            self.values[s].push(values[s]);
+            // of a finished result the events have been counted once and for all
+            if s == 0 || !finished || self.difference.count() == 1 {
+                self.events[s][0].push(self.quantity, &sides[s][self.at[s]]);
+                self.events[s][1].push(self.quantity, &sides[s][0]);
+            }
+        }
+    }
+
+    /// Whether too few events carry one of the sides. What is dark everywhere is no rare event, and is judged.
+    fn few(&self) -> bool {
+        let few = |[own, image]: &[Events; 2]| own.known && image.count() > 0.0 && own.count() < EVENTS;
+        self.difference.std_error() > 0.0 && self.events.iter().any(few)
+    }
+
+    fn is_image(&self) -> bool {
+        self.at == [0, 0]
+    }
+}
+
+/// What is known about one quantity, in the words of its clearest functional and channel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// `T0`, `T1`, …, `tail`, `sum`, `total`.
+    pub name: String,
+    /// `image, red`.
+    pub functional: String,
+    /// First − second, so far.
+    pub effect: f64,
+    /// Where the bias lies, for all quantities and all times at once with probability 1 − α.
+    pub interval: (f64, f64),
+    /// ln E_n(0) now: evidence against "no bias" of this one functional and channel.
+    pub log_e: f64,
+    /// At most this probable without a bias, whenever one stops and however many quantities are watched: rejected if ≤ α.
+    pub p: f64,
+    /// The smallest bias that would have been found with probability 1 − β by now.
+    pub min_detectable: f64,
+    /// The value itself: mean of both sides.
+    pub scale: f64,
+    /// δ.
+    pub delta: f64,
+    /// What was found.
+    pub outcome: Outcome,
+    /// If inconclusive for another reason than noise: which.
+    pub reason: Option<&'static str>,
+}
+
+impl Detector {
+    /// Watches two sides that are sampled batch by batch.
+    pub fn new(criterion: Criterion) -> Self {
+        Self { criterion, finished: false, tracks: vec![], whole: Default::default(), batches: 0 }
+    }
+
+    /// Watches one side against a finished result, whose errors are allowed for.
+    pub fn against_finished(criterion: Criterion) -> Self {
+        Self { finished: true, ..Self::new(criterion) }
+    }
+
+    /// Batches so far.
+    pub fn batches(&self) -> u64 {
+        self.batches
+    }
+
+    /// Scalars that share α.
+    pub fn family(&self) -> usize {
+        self.tracks.len()
+    }
+
+    /// Takes in one batch of both sides; the second is the same every time if it was finished before. The first functional
+    /// is the image mean, the others are found by name; what the first batches have in common is watched.
+    pub fn push(&mut self, first: &[Functional], second: &[Functional]) {
+        if self.batches == 0 {
+            self.open(first, second);
+        }
+        self.batches += 1;
+        if let Some(image) = first.first() {
+            (0..3).for_each(|c| self.whole[c].push(image.total.mean[c]));
+        }
+        let (finished, whole) = (self.finished, self.whole);
+        for track in &mut self.tracks {
+            track.push([first, second], finished);
+            if !track.few() {
+                let log_e = track.difference.log_e(0.0, track.allowance + rounding(&whole, track.channel));
+                track.evidence = track.evidence.max(log_e); // NaN is no evidence
+            }
+        }
+    }
+
+    fn open(&mut self, first: &[Functional], second: &[Functional]) {
+        for (i, a) in first.iter().enumerate() {
+            let Some(j) = second.iter().position(|b| b.name == a.name) else { continue };
+            for quantity in shared_quantities(a, &second[j]) {
+                for (channel, colour) in CHANNELS.iter().enumerate() {
+                    self.tracks.push(Track {
+                        quantity,
+                        at: [i, j],
+                        name: format!("{}, {colour}", a.name),
+                        channel,
+                        level: 0.0,
+                        difference: MeanSequence::default(),
+                        values: Default::default(),
+                        events: Default::default(),
+                        allowance: 0.0,
+                        evidence: f64::NEG_INFINITY,
+                    });
+                }
+            }
+        }
+        let images = self.tracks.iter().filter(|t| t.is_image()).count();
+        let others = self.tracks.len() - images;
+        let part = if others == 0 { 1.0 } else { 0.5 };
+        let (alpha, finished) = (self.criterion.alpha, self.finished);
+        for track in &mut self.tracks {
+            track.level = alpha * part / if track.is_image() { images } else { others } as f64;
+            if finished {
+                track.level *= 0.5;
+                let e = track.quantity.of(&second[track.at[1]]).unwrap_or(Estimate::NONE);
+                let m = Measured::of(&e, track.channel);
+                track.allowance = if m.std_error == 0.0 { 0.0 } else { critical(track.level, m.dof) * m.std_error };
+            }
+        }
+    }
+
+    /// What is known now, quantity by quantity: a rejection speaks first, by its strongest evidence; otherwise the image
+    /// mean whose bias is bounded worst.
+    pub fn findings(&self) -> Vec<Finding> {
+        let mut quantities: Vec<Quantity> = self.tracks.iter().filter(|t| t.is_image()).map(|t| t.quantity).collect();
+        quantities.dedup(); // three channels each
+        let row = |quantity: &Quantity| {
+            let all = || self.tracks.iter().filter(|t| t.quantity == *quantity);
+            let rejected = all().filter(|t| self.rejects(t));
+            let strongest = rejected.max_by(|a, b| (a.evidence + a.level.ln()).total_cmp(&(b.evidence + b.level.ln())));
+            if let Some(track) = strongest {
+                return Some(self.finding(track));
+            }
+            let reach = |f: &Finding| f.interval.0.abs().max(f.interval.1.abs()) / f.delta;
+            let images = all().filter(|t| t.is_image()).map(|t| self.finding(t));
+            images.max_by(|a, b| reach(a).total_cmp(&reach(b)))
+        };
+        quantities.iter().filter_map(row).collect()
+    }
+
+    /// The image mean of the whole (or of what comes nearest to it), channel by channel: what a progress line and a curve show.
+    pub fn image(&self) -> Vec<Finding> {
+        let last = self.tracks.iter().filter(|t| t.is_image()).map(|t| t.quantity).next_back();
+        self.tracks.iter().filter(|t| t.is_image() && Some(t.quantity) == last).map(|t| self.finding(t)).collect()
+    }
+
+    /// Differs if anything is rejected, Agrees if every image mean is bounded within its δ.
+    pub fn outcome(&self) -> Outcome {
+        if self.tracks.iter().any(|t| self.rejects(t)) {
+            return Outcome::Differs;
+        }
+        let mut images = self.tracks.iter().filter(|t| t.is_image()).peekable();
+        let agree = images.peek().is_some() && images.all(|t| self.finding(t).outcome == Outcome::Agrees);
+        if agree { Outcome::Agrees } else { Outcome::Inconclusive }
+    }
+
+    /// The largest ln E_n so far, of all that is watched, beyond what its share of α asks for: ≥ 0 is a rejection.
+    pub fn excess(&self) -> f64 {
+        self.tracks.iter().map(|t| t.evidence + t.level.ln()).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    fn rejects(&self, track: &Track) -> bool {
+        track.evidence >= -track.level.ln()
+    }
+
+    fn finding(&self, track: &Track) -> Finding {
+        let (d, c) = (&track.difference, track.channel);
+        let allowance = track.allowance + rounding(&self.whole, c);
+        let half = d.radius(track.level) + allowance;
+        let scale = 0.5 * (track.values[0].mean() + track.values[1].mean());
+        let delta = self.criterion.of_term * scale.abs() + self.criterion.of_total * self.whole[c].mean().abs();
+        let few = track.few();
+        let outcome = if self.rejects(track) {
+            Outcome::Differs
+        } else if d.mean().abs() + half * if few { 1.0 + WIDER } else { 1.0 } <= delta {
+            Outcome::Agrees
+        } else {
+            Outcome::Inconclusive
+        };
+        let reason = match outcome {
+            Outcome::Inconclusive if !d.mean().is_finite() => Some(NOT_FINITE),
+            Outcome::Inconclusive if few => Some(FEW),
+            _ => None,
+        };
+        // α is what this level would be had it no company
+        let shared = self.criterion.alpha / track.level;
+        Finding {
+            name: track.quantity.name(),
+            functional: track.name.clone(),
+            effect: d.mean(),
+            interval: (d.mean() - half, d.mean() + half),
+            log_e: d.log_e(0.0, allowance),
+            p: if d.mean().is_nan() { f64::NAN } else { (shared * (-track.evidence).exp()).min(1.0) },
+            min_detectable: half + one_sided_normal(self.criterion.beta) * d.std_error(),
+            scale,
+            delta,
+            outcome,
+            reason,
+        }
+    }
+}
+
+/// What `f32` may lose of a whole image: never a bias.
+fn rounding(whole: &[MeanSequence; 3], channel: usize) -> f64 {
+    ROUNDING * whole[channel].mean().abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    /// An image with two terms of these values, and a region.
+    fn batch(values: [f64; 2], events: f64) -> Vec<Functional> {
+        let e = |x: f64| Estimate { mean: DVec3::splat(x), std_error: DVec3::NAN, replicates: 1 };
+        let one = |name: &str| Functional {
+            name: name.into(),
+            terms: values.map(e).to_vec(),
+            tail: Estimate::NONE,
+            sum: e(values[0] + values[1]),
+            total: e(values[0] + values[1]),
+            events: vec![events; 5],
+        };
+        vec![one("image"), one("region 0,0")]
+    }
+
+    /// Numbers without a pattern, with mean 0.
+    fn noise(i: u32) -> f64 {
+        f64::from((i * i * 7 + i * 13) % 101) / 50.5 - 0.98
+    }
+
+    fn watch(bias: f64, events: f64, batches: u32) -> Detector {
+        let mut d = Detector::new(Criterion { of_term: 0.01, ..Criterion::default() });
+        for i in 0..batches {
+            d.push(
+                &batch([1.0, 0.5 + bias + 0.01 * noise(i)], events),
+                &batch([1.0, 0.5 - 0.01 * noise(i + 37)], events),
+            );
+        }
+        d
+    }
+
+    #[test]
+    fn a_bias_is_found_and_named() {
+        let d = watch(0.01, 1000.0, 300);
+        assert_eq!(d.family(), 2 * 3 * 4); // two functionals; T0, T1, sum, total; three channels
+        let found = d.findings();
+        let outcomes: Vec<_> = found.iter().map(|f| (f.name.as_str(), f.outcome)).collect();
+        assert_eq!(outcomes[0], ("T0", Outcome::Agrees));
+        assert_eq!(outcomes[1], ("T1", Outcome::Differs));
+        assert_eq!(d.outcome(), Outcome::Differs);
+        assert!(found[1].p <= 1e-3 && found[1].interval.0 > 0.0 && d.excess() >= 0.0, "{:?}", found[1]);
+    }
+
+    #[test]
+    fn equality_is_proved_within_delta() {
+        let d = watch(0.0, 1000.0, 300);
+        assert_eq!(d.outcome(), Outcome::Agrees, "{:?}", d.findings());
+        let t1 = &d.findings()[1];
+        assert!(t1.interval.0 < 0.0 && t1.interval.1 > 0.0 && t1.min_detectable < t1.delta, "{t1:?}");
+        assert_eq!(watch(0.0, 1000.0, 5).outcome(), Outcome::Inconclusive);
+    }
+
+    #[test]
+    fn few_events_decide_nothing() {
+        let d = watch(0.01, 1.0, 300);
+        assert_eq!(d.outcome(), Outcome::Inconclusive);
+        assert_eq!(d.findings()[1].reason, Some(FEW));
+    }
+
+    /// A finished result that is off by less than its own error is no proof of a bias; off by much more, it is.
+    #[test]
+    fn the_error_of_a_finished_result_is_allowed_for() {
+        for (std_error, outcome) in [(2e-3, Outcome::Inconclusive), (1e-5, Outcome::Differs)] {
+            let mut finished = batch([1.0, 0.5], 1e6);
+            for f in &mut finished {
+                for e in f.terms.iter_mut().chain([&mut f.sum, &mut f.total]) {
+                    (e.std_error, e.replicates) = (DVec3::splat(std_error), 16);
+                }
+            }
+            let mut d = Detector::against_finished(Criterion::default());
+            (0..300).for_each(|i| d.push(&batch([1.0, 0.505 + 0.01 * noise(i)], 1000.0), &finished));
+            assert_eq!(d.findings()[1].outcome, outcome, "{std_error}: {:?}", d.findings()[1]);
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_is_never_judged() {
+        let mut d = watch(0.0, 1000.0, 300);
+        d.push(&batch([f64::NAN, 0.5], 1000.0), &batch([1.0, 0.5], 1000.0));
+        let t0 = &d.findings()[0];
+        assert_eq!((t0.outcome, t0.reason), (Outcome::Inconclusive, Some(NOT_FINITE)));
+        assert!(t0.p.is_nan());
+    }
+}

@@ -1,0 +1,95 @@
+//! One way of rendering, batch by batch: what a watch over two of them compares.
+//!
+//! Batch i is a whole image of `settings.spp` samples per pixel from stream i of that way and seed, so that batches are
+//! independent and identically distributed. Errors come from their scatter; a batch has none of its own.
+
+use super::Settings;
+use super::sampled::{Estimator, film};
+use super::unseen::{by_luck, unseen};
+use crate::estimator::render::{Amount, Unwatched, render};
+use crate::estimator::{PathTracer, Plan};
+use crate::operator::SceneTransport;
+use crate::scene::Scene;
+use crate::terms::functional::functionals;
+use crate::terms::{Cost, Estimate, Functional, Series, World};
+use std::sync::atomic::AtomicBool;
+
+/// One way of rendering.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Side {
+    /// Which estimator of the terms; none is the path tracer.
+    pub estimator: Option<Estimator>,
+    /// How. `spp` is of one batch.
+    pub settings: Settings,
+}
+
+/// What one batch gave.
+#[derive(Clone, Debug)]
+pub struct Batch {
+    /// Image mean, regions, projections.
+    pub functionals: Vec<Functional>,
+    /// Paths started.
+    pub paths: u64,
+    /// Rays traced.
+    pub rays: u64,
+    /// Samples that were not finite.
+    pub non_finite: u64,
+}
+
+impl Side {
+    /// Its words in tables: `prefix, mis`.
+    pub fn label(&self) -> String {
+        let Settings { technique, roulette, path_roulette, max_bounces, .. } = &self.settings;
+        let cut = |ends: bool| if ends { String::new() } else { format!(", k ≤ {max_bounces} only") };
+        match self.estimator {
+            // a walk from the light has no use for a technique
+            Some(Estimator::Light) => format!("light{}", cut(roulette.ends())),
+            Some(e) => format!("{e}, {technique}, roulette {roulette}{}", cut(roulette.ends())),
+            None => format!("path tracer, {technique}, roulette {path_roulette}{}", cut(path_roulette.ends())),
+        }
+    }
+
+    /// Whether paths end by roulette: otherwise nothing longer than K is estimated.
+    fn ends(&self) -> bool {
+        if self.estimator.is_some() { self.settings.roulette.ends() } else { self.settings.path_roulette.ends() }
+    }
+
+    /// Batch `index`. `name` keeps the streams of two sides apart that are rendered in the same way.
+    pub fn batch(&self, scene: &Scene, name: &str, index: u32, stop: &AtomicBool) -> Batch {
+        let settings = &self.settings;
+        let stream = self.estimator.map_or("path".into(), |e| e.to_string());
+        let key = settings.key(&format!("batches, {name}: {stream}"), 1).branch(index);
+        let amount = Amount { spp: settings.spp, replicates: 1, key };
+        let t = SceneTransport { scene, sampling: settings.sampling };
+        let film = match self.estimator {
+            Some(estimator) => film(&t, &scene.camera, estimator, settings.plan(), amount, &mut Unwatched, stop),
+            None => {
+                let plan = Plan { roulette: settings.path_roulette.clone(), ..settings.plan() };
+                render(&t, &scene.camera, &PathTracer(plan), amount, &mut Unwatched, stop)
+            }
+        };
+        let mut functionals = functionals(&film);
+        if !self.ends() {
+            functionals.iter_mut().for_each(|f| f.tail = Estimate::NONE);
+        }
+        Batch {
+            functionals,
+            paths: film.samples.iter().map(|&n| u64::from(n)).sum(),
+            rays: film.rays.iter().sum(),
+            non_finite: film.non_finite,
+        }
+    }
+
+    /// A result without numbers that says what this way cannot see in a scene, and what it finds by luck only.
+    pub fn limits(&self, scene: &Scene) -> Series {
+        let unseen = unseen(scene, self.estimator, self.settings.technique);
+        Series {
+            world: if self.estimator.is_some() { World::Terms } else { World::Path },
+            label: self.label(),
+            functionals: vec![],
+            cost: Cost::default(),
+            unseen,
+            by_luck: by_luck(scene, self.estimator),
+        }
+    }
+}

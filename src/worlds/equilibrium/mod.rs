@@ -1,0 +1,167 @@
+//! The rendering equation as a test: L against E + T L, at points and directions of a scene.
+//!
+//! ```text
+//! d_r = (L − (E + T L))(x), replicate r        t = d̄ / (s_d/√R)        p = P(|T_{R−1}| ≥ |t|)
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | x | a point with a direction: by the surface sensor, or seen by a pixel | [`points`] |
+//! | L, E + T L | estimates from independent paths | [`Balance`] |
+//! | p | no difference at this point, of the mean over channels, and of each | [`Balance::p`], [`Balance::channels`] |
+//! | aggregate | mean of d over all points | [`aggregate`] |
+//! | verdict | all of them together, at level α | [`judge`] |
+//!
+//! Errors of an aggregate are those of its points, not of a choice of points: the equation holds at every one.
+
+mod judge;
+
+pub use judge::{Group, Judgement, judge};
+
+use super::{Advance, Observer, Settings};
+use crate::estimator::render::{Amount, render};
+use crate::estimator::{Equilibrium, Plan};
+use crate::math::{Key, Purpose, Rng};
+use crate::operator::{SceneTransport, Sensor};
+use crate::scene::{Scene, SurfaceSensor, Vertex};
+use crate::stats::{Measured, estimate, two_sided_p};
+use crate::terms::{Estimate, TermFilm, TermImage};
+use glam::DVec3;
+use std::sync::atomic::AtomicBool;
+
+/// Replicates at every point.
+pub const REPLICATES: usize = 32;
+
+/// Points as a sensor: pixel i is the i-th.
+struct Fixed<'a>(&'a [Vertex]);
+
+impl Sensor<SceneTransport<'_>> for Fixed<'_> {
+    fn size(&self) -> [u32; 2] {
+        [self.0.len() as u32, 1]
+    }
+    fn start(&self, _: &SceneTransport<'_>, pixel: u32, _: &mut Rng) -> Option<Vertex> {
+        Some(self.0[pixel as usize])
+    }
+}
+
+/// Where the points come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum From {
+    /// Uniform on all surfaces, with cosine-distributed directions.
+    Surface,
+    /// Seen by random pixels.
+    Camera,
+}
+
+/// `n` random points; fewer through a camera that sees almost nothing.
+pub fn points(scene: &Scene, from: From, n: u32, seed: u64) -> Vec<Vertex> {
+    let key = Key::new(seed, "points of equilibrium");
+    let t = SceneTransport::new(scene);
+    let [w, h] = scene.camera.size;
+    let sensor = SurfaceSensor::new(scene);
+    let one = |i: u32| {
+        let mut rng = Rng::at(key, i, from as u32, 0, Purpose::Start);
+        match from {
+            From::Surface => Some(sensor.vertex(scene, &mut rng)),
+            From::Camera => {
+                let pixel = ((f64::from(rng.one()) * f64::from(w * h)) as u32).min(w * h - 1);
+                scene.camera.start(&t, pixel, &mut rng).filter(|x| x.on_surface())
+            }
+        }
+    };
+    (0..64 * n).filter_map(one).take(n as usize).collect()
+}
+
+/// Both sides at one point.
+#[derive(Clone, Debug)]
+pub struct Balance {
+    /// Where.
+    pub at: Vertex,
+    /// L.
+    pub left: Estimate,
+    /// E + T L.
+    pub right: Estimate,
+    /// d, replicate by replicate.
+    pub differences: Vec<DVec3>,
+    /// The mean of d over channels is 0; NaN where both sides have no noise.
+    pub p: f64,
+    /// The same channel by channel.
+    pub channels: [f64; 3],
+    /// `(Σ x)²/Σ x²` of the side that has fewer events.
+    pub events: f64,
+}
+
+impl Balance {
+    fn of(film: &TermFilm, pixel: usize, at: Vertex) -> Self {
+        let side = |slot: usize| -> Vec<DVec3> {
+            (0..film.shape.replicates).map(|r| film.sum(pixel, r, slot) / film.count(pixel, r)).collect()
+        };
+        let (l, r) = (side(0), side(1));
+        let differences: Vec<DVec3> = l.iter().zip(&r).map(|(l, r)| *l - *r).collect();
+        let p = |m: Measured| if m.std_error == 0.0 { f64::NAN } else { two_sided_p(m.mean / m.std_error, m.dof) };
+        let events = |slot: usize, replicates: &[DVec3]| {
+            let sum: f64 = replicates.iter().enumerate().map(|(r, x)| x.element_sum() * film.count(pixel, r)).sum();
+            let square = film.square(pixel, slot);
+            if square > 0.0 { sum * sum / square } else { 0.0 }
+        };
+        let d = estimate(&differences);
+        let mean = estimate(&differences.iter().map(|d| DVec3::splat(d.element_sum() / 3.0)).collect::<Vec<_>>());
+        Self {
+            at,
+            p: p(Measured::of(&mean, 0)),
+            channels: [0, 1, 2].map(|c| p(Measured::of(&d, c))),
+            events: events(0, &l).min(events(1, &r)),
+            left: estimate(&l),
+            right: estimate(&r),
+            differences,
+        }
+    }
+}
+
+/// How both sides are estimated, and by what factor the step is wrong (1: not at all).
+fn estimator(settings: &Settings, factor: f32) -> Equilibrium {
+    Equilibrium { plan: Plan { roulette: settings.path_roulette.clone(), ..settings.plan() }, factor }
+}
+
+/// Both sides at given points, `settings.spp` samples each.
+pub fn at_points(
+    scene: &Scene,
+    at: &[Vertex],
+    settings: &Settings,
+    factor: f32,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Vec<Balance> {
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let key = settings.key("equilibrium at points", REPLICATES);
+    let amount = Amount { spp: settings.spp, replicates: REPLICATES.min(settings.spp as usize), key };
+    observer.begin("L and E + T L at points", at.len() as u64 * u64::from(settings.spp));
+    let film = render(&t, &Fixed(at), &estimator(settings, factor), amount, &mut Advance(observer), stop);
+    at.iter().enumerate().map(|(i, &x)| Balance::of(&film, i, x)).collect()
+}
+
+/// Both sides through the camera: images of L and of E + T L.
+pub fn through_camera(
+    scene: &Scene,
+    settings: &Settings,
+    factor: f32,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> [TermImage; 2] {
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let replicates = settings.spp.clamp(1, 16) as usize;
+    let amount =
+        Amount { spp: settings.spp, replicates, key: settings.key("equilibrium through the camera", replicates) };
+    let [w, h] = scene.camera.size;
+    observer.begin("L and E + T L through the camera", u64::from(w) * u64::from(h) * u64::from(settings.spp));
+    let film = render(&t, &scene.camera, &estimator(settings, factor), amount, &mut Advance(observer), stop);
+    [0, 1].map(|slot| TermImage::of(&film, slot..slot + 1))
+}
+
+/// The mean of d over some points, with the error of its replicates.
+pub fn aggregate(balances: &[&Balance]) -> Estimate {
+    let n = balances.len() as f64;
+    let replicates = balances.first().map_or(0, |b| b.differences.len());
+    let mean = |r: usize| balances.iter().map(|b| b.differences[r]).sum::<DVec3>() / n;
+    estimate(&(0..replicates).map(mean).collect::<Vec<_>>())
+}
