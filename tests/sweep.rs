@@ -246,3 +246,26 @@ fn series_branches_and_takes_sobol_points() {
     let said = run(desk.path(), "render furnace --points halton");
     assert_eq!(said.code, 2);
 }
+
+/// The meshes of a furnace are exact; those of the box come nearer to the rays.
+#[test]
+fn finer_meshes_come_nearer() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |line: &str| {
+        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
+        let output = command.args(line.split_whitespace()).current_dir(dir.path()).output().unwrap();
+        (output.status.code().unwrap(), String::from_utf8(output.stdout).unwrap())
+    };
+    let (code, out) = run("sweep cornell --over patches --values 40,160 --size 48x48 --spp 64 -q -o p");
+    assert_eq!(code, 0, "{out}");
+    let csv = std::fs::read_to_string(dir.path().join("p/patches.csv")).unwrap();
+    let error = |patches: &str, k: &str| -> f64 {
+        let row = csv.lines().map(|l| l.split(',').collect::<Vec<_>>()).find(|c| c[0] == patches && c[2] == k).unwrap();
+        row[5].parse().unwrap()
+    };
+    // 16 % and 8 % of T², with errors of half a percent
+    assert!(error("152", "2") < 0.75 * error("40", "2"), "{csv}");
+    assert!(error("40", "2") > 0.1 && error("40", "1").abs() < 0.05, "{csv}");
+    assert!(dir.path().join("p/places.png").exists() && dir.path().join("p/patches.svg").exists());
+    assert_eq!(run("sweep cornell --over patches --values none -q").0, 2);
+}

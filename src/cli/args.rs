@@ -87,6 +87,7 @@ Example:
   fredholm sweep furnace --over branching --sampling uniform --spp 64
   fredholm sweep cornell --over technique --max-bounces 4 --size 64x64
   fredholm sweep cornell --over estimator --values prefix,single --equal-rays
+  fredholm sweep cornell --over patches        the matrix on finer meshes, against rays
 
 Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged
 over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for the same error.")]
@@ -285,6 +286,8 @@ pub enum Over {
     Points,
     /// How paths end
     Roulette,
+    /// How fine the mesh of the matrix is
+    Patches,
 }
 
 impl std::fmt::Display for Over {
@@ -296,13 +299,13 @@ impl std::fmt::Display for Over {
 /// Arguments of `sweep`.
 #[derive(Clone, Debug, Args)]
 pub struct Sweep {
-    /// branching, spp, technique, sampling, estimator, points or roulette
+    /// branching, spp, technique, sampling, estimator, points, roulette or patches
     #[arg(long, value_enum, value_name = "SETTING", hide_possible_values = true)]
     pub over: Over,
     /// Its values, with commas
     ///
     /// [default: 1,2,3,4; 16,64,256; scatter,connect,mis; uniform,cosine,bsdf;
-    /// prefix,single,branching; independent,sobol; none,lecture,albedo]
+    /// prefix,single,branching; independent,sobol; none,lecture,albedo; 38,150,600,2400]
     #[arg(long, value_name = "V,…", verbatim_doc_comment)]
     pub values: Option<String>,
     /// Give every value the rays of the dearest, instead of the same spp

@@ -17,6 +17,7 @@ mod progress;
 mod solve;
 mod strategies;
 mod sweep;
+mod sweep_patches;
 mod walk;
 mod write;
 

@@ -28,6 +28,9 @@ struct Case {
 
 /// Renders the terms for every value.
 pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
+    if args.over == Over::Patches {
+        return super::sweep_patches::run(args);
+    }
     let (run, over) = (&args.run, args.over);
     let started = Instant::now();
     refuse_what_has_no_part(args)?;
@@ -172,6 +175,7 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
         Over::Estimator => "prefix,single,branching,light,bidirectional",
         Over::Points => "independent,sobol",
         Over::Roulette => "none,lecture,albedo",
+        Over::Patches => "", // has a command of its own
     };
     let case = |value: String| {
         let (mut estimator, mut settings) =
@@ -184,6 +188,7 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
                 Over::Sampling => settings.sampling = args::sampling(&value)?,
                 Over::Points => settings.points = args::points(&value)?,
                 Over::Roulette => settings.roulette = value.parse()?,
+                Over::Patches => settings.patches = number(&value, 20_000)? as usize,
                 Over::Estimator => {
                     let name = <args::EstimatorName as clap::ValueEnum>::from_str(&value, false);
                     let wrong = |_| format!("`{value}` is none of prefix, single, branching, light, bidirectional");

@@ -31,6 +31,7 @@ pub mod picture;
 pub mod plot;
 pub mod pyramid;
 mod rate;
+pub mod refine;
 pub mod sheet;
 pub mod summary;
 pub mod sweep;

@@ -13,6 +13,7 @@
 //! | γ | observed rate of decay of the terms | [`decay`] |
 //! | E_n | evidence that may be watched while it grows, and the interval that goes with it | [`sequential`] |
 //! | | two results watched batch by batch, in every quantity | [`detector`] |
+//! | p | order of convergence under refinement | [`order`] |
 //! | b | slope of the variance against samples | [`slope`] |
 //! | D | distance of p-values from uniform ones | [`uniformity`] |
 //! | SUITE_ALPHA | significance of this project's own tests | [`ledger`] |
@@ -27,6 +28,7 @@ pub mod hypothesis;
 pub mod ledger;
 mod line;
 pub mod moments;
+pub mod order;
 pub mod power;
 pub mod sequential;
 pub mod slope;
@@ -37,6 +39,7 @@ pub use decay::{NoRate, Rate, TermMeans, observed_rate, ratio, tail_window};
 pub use detector::{Detector, Finding};
 pub use hypothesis::{Measured, critical, difference, holm, two_sided_p};
 pub use moments::{Moments, estimate};
+pub use order::{Order, convergence_order};
 pub use power::{min_detectable, needed_samples};
 pub use sequential::MeanSequence;
 pub use slope::{Slope, variance_slope};

@@ -9,6 +9,7 @@
 //! | batches | the same, small and one after another, for what is watched while it grows | [`batches::Side`] |
 //! | equilibrium | both sides of L = E + T L, point by point and through the camera | [`equilibrium`] |
 //! | strategies | every way to find every term from both ends | [`pyramid::strategies`] |
+//! | refine | the matrix on finer and finer meshes, against rays | [`refine::refine`] |
 //! | walk | the same estimators on the radiosity matrix | [`walk::walk`], [`zero_variance::study`] |
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 
@@ -16,6 +17,7 @@ pub mod batches;
 pub mod discrete;
 pub mod equilibrium;
 pub mod pyramid;
+pub mod refine;
 pub mod sampled;
 pub mod surface;
 pub mod unseen;

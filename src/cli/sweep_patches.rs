@@ -1,0 +1,114 @@
+//! `fredholm sweep [SCENE] --over patches`: the matrix on finer and finer meshes against the truth from rays.
+
+use super::progress::{Progress, stop_flag};
+use super::{Ending, Failure, args, guard, output, solve};
+use fredholm::estimator::Roulette;
+use fredholm::report::typeset::Caption;
+use fredholm::report::{refine as report, summary, write_atomically};
+use fredholm::scene::Scene;
+use fredholm::scene::load::{self, Options};
+use fredholm::terms::TermFilm;
+use fredholm::worlds::{Settings, refine};
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// Meshes of these sizes unless told otherwise: h halves from one to the next.
+const USUAL: &str = "38,150,600,2400";
+
+/// Solves on every mesh and holds the terms against rays.
+pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
+    let run = &args.run;
+    let started = Instant::now();
+    let mut sizes = args
+        .values
+        .as_deref()
+        .unwrap_or(USUAL)
+        .split(',')
+        .map(|v| v.trim().parse().ok().filter(|n| (1..=20_000).contains(n)).ok_or(v))
+        .collect::<Result<Vec<usize>, _>>()
+        .map_err(|v| {
+            Failure::Usage(format!(
+                "error: `{v}` is not a number of patches from 1 to 20000\n\
+                 help: values of --over patches are such as --values {USUAL}"
+            ))
+        })?;
+    sizes.sort_unstable();
+    sizes.dedup();
+    if let Some(n) = run.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
+    }
+    let command = output::canonical_command();
+    let mut set = run.set.clone();
+    set.extend(run.size.map(|[w, h]| format!("camera.size=[{w},{h}]")));
+    let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
+    loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
+    let description = loaded.description;
+    let scene = Scene::new(&description).select_lights(run.lights);
+    let mut worlds = vec![args::WorldName::Radiosity];
+    guard::suits_a_matrix(&description, &mut worlds, true)?;
+    guard::fits_in_a_matrix(&scene, &mut worlds, true)?;
+    let max_bounces = usize::from(run.max_bounces.unwrap_or(8));
+    let settings = Settings {
+        spp: run.spp.unwrap_or(256),
+        seed: run.seed,
+        points: run.points,
+        max_bounces,
+        technique: run.technique,
+        sampling: run.sampling,
+        roulette: run.roulette.clone().unwrap_or(Roulette::Albedo { from: 2 }.after(max_bounces)),
+        read_patches: run.read_patches,
+        ..Settings::default()
+    };
+    guard::fits_in_memory(&settings, description.camera.size)?;
+    guard::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
+    let folder = output::folder(run.out.as_deref(), &format!("{}-patches", description.name), &command, run.force)?;
+    let progress = Progress::new(run.quiet, |_: &TermFilm| {});
+    let found = refine::refine(&description, &scene, &sizes, &settings, &progress, stop_flag())?;
+    progress.finish();
+    let stopped = stop_flag().load(Ordering::Relaxed);
+    if found.meshes.is_empty() {
+        super::note("nothing to save yet");
+        let _ = std::fs::remove_dir(&folder); // only if it is empty
+        return Ok(Ending::Interrupted);
+    }
+    let caption = Caption { command: command.clone(), seed: run.seed, scene: description.name.clone() };
+    write_atomically(&folder.join("patches.csv"), report::csv(&found, max_bounces).as_bytes())?;
+    report::draw(&found, max_bounces, &caption)?.write(&folder, "patches")?;
+    let [w, h] = description.camera.size.map(|s| s as usize);
+    report::places(&found, [w, h], 0.1, &caption)?.picture.write(&folder.join("places.png"))?;
+    let record = summary::Summary {
+        command: command.clone(),
+        scene: description.name.clone(),
+        scene_hash: solve::scene_hash(&loaded.canonical),
+        seed: run.seed,
+        spp: settings.spp.into(),
+        max_bounces,
+        threads: rayon::current_num_threads(),
+        seconds: started.elapsed().as_secs_f64(),
+        width: w,
+        height: h,
+        files: ["summary.json", "patches.csv", "patches.png", "patches.svg", "places.png"].map(String::from).into(),
+        series: std::iter::once(&found.truth)
+            .chain(found.meshes.iter().map(|m| &m.picture))
+            .map(|s| s.series.clone())
+            .collect(),
+        ..summary::Summary::default()
+    };
+    let old = output::left_by_the_last_run(&folder);
+    summary::write(&folder.join("summary.json"), &record)?;
+    output::remove_stale(&folder, &old, &record.files);
+    if run.json {
+        super::say(&serde_json::to_string_pretty(&record)?)?;
+    } else {
+        let head = format!(
+            "{command}\nseed {}, {w}×{h} pixels, {} spp for the truth and for every mesh, k ≤ {max_bounces}",
+            run.seed, settings.spp
+        );
+        let foot = "T0 and T1 are controls: there a mesh reads E itself.\n\
+                    An order stands where two or more errors exceed 3 standard errors and have one sign."
+            .to_string();
+        let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
+        super::say(&super::paragraphs(&[head, report::table(&found, max_bounces), foot, files]))?;
+    }
+    Ok(if stopped { Ending::Interrupted } else { Ending::Ok })
+}
