@@ -247,7 +247,7 @@ fn series_branches_and_takes_sobol_points() {
     assert_eq!(said.code, 2);
 }
 
-/// The meshes of a furnace are exact; those of the box come nearer to the rays.
+/// Coarse meshes of the box are too dark, finer ones less so.
 #[test]
 fn finer_meshes_come_nearer() {
     let dir = tempfile::tempdir().unwrap();
@@ -259,13 +259,14 @@ fn finer_meshes_come_nearer() {
     let (code, out) = run("sweep cornell --over patches --values 40,160 --size 48x48 --spp 64 -q -o p");
     assert_eq!(code, 0, "{out}");
     let csv = std::fs::read_to_string(dir.path().join("p/patches.csv")).unwrap();
-    let error = |patches: &str, k: &str| -> f64 {
-        let row = csv.lines().map(|l| l.split(',').collect::<Vec<_>>()).find(|c| c[0] == patches && c[2] == k).unwrap();
-        row[5].parse().unwrap()
+    let row = |patches: &str, k: &str| -> Vec<f64> {
+        let rows = csv.lines().map(|l| l.split(',').collect::<Vec<_>>());
+        let found = rows.filter(|c| c[0] == patches && c[2] == k).last().unwrap();
+        found[3..5].iter().map(|x| x.parse().unwrap()).collect()
     };
-    // 16 % and 8 % of T², with errors of half a percent
-    assert!(error("152", "2") < 0.75 * error("40", "2"), "{csv}");
-    assert!(error("40", "2") > 0.1 && error("40", "1").abs() < 0.05, "{csv}");
+    // all meshes are read along the same rays: what differs is the mesh, and what they read of T¹ does not
+    assert!(row("161", "k ≥ 2")[0] > row("40", "k ≥ 2")[0] + 1e-4, "{csv}");
+    assert_eq!(row("161", "T1"), row("40", "T1"));
     assert!(dir.path().join("p/places.png").exists() && dir.path().join("p/patches.svg").exists());
     assert_eq!(run("sweep cornell --over patches --values none -q").0, 2);
 }
