@@ -9,6 +9,9 @@
 //! | `T00.png`, `terms.png`, `partial_00.png` | [`picture`], [`sheet`] |
 //! | z maps of `compare` | [`zmap`] |
 //! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
+//! | `variance.svg` of a sweep over spp | [`sweep::fall`] |
+//! | `covariance.svg`, `split.csv` | [`split`] |
+//! | sheets of one image as it grows | [`stages`] |
 //! | `summary.json` | [`summary`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
@@ -30,6 +33,8 @@ pub mod plot;
 pub mod pyramid;
 mod rate;
 pub mod sheet;
+pub mod split;
+pub mod stages;
 pub mod summary;
 pub mod sweep;
 pub mod table;

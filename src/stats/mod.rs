@@ -31,5 +31,5 @@ pub use decay::{NoRate, Rate, TermMeans, observed_rate, ratio, tail_window};
 pub use hypothesis::{Measured, critical, difference, holm, two_sided_p};
 pub use moments::{Moments, estimate};
 pub use power::{min_detectable, needed_samples};
-pub use slope::{Slope, variance_slope};
+pub use slope::{Slope, falling_slope, variance_slope};
 pub use verdict::{Comparison, Criterion, Outcome, Verdict, compare, discretisation};

@@ -6,12 +6,18 @@
 //! | terms | every `T^k E` by its own estimator | [`sampled::terms`] |
 //! | path | Σ T^k E by the full path tracer | [`sampled::path`] |
 //! | radiosity | `T_h^k E` and the solve, through the same camera | [`discrete::radiosity`] |
+//! | falling | how variance and squared error fall in one render | [`falling::Recorder`] |
+//! | split | the terms with so many samples each | [`split::measure`] |
+//! | stages | one image as it grows | [`stages::render_stages`] |
 //! | strategies | every way to find every term from both ends | [`pyramid::strategies`] |
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 
 pub mod discrete;
+pub mod falling;
 pub mod pyramid;
 pub mod sampled;
+pub mod split;
+pub mod stages;
 pub mod surface;
 pub mod unseen;
 
@@ -83,6 +89,10 @@ pub trait Observer: Sync {
     fn begin(&self, _what: &str, _units: u64) {}
     /// Some units are done.
     fn advance(&self, _units: u64) {}
+    /// The next number of samples per pixel, beyond `done`, at which to show the film, beside the usual ones.
+    fn stop(&self, _done: u32) -> Option<u32> {
+        None
+    }
     /// The film after a complete pass.
     fn preview(&self, _film: &TermFilm) {}
 }
