@@ -9,6 +9,7 @@ pub mod args;
 mod chapter;
 mod compare;
 mod facts;
+mod figure;
 mod guard;
 mod info;
 mod output;
@@ -16,6 +17,8 @@ mod progress;
 mod solve;
 mod strategies;
 mod sweep;
+mod sweep_split;
+mod sweep_spp;
 mod write;
 
 use args::{Cli, Command};
@@ -81,6 +84,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Radiosity(run)) => solve::radiosity(run),
         Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
+        Some(Command::Figure(args)) => figure::run(args),
         Some(Command::Info(args)) => info::run(args),
         Some(Command::Chapter(args)) => chapter::run(args),
     };
