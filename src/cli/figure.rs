@@ -68,12 +68,34 @@ const FIGURES: &[Kind] = &[
     Kind::Command(
         "variance-cornell",
         "Variance against samples per pixel: single, prefix, path tracer",
-        &["sweep", "cornell", "--over", "spp", "--estimator", "single,prefix,path", "--size", "64x64", "--max-bounces", "6"],
+        &[
+            "sweep",
+            "cornell",
+            "--over",
+            "spp",
+            "--estimator",
+            "single,prefix,path",
+            "--size",
+            "64x64",
+            "--max-bounces",
+            "6",
+        ],
     ),
     Kind::Command(
         "sobol-cornell",
         "Independent and Sobol points: where their slopes differ",
-        &["sweep", "cornell", "--over", "spp", "--points", "independent,sobol", "--size", "64x64", "--max-bounces", "4"],
+        &[
+            "sweep",
+            "cornell",
+            "--over",
+            "spp",
+            "--points",
+            "independent,sobol",
+            "--size",
+            "64x64",
+            "--max-bounces",
+            "4",
+        ],
     ),
     Kind::Command(
         "split-cornell",
@@ -142,7 +164,8 @@ fn command(args: &Figure, id: &str, words: &[&str], folder: Option<PathBuf>) -> 
     line.extend(args.force.then(|| "--force".into()));
     line.extend(args.quiet.then(|| "--quiet".into()));
     // the words stand in this file, so that a mistake in them is one of the program; the tests make every figure
-    let wrong = |e: clap::Error| Failure::Usage(format!("error: this is a defect of the program: {e}\nhelp: please report it"));
+    let wrong =
+        |e: clap::Error| Failure::Usage(format!("error: this is a defect of the program: {e}\nhelp: please report it"));
     match Words::try_parse_from(line).map_err(wrong)? {
         Words::Sweep(sweep) => super::sweep::run(&sweep),
     }
@@ -217,7 +240,8 @@ fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Endin
         recipe.reference_spp,
         reference_seed(args.seed)
     );
-    let foot = "mean: what the samples say; mean shown: with everything above white cut off, as the screen does";
+    let foot = "mean: what the samples say; mean shown: with everything above white cut off, as the screen does.\n\
+                Lamps in view and bright light are lost on every screen: what is lost beyond the reference is noise";
     let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
     super::say(&super::paragraphs(&[head, format!("{}{foot}", report::table(&grown)), files]))?;
     Ok(if stop_flag().load(Ordering::Relaxed) { Ending::Interrupted } else { Ending::Ok })

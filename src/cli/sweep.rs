@@ -151,7 +151,10 @@ fn refuse_what_has_no_part(args: &args::Sweep) -> Result<(), Failure> {
         return Err(usage("--over split gives every way about the same rays already", "leave --equal-rays out"));
     }
     if args.values.is_some() && args.over == Over::Split {
-        return Err(usage("--over split has no values: it always compares equal, optimal and prefix", "leave them out"));
+        return Err(usage(
+            "--over split has no values: it always compares equal, optimal and prefix",
+            "leave them out",
+        ));
     }
     if args.reference.is_some() && args.over != Over::Spp {
         return Err(usage("--reference is for --over spp", "leave it out, or sweep over spp"));

@@ -63,7 +63,8 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     write_atomically(&folder.join("split.csv"), report::csv(&study).as_bytes())?;
     write_atomically(&folder.join("covariance.csv"), report::covariance_csv(&study.reuse.covariance).as_bytes())?;
     let slots = study.pilot.len();
-    report::draw(&study.reuse.covariance, slots, "What terms of one path share", &caption)?.write(&folder, "covariance")?;
+    report::draw(&study.reuse.covariance, slots, "What terms of one path share", &caption)?
+        .write(&folder, "covariance")?;
     let files = ["covariance.csv", "covariance.png", "covariance.svg", "split.csv", "summary.json"];
     let record = summary::Summary {
         command,

@@ -59,7 +59,11 @@ pub fn several_values(command: clap::Command) -> clap::Command {
 
 /// The arguments of a sweep over anything else: one value of each.
 pub fn one_of_each(args: &args::Sweep) -> Result<args::Sweep, Failure> {
-    fn one<T>(name: &str, list: Option<&String>, parse: impl Fn(&str) -> Result<T, String>) -> Result<Option<T>, Failure> {
+    fn one<T>(
+        name: &str,
+        list: Option<&String>,
+        parse: impl Fn(&str) -> Result<T, String>,
+    ) -> Result<Option<T>, Failure> {
         let Some(list) = list else { return Ok(None) };
         let all = values(list);
         if all.len() > 1 {
@@ -106,7 +110,8 @@ fn cases(args: &args::Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
     let max_bounces = usize::from(run.max_bounces.unwrap_or(8));
     let list = |given: &Option<String>| given.as_deref().map_or(vec![], values);
     fn parsed<T>(all: Vec<String>, parse: impl Fn(&str) -> Result<T, String>) -> Result<Vec<(String, T)>, Failure> {
-        let one = |text: String| parse(&text).map(|v| (text, v)).map_err(|why| usage(&why, "separate values by commas"));
+        let one =
+            |text: String| parse(&text).map(|v| (text, v)).map_err(|why| usage(&why, "separate values by commas"));
         all.into_iter().map(one).collect()
     }
     let mut estimators = parsed(list(&several.estimators), name)?;
@@ -165,7 +170,8 @@ fn cases(args: &args::Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
 /// The numbers of samples to look at; none: after every doubling.
 fn counts(args: &args::Sweep) -> Result<Vec<u32>, Failure> {
     let Some(list) = &args.values else { return Ok(vec![]) };
-    let of = |text: &String| number(text, 1 << 24).map_err(|why| usage(&why, "values of --over spp are such as 16,64,256"));
+    let of =
+        |text: &String| number(text, 1 << 24).map_err(|why| usage(&why, "values of --over spp are such as 16,64,256"));
     let mut all: Vec<u32> = values(list).iter().map(of).collect::<Result<_, _>>()?;
     all.sort_unstable();
     all.dedup();
@@ -299,7 +305,8 @@ fn people(falls: &[Fall], record: &summary::Summary, reference: Option<&Referenc
         head += "\nnote: one number of samples has no slope; choose at least --spp 32";
     }
     let broken = record.series.iter().filter(|s| s.cost.non_finite > 0);
-    let broken: Vec<_> = broken.map(|s| format!("warning: {}: {} samples were not finite", s.label, s.cost.non_finite)).collect();
+    let broken: Vec<_> =
+        broken.map(|s| format!("warning: {}: {} samples were not finite", s.label, s.cost.non_finite)).collect();
     let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
     super::paragraphs(&[head, fall::table(falls), broken.join("\n"), files])
 }
@@ -344,7 +351,10 @@ fn plan_reference(
     let help = |what: String, help: &str| Failure::Input(format!("error: {what}\n  --> {text}\nhelp: {help}"));
     let [w, h] = description.camera.size.map(|s| s as usize);
     if (known.width, known.height, known.scene.as_str()) != (w, h, description.name.as_str()) {
-        let what = format!("the reference is {}, {}×{}; this is {}, {w}×{h}", known.scene, known.width, known.height, description.name);
+        let what = format!(
+            "the reference is {}, {}×{}; this is {}, {w}×{h}",
+            known.scene, known.width, known.height, description.name
+        );
         return Err(help(what, "render both with the same scene and --size"));
     }
     if known.max_bounces != settings.max_bounces {

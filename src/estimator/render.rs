@@ -73,7 +73,8 @@ pub fn render<T: Transport>(
     let mut done = 0;
     while done < amount.spp && !(done > 0 && stop.load(Ordering::Relaxed)) {
         let until = if done == 0 { amount.replicates as u32 } else { 2 * done }.min(amount.spp);
-        let until = watch.stop(done).filter(|&n| n > done).map_or(until, |n| until.min(n.max(amount.replicates as u32)));
+        let until =
+            watch.stop(done).filter(|&n| n > done).map_or(until, |n| until.min(n.max(amount.replicates as u32)));
         pass(t, sensor, estimator, amount.key, done..until, &mut film, &*watch, stop);
         done = until;
         if !stop.load(Ordering::Relaxed) {

@@ -163,7 +163,9 @@ pub fn mean(pixels: &[[f32; 3]]) -> f64 {
 /// assert_eq!(shown_mean(&pixels, 0.25), 1.0);
 /// ```
 pub fn shown_mean(pixels: &[[f32; 3]], gain: f64) -> f64 {
-    pixels.iter().flatten().map(|&v| (gain * f64::from(v)).clamp(0.0, 1.0)).sum::<f64>() / (3 * pixels.len()) as f64 / gain
+    pixels.iter().flatten().map(|&v| (gain * f64::from(v)).clamp(0.0, 1.0)).sum::<f64>()
+        / (3 * pixels.len()) as f64
+        / gain
 }
 
 /// Averages blocks of `factor × factor` linear pixels; blocks at the right and lower edge may be smaller.

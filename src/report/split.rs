@@ -91,8 +91,9 @@ pub fn table(study: &Study) -> String {
             .iter()
             .map(|w| format!("{} {}", w.name, number_to(if u == 0 { w.rays } else { w.seconds }, 4)))
             .collect();
+        let note = if u == 0 { "" } else { "; ± without the noise of the clock" };
         blocks.push(format!(
-            "by {unit} (per pixel: {})\n{}least of any split, (Σ σ√c)²: {} ± {}\n",
+            "by {unit} (per pixel: {}{note})\n{}least of any split, (Σ σ√c)²: {} ± {}\n",
             spent.join(", "),
             aligned(&rows, &[[Side::Left].as_slice(), &[Side::Right; 7]].concat()),
             number(least.value),
@@ -195,7 +196,7 @@ pub fn draw(c: &Covariance, slots: usize, title: &str, caption: &Caption) -> Res
             number_to(sum / trace, 3)
         );
         page.text(&note, (24.0, side + 130.0), Words { size: 12.5, ..Words::default() })?;
-        let key = "blue: positive · orange: negative · empty: a term without noise";
+        let key = "blue: positive · orange: negative, deeper by the root of the size · empty: a term without noise";
         page.text(key, (24.0, side + 150.0), Words { size: 12.5, color: GREY, ..Words::default() })
     })
 }
@@ -225,9 +226,10 @@ fn matrix(
             let (v, full) = value(a, b);
             let (x, y) = (left + b as f64 * CELL, TOP + a as f64 * CELL);
             let corners = [(x, y), (x + CELL - 1.0, y), (x + CELL - 1.0, y + CELL - 1.0), (x, y + CELL - 1.0)];
-            let depth = if v.is_nan() { 0.0 } else { (v.abs() / full).min(1.0) };
+            // the root, so that the sign of small ones is seen beside a diagonal of ones
+            let depth = if v.is_nan() { 0.0 } else { (v.abs() / full).min(1.0).sqrt() };
             page.polygon(&corners, shade(v < 0.0, depth))?;
-            let color = if depth > 0.6 { RGBColor(255, 255, 255) } else { BLACK };
+            let color = if depth > 0.7 { RGBColor(255, 255, 255) } else { BLACK };
             page.text(&text(v), (x + CELL / 2.0, y + CELL / 2.0), Words { size: 11.0, color, ..middle })?;
         }
     }

@@ -1,11 +1,10 @@
 //! One image as it grows: contact sheet, table and CSV, with the mean that the samples have and the mean that the screen shows.
 //!
-//! Symbols: [`worlds::stages`](crate::worlds::stages). One gain for all images, that of the reference.
+//! Symbols: [`worlds::stages`](crate::worlds::stages). One gain for all images, that of the reference where no lamp is seen.
 
 use super::{
-    ReportError,
-    half_width_95,
-    picture::{auto_gain, develop, gain_label, mean, shown_mean},
+    ReportError, half_width_95,
+    picture::{auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shown_mean},
     sheet::{Cell, Sheet, annotated},
     table::{Side, aligned, average, significant},
     typeset::Caption,
@@ -66,9 +65,10 @@ pub fn rows(grown: &Grown, gain: f64) -> Vec<Row> {
     rows
 }
 
-/// The gain of all images.
+/// The gain of all images: the reference's, exposed for what is not a lamp.
 pub fn gain(grown: &Grown) -> f64 {
-    auto_gain(&grown.reference.total.mean)
+    let whole = &grown.reference.total.mean;
+    grown.reference.terms.first().map_or_else(|| auto_gain(whole), |lamps| auto_gain_beside_lamps(whole, &lamps.mean))
 }
 
 fn number(x: f64, digits: usize) -> String {
@@ -118,7 +118,8 @@ pub fn sheet(title: &str, [w, h]: [usize; 2], grown: &Grown, caption: &Caption) 
         let reference = r.mse[0].is_nan();
         let label = if reference { "reference".into() } else { format!("{} paths per pixel", r.name) };
         cells.push(Cell { label, pixels, gain: Some(g) });
-        let error = if reference { format!("noise {}", number(r.deviation, 3)) } else { format!("RMSE {}", rmse(r.mse[0])) };
+        let error =
+            if reference { format!("noise {}", number(r.deviation, 3)) } else { format!("RMSE {}", rmse(r.mse[0])) };
         notes.push(vec![
             format!("mean {} ± {}", number(mean(pixels), 4), number(r.mean[1], 2)),
             format!("mean shown {}", number(r.shown, 4)),

@@ -66,6 +66,11 @@ impl Covariance {
         self.products.iter().map(|q| q[a * self.slots + b]).sum::<f64>() / (r * (r - 1.0))
     }
 
+    /// Standard error of C_ab; NaN with fewer than three replicates.
+    pub fn std_error(&self, a: usize, b: usize) -> f64 {
+        self.of(|x, y| (x, y) == (a, b)).1
+    }
+
     /// C_ab / √(C_aa C_bb); NaN where a slot has no variance.
     pub fn correlation(&self, a: usize, b: usize) -> f64 {
         self.entry(a, b) / (self.entry(a, a) * self.entry(b, b)).sqrt()

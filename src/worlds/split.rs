@@ -152,7 +152,8 @@ pub fn measure<T: Transport>(
     for (slot, &spp) in counts.iter().enumerate() {
         observer.begin(&format!("term {slot}, {spp} spp"), pixels as u64 * u64::from(spp));
         let (started, estimator) = (Instant::now(), OneTerm { single: single.clone(), slot });
-        let film = render(t, sensor, &estimator, Amount { spp, replicates: REPLICATES, key }, &mut Advance(observer), stop);
+        let film =
+            render(t, sensor, &estimator, Amount { spp, replicates: REPLICATES, key }, &mut Advance(observer), stop);
         let seconds = started.elapsed().as_secs_f64();
         if stop.load(Ordering::Relaxed) {
             return None;
@@ -224,9 +225,8 @@ pub fn study(
     let terms = |counts: &[u32], stream: &str| {
         measure(&t, &scene.camera, &single, counts, settings.key(stream, REPLICATES), observer, stop)
     };
-    let paths = |spp, stream: &str| {
-        reuse(&t, &scene.camera, &prefix, spp, settings.key(stream, REPLICATES), observer, stop)
-    };
+    let paths =
+        |spp, stream: &str| reuse(&t, &scene.camera, &prefix, spp, settings.key(stream, REPLICATES), observer, stop);
     let (known, known_reuse) = (terms(&vec![pilot; slots], "pilot, single")?, paths(pilot, "pilot, prefix")?);
     let budget = f64::from(spp) * known.iter().map(|t| t.rays).sum::<f64>();
     let counts = optimal(&known, Unit::Rays, budget, REPLICATES as u32);
