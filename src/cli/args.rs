@@ -45,6 +45,7 @@ pub fn read() -> Cli {
     // nor does a sweep know matrices
     let matrix = ["worlds", "patches", "read_patches", "orders", "verbose"];
     let cli = cli.mut_subcommand("sweep", |c| matrix.iter().fold(c, |c, name| c.mut_arg(name, |arg| arg.hide(true))));
+    let cli = cli.mut_subcommand("sweep", super::sweep_spp::several_values);
     let mut matches = cli.get_matches();
     Cli::from_arg_matches_mut(&mut matches).unwrap_or_else(|e| e.exit())
 }
@@ -88,8 +89,19 @@ Example:
   fredholm sweep cornell --over technique --max-bounces 4 --size 64x64
   fredholm sweep cornell --over estimator --values prefix,single --equal-rays
   fredholm sweep cornell --over patches        the matrix on finer meshes, against rays
+  fredholm sweep cornell --over spp --estimator single,prefix,path
+  fredholm sweep cornell --over spp --estimator prefix --points independent,sobol --reference 4096
+  fredholm sweep cornell --over split --max-bounces 6 --size 64x64
 
-Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged
+--over spp: one render for every combination of --estimator (also path), --technique, --roulette and
+--points, which may be lists; variance and squared error at 16, 32, 64, … samples are read off the
+film as it fills. Written: variance.svg, variance.png, sweep.csv, summary.json.
+
+--over split: the terms by equal split (--estimator single), by the optimal split n ∝ σ/√c, and from
+the prefixes of one path, at about the same rays: variance × cost, predicted by a pilot and measured.
+Written: split.csv, covariance.csv, covariance.svg, covariance.png, summary.json.
+
+All others. Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged
 over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for the same error.")]
     Sweep(Sweep),
     /// The same estimators on the radiosity matrix, beside its powers
@@ -109,6 +121,9 @@ and worse guides, to see what a guide is worth (walk.png, walk.csv).")]
 
 Exit code 1: a bias was found, or the equation was rejected.")]
     Check(super::check::Check),
+    /// Rebuilds a figure: data, pictures, and the command that makes them
+    #[command(after_help = super::figure::EXAMPLES)]
+    Figure(super::figure::Figure),
     /// Scenes, materials, lights, bounds on the norm of T
     #[command(after_help = "Examples:
   fredholm info            the built-in scenes
@@ -288,6 +303,8 @@ pub enum Over {
     Roulette,
     /// How fine the mesh of the matrix is
     Patches,
+    /// Where the samples of separate terms go
+    Split,
 }
 
 impl std::fmt::Display for Over {
@@ -299,18 +316,32 @@ impl std::fmt::Display for Over {
 /// Arguments of `sweep`.
 #[derive(Clone, Debug, Args)]
 pub struct Sweep {
-    /// branching, spp, technique, sampling, estimator, points, roulette or patches
+    /// branching, spp, technique, sampling, estimator, points, roulette, split or patches
     #[arg(long, value_enum, value_name = "SETTING", hide_possible_values = true)]
     pub over: Over,
     /// Its values, with commas
     ///
-    /// [default: 1,2,3,4; 16,64,256; scatter,connect,mis; uniform,cosine,bsdf;
-    /// prefix,single,branching; independent,sobol; none,lecture,albedo; 38,150,600,2400]
+    /// With --over spp the numbers of samples to look at: multiples of 16.
+    /// [default: 1,2,3,4; 16,32,64,…; scatter,connect,mis,mis-power; uniform,cosine,bsdf;
+    /// prefix,single,branching,light,bidirectional; independent,sobol; none,lecture,albedo;
+    /// 38,150,600,2400]
     #[arg(long, value_name = "V,…", verbatim_doc_comment)]
     pub values: Option<String>,
     /// Give every value the rays of the dearest, instead of the same spp
     #[arg(long)]
     pub equal_rays: bool,
+    /// With --over spp: squared error against a run's folder, or a render of so many samples
+    ///
+    /// Its own variance is subtracted, so that the squared error is unbiased.
+    /// A render of its own has another stream.
+    #[arg(long, value_name = "DIR|SPP", verbatim_doc_comment)]
+    pub reference: Option<String>,
+    /// Samples of the pilot of --over split [default: a quarter of --spp]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=1 << 24))]
+    pub pilot: Option<u32>,
+    /// What may be a list.
+    #[command(flatten)]
+    pub several: super::sweep_spp::Several,
     /// What is rendered.
     #[command(flatten)]
     pub run: Run,

@@ -10,6 +10,7 @@ mod chapter;
 mod check;
 mod compare;
 mod facts;
+mod figure;
 mod guard;
 mod info;
 mod output;
@@ -19,6 +20,8 @@ mod strategies;
 mod sweep;
 mod sweep_patches;
 mod walk;
+mod sweep_split;
+mod sweep_spp;
 mod write;
 
 use args::{Cli, Command};
@@ -86,6 +89,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Sweep(args)) => sweep::run(args),
         Some(Command::Walk(args)) => walk::run(args),
         Some(Command::Check(args)) => check::run(args),
+        Some(Command::Figure(args)) => figure::run(args),
         Some(Command::Info(args)) => info::run(args),
         Some(Command::Chapter(args)) => chapter::run(args),
     };

@@ -31,9 +31,15 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     if args.over == Over::Patches {
         return super::sweep_patches::run(args);
     }
+    refuse_what_has_no_part(args)?;
+    match args.over {
+        Over::Spp => return super::sweep_spp::run(args),
+        Over::Split => return super::sweep_split::run(args),
+        _ => {}
+    }
+    let args = &super::sweep_spp::one_of_each(args)?;
     let (run, over) = (&args.run, args.over);
     let started = Instant::now();
-    refuse_what_has_no_part(args)?;
     if let Some(n) = run.threads {
         rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
     }
@@ -109,7 +115,6 @@ fn write(folder: &Path, sweep: &Sweep, record: &mut summary::Summary) -> Result<
     write_atomically(&folder.join("sweep.csv"), sweep::csv(sweep).as_bytes())?;
     let title = match sweep.over.as_str() {
         "branching" => "What branching costs, and what it gains".into(),
-        "spp" => "How the noise falls".into(),
         over => format!("The noise of every term, by {over}"),
     };
     sweep::draw(sweep, &title, &caption)?.write(folder, "sweep")?;
@@ -145,10 +150,25 @@ fn refuse_what_has_no_part(args: &args::Sweep) -> Result<(), Failure> {
     if args.equal_rays && args.over == Over::Spp {
         return Err(usage("--equal-rays would make every spp the same", "leave it out, or sweep something else"));
     }
+    if args.equal_rays && args.over == Over::Split {
+        return Err(usage("--over split gives every way about the same rays already", "leave --equal-rays out"));
+    }
+    if args.values.is_some() && args.over == Over::Split {
+        return Err(usage(
+            "--over split has no values: it always compares equal, optimal and prefix",
+            "leave them out",
+        ));
+    }
+    if args.reference.is_some() && args.over != Over::Spp {
+        return Err(usage("--reference is for --over spp", "leave it out, or sweep over spp"));
+    }
+    if args.pilot.is_some() && args.over != Over::Split {
+        return Err(usage("--pilot is for --over split", "leave it out, or sweep over split"));
+    }
     Ok(())
 }
 
-fn usage(what: &str, help: &str) -> Failure {
+pub(super) fn usage(what: &str, help: &str) -> Failure {
     Failure::Usage(format!("error: {what}\nhelp: {help}"))
 }
 
@@ -169,13 +189,12 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
     };
     let usual = match over {
         Over::Branching => "1,2,3,4",
-        Over::Spp => "16,64,256",
         Over::Technique => "scatter,connect,mis,mis-power",
         Over::Sampling => "uniform,cosine,bsdf",
         Over::Estimator => "prefix,single,branching,light,bidirectional",
         Over::Points => "independent,sobol",
         Over::Roulette => "none,lecture,albedo",
-        Over::Patches => "", // has a command of its own
+        Over::Spp | Over::Split | Over::Patches => "", // commands of their own
     };
     let case = |value: String| {
         let (mut estimator, mut settings) =
@@ -183,12 +202,11 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
         let set = || -> Result<(), String> {
             match over {
                 Over::Branching => estimator = Estimator::Branching { children: number(&value, 1000)? },
-                Over::Spp => settings.spp = number(&value, 1 << 24)?,
+                Over::Spp | Over::Split | Over::Patches => {}
                 Over::Technique => settings.technique = args::technique(&value)?,
                 Over::Sampling => settings.sampling = args::sampling(&value)?,
                 Over::Points => settings.points = args::points(&value)?,
                 Over::Roulette => settings.roulette = value.parse()?,
-                Over::Patches => settings.patches = number(&value, 20_000)? as usize,
                 Over::Estimator => {
                     let name = <args::EstimatorName as clap::ValueEnum>::from_str(&value, false);
                     let wrong = |_| format!("`{value}` is none of prefix, single, branching, light, bidirectional");
@@ -205,7 +223,7 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
 }
 
 /// Values with commas between them; the numbers of `table:0,0,0.5` stay together.
-fn values(list: &str) -> Vec<String> {
+pub(super) fn values(list: &str) -> Vec<String> {
     let mut all: Vec<String> = vec![];
     for word in list.split(',').map(str::trim) {
         match all.last_mut() {
@@ -216,7 +234,7 @@ fn values(list: &str) -> Vec<String> {
     all
 }
 
-fn number(text: &str, most: u32) -> Result<u32, String> {
+pub(super) fn number(text: &str, most: u32) -> Result<u32, String> {
     let n = text.parse().ok().filter(|n| (1..=most).contains(n));
     n.ok_or_else(|| format!("`{text}` is not a whole number from 1 to {most}"))
 }

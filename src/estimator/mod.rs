@@ -42,7 +42,7 @@ pub use path_tracer::PathTracer;
 pub use paths::{Batch, Paths};
 pub use prefix::Prefix;
 pub use roulette::Roulette;
-pub use single_term::SingleTerm;
+pub use single_term::{OneTerm, SingleTerm};
 pub use technique::Technique;
 
 use crate::math::Columns;

@@ -1,6 +1,6 @@
 //! From an estimator and a sensor to a film: every pixel, every sample, in passes that double.
 //!
-//! Passes end at 1, 2, 4, … samples per replicate: there the film is complete, a preview can be shown, and the variance
+//! Passes end at 1, 2, 4, … samples per replicate, and where a watch asks for it: there the film is complete, a preview can be shown, and the variance
 //! curve has a point. Inside a pass blocks of pixels are independent jobs. A pixel's samples are added in order by one
 //! thread, so the sums are the same bits for any number of threads.
 
@@ -33,6 +33,10 @@ impl Amount {
 pub trait Watch: Sync {
     /// Called after every block with the number of paths it took.
     fn paths(&self, _paths: u64) {}
+    /// The next number of samples per pixel, beyond `done`, at which a pass must end, whatever doubling says.
+    fn stop(&self, _done: u32) -> Option<u32> {
+        None
+    }
     /// Called with the film after every complete pass.
     fn pass(&mut self, _film: &TermFilm) {}
 }
@@ -69,6 +73,8 @@ pub fn render<T: Transport>(
     let mut done = 0;
     while done < amount.spp && !(done > 0 && stop.load(Ordering::Relaxed)) {
         let until = if done == 0 { amount.replicates as u32 } else { 2 * done }.min(amount.spp);
+        let until =
+            watch.stop(done).filter(|&n| n > done).map_or(until, |n| until.min(n.max(amount.replicates as u32)));
         pass(t, sensor, estimator, amount.key, done..until, &mut film, &*watch, stop);
         done = until;
         if !stop.load(Ordering::Relaxed) {

@@ -98,6 +98,13 @@ impl Page<'_> {
         Ok(())
     }
 
+    /// A polygon that lets what is behind it be seen.
+    pub(super) fn tint(&self, corners: &[Place], color: RGBColor) -> Drawn {
+        let corners: Vec<_> = corners.iter().copied().map(unit).collect();
+        self.0.draw(&Polygon::new(corners, color.mix(0.18).filled()))?;
+        Ok(())
+    }
+
     /// The mark of a curve.
     pub(super) fn mark(&self, (x, y): Place, look: Look) -> Drawn {
         let corners = |offsets: &[Place]| offsets.iter().map(|(dx, dy)| (x + dx, y + dy)).collect::<Vec<_>>();

@@ -10,6 +10,9 @@
 //! | z maps of `compare` | [`zmap`] |
 //! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
 //! | `bias.svg`, `equilibrium.svg` and their PNGs | [`watch`], [`equilibrium`] |
+//! | `variance.svg` of a sweep over spp | [`sweep::fall`] |
+//! | `covariance.svg`, `split.csv` | [`split`] |
+//! | sheets of one image as it grows | [`stages`] |
 //! | `summary.json` | [`summary`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
@@ -33,6 +36,8 @@ pub mod pyramid;
 mod rate;
 pub mod refine;
 pub mod sheet;
+pub mod split;
+pub mod stages;
 pub mod summary;
 pub mod sweep;
 pub mod table;

@@ -6,7 +6,7 @@ use plotters::{prelude::RGBColor, style::text_anchor::HPos};
 use super::{
     axis::Axis,
     canvas::{Drawn, Page, Place, Stroke, Words},
-    plot::{Curve, FAINT, GREY, GRID, Point},
+    plot::{Curve, FAINT, GREY, GRID, Look, Point},
 };
 
 /// A frame with two axes.
@@ -88,6 +88,17 @@ impl<'a, 'b> Panel<'a, 'b> {
             Some((a, b)) => self.page.line(self.place(a.0, a.1), self.place(b.0, b.1), stroke),
             None => Ok(()),
         }
+    }
+
+    /// A mark, if its place is inside the frame.
+    pub(super) fn mark(&self, x: f64, value: f64, look: Look) -> Drawn {
+        self.at(x, value).map_or(Ok(()), |place| self.page.mark(place, look))
+    }
+
+    /// A pale area in the colour of a curve; its corners must lie inside the axes.
+    pub(super) fn band(&self, corners: &[(f64, f64)], look: Look) -> Drawn {
+        let places: Vec<Place> = corners.iter().filter_map(|&(x, v)| self.at(x, v)).collect();
+        if places.len() < 3 { Ok(()) } else { self.page.tint(&places, look.color) }
     }
 
     /// Marks with 95 % bars, moved sideways by `shift` pixels so that curves do not hide each other, joined by a thin

@@ -152,6 +152,22 @@ pub fn mean(pixels: &[[f32; 3]]) -> f64 {
     pixels.iter().flatten().map(|&v| f64::from(v)).sum::<f64>() / (3 * pixels.len()) as f64
 }
 
+/// Mean over all pixels and the three channels of what a screen shows, in the unit of the radiance: what is below 0 or, after
+/// the gain, above 1 is cut off. NaN where a pixel is no number.
+///
+/// ```
+/// use fredholm::report::picture::{mean, shown_mean};
+/// // one firefly among four pixels: the mean is 1, the screen shows a quarter of it
+/// let pixels = [[4.0; 3], [0.0; 3], [0.0; 3], [0.0; 3]];
+/// assert_eq!((mean(&pixels), shown_mean(&pixels, 1.0)), (1.0, 0.25));
+/// assert_eq!(shown_mean(&pixels, 0.25), 1.0);
+/// ```
+pub fn shown_mean(pixels: &[[f32; 3]], gain: f64) -> f64 {
+    pixels.iter().flatten().map(|&v| (gain * f64::from(v)).clamp(0.0, 1.0)).sum::<f64>()
+        / (3 * pixels.len()) as f64
+        / gain
+}
+
 /// Averages blocks of `factor × factor` linear pixels; blocks at the right and lower edge may be smaller.
 pub(super) fn shrink(width: usize, height: usize, pixels: &[[f32; 3]], factor: usize) -> (usize, usize, Vec<[f32; 3]>) {
     let (w, h) = (width.div_ceil(factor), height.div_ceil(factor));

@@ -94,6 +94,9 @@ impl Look {
     /// The full path tracer.
     pub const PATH: Self = Self { color: PURPLE, mark: Mark::Triangle };
 
+    /// The mark of a second quantity on the same axes.
+    pub(super) const CROSS: Mark = Mark::Cross;
+
     /// Looks for any number of curves, as in a sweep.
     pub fn nth(i: usize) -> Self {
         let colors = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK];

@@ -76,6 +76,26 @@ pub fn single(
 /// # Errors
 /// If there is no cell, the pixels do not match the size, or the text cannot be drawn.
 pub fn grid(title: &str, width: usize, height: usize, cells: &[Cell], caption: &Caption) -> Result<Sheet, ReportError> {
+    let note = |cell: &Cell| {
+        let gain = cell.gain.unwrap_or_else(|| auto_gain(cell.pixels));
+        vec![format!("{} · mean {}", gain_label(gain), super::table::significant(mean(cell.pixels), 3))]
+    };
+    let notes: Vec<Vec<String>> = cells.iter().map(note).collect();
+    annotated(title, width, height, cells, &notes, caption)
+}
+
+/// A [`grid`] with lines of one's own under each image; `notes` has an entry per cell.
+///
+/// # Errors
+/// As for [`grid`].
+pub fn annotated(
+    title: &str,
+    width: usize,
+    height: usize,
+    cells: &[Cell],
+    notes: &[Vec<String>],
+    caption: &Caption,
+) -> Result<Sheet, ReportError> {
     if cells.is_empty() {
         return Err(ReportError::new("(contact sheet)", "there is no image to show", "render at least one term"));
     }
@@ -88,16 +108,14 @@ pub fn grid(title: &str, width: usize, height: usize, cells: &[Cell], caption: &
         clipped.push(develop(width, height, cell.pixels, gain).clipped);
         let (w, h, shown) = shrink(width, height, cell.pixels, width.div_ceil(WIDEST));
         let image = develop(w, h, &shown, gain).picture.enlarged(NARROWEST.div_ceil(w));
-        images
-            .push((image, format!("{} · mean {}", gain_label(gain), super::table::significant(mean(cell.pixels), 3))));
+        images.push(image);
     }
 
     // Columns: as many as fit, then as few as the same number of rows allows.
-    let widest_text = images
-        .iter()
-        .zip(cells)
-        .map(|((_, note), cell)| text_width(note, SANS, NOTE).max(text_width(&cell.label, SANS, LABEL)));
-    let (image_w, image_h) = (images[0].0.width as f64, images[0].0.height as f64);
+    let noted = notes.iter().flatten().map(|note| text_width(note, SANS, NOTE));
+    let widest_text = noted.chain(cells.iter().map(|cell| text_width(&cell.label, SANS, LABEL)));
+    let (image_w, image_h) = (images[0].width as f64, images[0].height as f64);
+    let lines_below = notes.iter().map(Vec::len).max().unwrap_or(0) as f64;
     let cell_w = widest_text.fold(image_w, f64::max).ceil();
     let fit = (((SHEET - GAP) / (cell_w + GAP)).floor() as usize).clamp(1, cells.len());
     let fit = if cells.len() > 4 { fit.min((cells.len() as f64 * 1.8).sqrt().ceil() as usize) } else { fit };
@@ -107,22 +125,24 @@ pub fn grid(title: &str, width: usize, height: usize, cells: &[Cell], caption: &
     let natural = columns as f64 * (cell_w + GAP) + GAP;
     let sheet_w = natural.max(text_width(title, SANS, TITLE) + 2.0 * GAP).max(400.0).ceil();
     let lines = caption.lines(sheet_w - 2.0 * GAP, CAPTION);
-    let cell_h = LABEL * LINE + image_h + NOTE * LINE + GAP;
+    let cell_h = LABEL * LINE + image_h + lines_below * NOTE * LINE + GAP;
     let top = GAP + TITLE * LINE;
     let sheet_h = top + rows as f64 * cell_h + lines.len() as f64 * CAPTION * LINE + GAP;
 
     // Words first, then the pixels between them.
     let corner = |i: usize| (GAP + (i % columns) as f64 * (cell_w + GAP), top + (i / columns) as f64 * cell_h);
     let mut words = text_element(GAP, GAP + TITLE * 0.8, TITLE, SANS, "", title);
-    for (i, ((_, note), cell)) in images.iter().zip(cells).enumerate() {
+    for (i, (notes, cell)) in notes.iter().zip(cells).enumerate() {
         let (x, y) = corner(i);
         words += &text_element(x, y + LABEL, LABEL, SANS, "font-weight=\"bold\"", &cell.label);
-        let below = y + LABEL * LINE + image_h + NOTE * 1.2;
-        words += &text_element(x, below, NOTE, SANS, "fill=\"#333333\"", note);
+        for (line, note) in notes.iter().enumerate() {
+            let below = y + LABEL * LINE + image_h + NOTE * (1.2 + line as f64 * LINE);
+            words += &text_element(x, below, NOTE, SANS, "fill=\"#333333\"", note);
+        }
     }
     words += &caption_elements(&lines, GAP, top + rows as f64 * cell_h + CAPTION, CAPTION);
     let mut picture = page(sheet_w as usize, sheet_h.ceil() as usize, &words)?;
-    for (i, (image, _)) in images.iter().enumerate() {
+    for (i, image) in images.iter().enumerate() {
         let (x, y) = corner(i);
         picture.paste(image, x.round() as usize, (y + LABEL * LINE).round() as usize);
     }

@@ -15,6 +15,7 @@
 //!
 //! Reference: Hammersley and Handscomb, *Monte Carlo Methods* (1964), section 3.
 
+pub mod fall;
 mod figure;
 
 pub use figure::draw;
@@ -101,7 +102,7 @@ impl Row {
 /// A setting and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// The setting: `branching`, `spp`, ….
+    /// The setting: `branching`, `technique`, ….
     pub over: String,
     /// One per value.
     pub rows: Vec<Row>,
@@ -111,9 +112,7 @@ pub struct Sweep {
 pub fn table(sweep: &Sweep) -> String {
     let number = |x: f64| if x.is_infinite() { "∞".into() } else { known_to(x, 3) };
     let cost = |r: &Row, v: f64| r.efficiency(v).map(number);
-    // a sweep over spp has its numbers of samples in the first column
-    let spp = if sweep.over == "spp" { "n" } else { "spp" };
-    let header = [&sweep.over, spp, "mean", "± 95 %", "rays/path", "µs/path", "variance V", "1/(V rays)", "1/(V s)"];
+    let header = [&sweep.over, "spp", "mean", "± 95 %", "rays/path", "µs/path", "variance V", "1/(V rays)", "1/(V s)"];
     let mut rows = vec![header.map(String::from).to_vec()];
     rows.extend(sweep.rows.iter().map(|r| {
         let (mean, half) = average(&r.image.total);

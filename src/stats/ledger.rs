@@ -82,6 +82,13 @@ pub const ENTRIES: &[Entry] = &[
     entry("estimators_match_matrices_at_length", 12_000, 2e-8),
     entry("variances_follow_the_recursion_of_second_moments", 144, 1e-8),
     entry("a_small_error_in_the_operator_is_seen", 9, 1e-9),
+    // tests/falling.rs
+    entry("slopes_of_renders_cover_minus_one", 3, 1e-9),
+    entry("sobol_points_fall_faster_in_a_smooth_scene", 2, 1e-9),
+    entry("squared_errors_are_unbiased", 4, 1e-9),
+    // tests/split.rs
+    entry("splits_cost_what_the_covariance_says", 30, 1e-8),
+    entry("the_film_knows_the_covariance_of_its_terms", 100, 1e-8),
     // tests/adjoint.rs
     entry("light_tracing_matches_matrix_powers", 200, 1e-8),
     entry("bidirectional_matches_matrix_powers", 200, 1e-8),

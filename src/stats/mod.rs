@@ -42,6 +42,6 @@ pub use moments::{Moments, estimate};
 pub use order::{Order, convergence_order};
 pub use power::{min_detectable, needed_samples};
 pub use sequential::MeanSequence;
-pub use slope::{Slope, variance_slope};
+pub use slope::{Slope, falling_slope, variance_slope};
 pub use uniformity::{Uniformity, uniformity};
 pub use verdict::{Comparison, Criterion, Outcome, Verdict, compare, discretisation};

@@ -9,6 +9,7 @@
 //! | V(n) | variance of the mean of n samples, estimated from R replicates | `points` |
 //! | ν | degrees of freedom of each V(n) | `dof` |
 //! | b | the slope | [`Slope::slope`] |
+//! | b_(i) | the slope without replicate i | [`falling_slope`] |
 //!
 //! A variance from ν degrees of freedom follows V χ²_ν/ν, so ln V(n) has the variance ψ′(ν/2) ≈ 2/ν + 2/ν² whatever V
 //! is, and the points have equal weight. They share their replicates: V(n) is read off the running means at n = 1, 2,
@@ -16,7 +17,15 @@
 //! that, so the fit uses Cov(ln V(n), ln V(m)) = (2/ν + 2/ν²) · n/m. **Approximation:** the matrix is exact to this order
 //! for independent samples; stratified and low-discrepancy points forget their past faster, for them it is too large.
 
+//!
+//! That error holds for one functional of independent normal samples. A variance averaged over pixels has more degrees of
+//! freedom, nobody knows how many; samples with heavy tails have fewer. [`falling_slope`] therefore takes the same fit and
+//! its error from the fits without one replicate each, which assume neither:
+//!
+//! `s_b² = (R−1)/R · Σ_i (b_(i) − b̄_(·))²`, with R − 1 degrees of freedom.
+
 use super::line;
+use crate::terms::scatter::jackknife;
 use nalgebra::DMatrix;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -57,6 +66,29 @@ pub fn variance_slope(points: &[(f64, f64)], dof: f64) -> Option<Slope> {
         chi_squared: line.chi_squared,
         p,
     })
+}
+
+/// Fits b to the curve of `points` = (n, θ(n)), its error from the curves without one replicate each: `without[j][i]` is
+/// θ at the j-th n without replicate i. θ may be a variance or a squared error.
+///
+/// `chi_squared` and `p` are those of [`variance_slope`] with the degrees of freedom that the scatter of the points shows:
+/// how well a straight line describes the curve, no more.
+///
+/// None where [`variance_slope`] gives none, or with fewer than three replicates.
+pub fn falling_slope(points: &[(f64, f64)], without: &[Vec<f64>]) -> Option<Slope> {
+    let replicates = without.first().map_or(0, Vec::len);
+    if replicates < 3 || points.len() != without.len() {
+        return None;
+    }
+    let relative = |(w, p): (&Vec<f64>, &(f64, f64))| (jackknife(w.iter().copied()) / p.1).powi(2);
+    let scatter = without.iter().zip(points).map(relative).sum::<f64>() / points.len() as f64;
+    let all = variance_slope(points, 2.0 / scatter)?;
+    let leave = |i: usize| {
+        let curve: Vec<_> = points.iter().zip(without).map(|(p, w)| (p.0, w[i])).collect();
+        variance_slope(&curve, 2.0 / scatter).map(|s| s.slope)
+    };
+    let slopes: Option<Vec<f64>> = (0..replicates).map(leave).collect();
+    Some(Slope { std_error: jackknife(slopes?.into_iter()), ..all })
 }
 
 #[cfg(test)]

@@ -6,12 +6,15 @@
 //! | image of T^k E with its error | [`TermImage`] | [`image`] |
 //! | φ(T^k E) | [`Functional`] | [`functional`] |
 //! | ‖T^k E‖₂ of the image | [`norms::SquaredNorm`] | [`norms`] |
+//! | how replicates scatter | [`scatter::Scatter`] | [`scatter`] |
 //! | everything a world returns | [`Series`] | [`series`] |
 
+pub mod covariance;
 pub mod film;
 pub mod functional;
 pub mod image;
 pub mod norms;
+pub mod scatter;
 pub mod series;
 pub mod variance;
 

@@ -8,6 +8,9 @@
 //! | radiosity | `T_h^k E` and the solve, through the same camera | [`discrete::radiosity`] |
 //! | batches | the same, small and one after another, for what is watched while it grows | [`batches::Side`] |
 //! | equilibrium | both sides of L = E + T L, point by point and through the camera | [`equilibrium`] |
+//! | falling | how variance and squared error fall in one render | [`falling::Recorder`] |
+//! | split | the terms with so many samples each | [`split::measure`] |
+//! | stages | one image as it grows | [`stages::render_stages`] |
 //! | strategies | every way to find every term from both ends | [`pyramid::strategies`] |
 //! | refine | the matrix on finer and finer meshes, against rays | [`refine::refine`] |
 //! | walk | the same estimators on the radiosity matrix | [`walk::walk`], [`zero_variance::study`] |
@@ -16,9 +19,12 @@
 pub mod batches;
 pub mod discrete;
 pub mod equilibrium;
+pub mod falling;
 pub mod pyramid;
 pub mod refine;
 pub mod sampled;
+pub mod split;
+pub mod stages;
 pub mod surface;
 pub mod unseen;
 pub mod walk;
@@ -92,6 +98,10 @@ pub trait Observer: Sync {
     fn begin(&self, _what: &str, _units: u64) {}
     /// Some units are done.
     fn advance(&self, _units: u64) {}
+    /// The next number of samples per pixel, beyond `done`, at which to show the film, beside the usual ones.
+    fn stop(&self, _done: u32) -> Option<u32> {
+        None
+    }
     /// The film after a complete pass.
     fn preview(&self, _film: &TermFilm) {}
 }

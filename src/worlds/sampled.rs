@@ -208,6 +208,9 @@ impl Watch for Run<'_> {
     fn paths(&self, paths: u64) {
         self.observer.advance(paths);
     }
+    fn stop(&self, done: u32) -> Option<u32> {
+        self.observer.stop(done)
+    }
     fn pass(&mut self, film: &TermFilm) {
         self.observer.preview(film);
         if film.shape.replicates > 1 {

@@ -3,7 +3,6 @@
 //! | setting | left | right |
 //! |---|---|---|
 //! | branching | rays per path against k, straight lines of slope log N | V against k |
-//! | spp | variance of the mean against n, a curve per term | n times the same |
 //! | any other | V against k | V · rays of a path |
 
 use super::super::{
@@ -12,12 +11,12 @@ use super::super::{
     canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
     panel::Panel,
     plot::{Curve, Figure, GREY, Look, Point, figure},
-    typeset::{Caption, superscript},
+    typeset::Caption,
 };
 use super::{Row, Sweep};
 
-/// Draws cost and gain side by side: for `branching` the rays and the variance of every term, for `spp` the variance of
-/// the mean as it falls, else the variance of one sample and the same times its rays.
+/// Draws cost and gain side by side: for `branching` the rays and the variance of every term, else the variance of one
+/// sample and the same times its rays.
 ///
 /// # Errors
 /// If the plot crate fails, which is a defect.
@@ -50,7 +49,6 @@ fn panels(page: &Page, sweep: &Sweep, title: &str) -> Drawn {
     let per_sample = ("Variance of one sample of TᵏE", UNIT);
     let mut entries = vec![];
     match sweep.over.as_str() {
-        "spp" => return fall(page, sweep),
         "branching" => {
             let rays = curves(&|r, k| Point::exact(k as f64, r.rays[k] as f64 / r.paths as f64));
             let panel = against_k(page, LEFT, ("Cost: rays per path at depth k", "rays"), &rays)?;
@@ -102,44 +100,4 @@ fn against_k<'a, 'b>(
 
 fn log(unit: &str, curves: &[Curve]) -> Axis {
     Axis::log(unit, curves.iter().flat_map(|c| &c.points).flat_map(|p| [p.value, p.value + p.half_width()]))
-}
-
-/// A curve per term against n: the variance of the mean, and n times the same, which independent samples leave level.
-fn fall(page: &Page, sweep: &Sweep) -> Drawn {
-    let terms = sweep.rows.first().map_or(0, |r| r.image.terms.len());
-    let curves = |factor: &dyn Fn(f64) -> f64| -> Vec<Curve> {
-        let point = |r: &Row, k: usize| {
-            let (n, v) = (f64::from(r.spp), &r.variance[k]);
-            let replicates = r.image.total.replicates;
-            Point { x: n, value: factor(n) * v.value, std_error: factor(n) * v.std_error, replicates }
-        };
-        let curve = |k: usize| Curve {
-            label: format!("T{}E", superscript(k)),
-            points: sweep.rows.iter().map(|r| point(r, k)).filter(|p| p.value > 0.0).collect(),
-            look: Look::nth(k),
-        };
-        (0..terms).map(curve).filter(|c| !c.points.is_empty()).collect()
-    };
-    let (mean, one) = (curves(&|n| 1.0 / n), curves(&|_| 1.0));
-    let samples = || sweep.rows.iter().map(|r| f64::from(r.spp));
-    let axis = || Axis::powers_of_two("samples per pixel n", samples(), 9);
-    let panel = Panel::draw(page, "Variance of the mean of n samples", LEFT, axis(), log(UNIT, &mean))?;
-    if let Some(top) = one.iter().flat_map(|c| &c.points).map(|p| p.value).reduce(f64::max) {
-        let far = 2.0 * samples().fold(1.0, f64::max);
-        panel.line((0.5, 1.6 * top / 0.5), (far, 1.6 * top / far), GUIDE)?;
-    }
-    mean.iter().try_for_each(|c| panel.curve(c, 0.0, true))?;
-    let panel = Panel::draw(
-        page,
-        "n times the same: level if independent",
-        RIGHT,
-        axis(),
-        log("n · variance   (W² sr⁻² m⁻⁴)", &one),
-    )?;
-    one.iter().try_for_each(|c| panel.curve(c, 0.0, true))?;
-    let mut entries: Vec<Entry> = mean.iter().map(|c| Entry::new(Sample::Mark(c.look), &c.label)).collect();
-    entries.push(Entry::new(Sample::Line(GUIDE), "slope −1"));
-    entries.extend(notes(mean.len() < terms));
-    page.legend(LEGEND, 160.0, &entries)?;
-    Ok(())
 }

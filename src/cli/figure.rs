@@ -1,0 +1,248 @@
+//! `fredholm figure ID`: a registry of figures, each a recipe or a command that leaves data, pictures and a caption.
+
+use super::progress::{Progress, stop_flag};
+use super::{Ending, Failure, args, guard, output, solve};
+use clap::{Args, Parser};
+use fredholm::estimator::Roulette;
+use fredholm::report::{stages as report, summary, typeset::Caption, write_atomically};
+use fredholm::scene::Scene;
+use fredholm::scene::load::{self, Options};
+use fredholm::terms::TermFilm;
+use fredholm::worlds::Settings;
+use fredholm::worlds::stages::{KAJIYA, NOISE, Recipe, reference_seed, render_stages};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// Examples and what is written.
+pub const EXAMPLES: &str = "Examples:
+  fredholm figure --list
+  fredholm figure kajiya-series
+  fredholm figure noise-paths -o slides/noise --seed 3
+  fredholm figure --all -o figures
+
+Written: one folder per figure, with pictures, the numbers as CSV, and summary.json. Every figure
+carries the command that makes it. An image of few paths looks darker than one of many only because
+the screen cuts off what is above white; mean and mean shown are both printed.";
+
+/// Arguments of `figure`.
+#[derive(Clone, Debug, Args)]
+pub struct Figure {
+    /// Which figure; --list names them
+    #[arg(value_name = "ID", required_unless_present_any = ["list", "all"], conflicts_with_all = ["list", "all"])]
+    pub id: Option<String>,
+    /// Name the figures
+    #[arg(long)]
+    pub list: bool,
+    /// Make every figure, each in a folder of its own
+    #[arg(long, conflicts_with = "list")]
+    pub all: bool,
+    /// Output folder [default: fredholm-out/<ID>]; with --all the folder of all folders
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Seed: same seed, same bits
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Image size in pixels [default: the figure's]
+    #[arg(long, value_name = "WxH", value_parser = args::size)]
+    pub size: Option<[u32; 2]>,
+    /// Replace what another run left in the output folder
+    #[arg(long)]
+    pub force: bool,
+    /// No progress
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// How a figure is made.
+enum Kind {
+    /// One image as it grows.
+    Stages(&'static Recipe),
+    /// The figure of another command: id, what it shows, the command's words.
+    Command(&'static str, &'static str, &'static [&'static str]),
+}
+
+const FIGURES: &[Kind] = &[
+    Kind::Stages(&KAJIYA),
+    Kind::Stages(&NOISE),
+    Kind::Command(
+        "variance-cornell",
+        "Variance against samples per pixel: single, prefix, path tracer",
+        &[
+            "sweep",
+            "cornell",
+            "--over",
+            "spp",
+            "--estimator",
+            "single,prefix,path",
+            "--size",
+            "64x64",
+            "--max-bounces",
+            "6",
+        ],
+    ),
+    Kind::Command(
+        "sobol-cornell",
+        "Independent and Sobol points: where their slopes differ",
+        &[
+            "sweep",
+            "cornell",
+            "--over",
+            "spp",
+            "--points",
+            "independent,sobol",
+            "--size",
+            "64x64",
+            "--max-bounces",
+            "4",
+        ],
+    ),
+    Kind::Command(
+        "split-cornell",
+        "Where samples go: equal split, optimal split, one path for all terms",
+        &["sweep", "cornell", "--over", "split", "--size", "64x64", "--max-bounces", "6"],
+    ),
+];
+
+impl Kind {
+    fn id(&self) -> &'static str {
+        match self {
+            Self::Stages(recipe) => recipe.id,
+            Self::Command(id, ..) => id,
+        }
+    }
+    fn title(&self) -> &'static str {
+        match self {
+            Self::Stages(recipe) => recipe.title,
+            Self::Command(_, title, _) => title,
+        }
+    }
+}
+
+/// Names the figures, or makes one or all.
+pub fn run(args: &Figure) -> Result<Ending, Failure> {
+    if args.list {
+        let widest = FIGURES.iter().map(|f| f.id().len()).max().unwrap_or(0);
+        let lines: Vec<String> = FIGURES.iter().map(|f| format!("{:widest$}  {}", f.id(), f.title())).collect();
+        return super::say(&lines.join("\n")).map(|()| Ending::Ok);
+    }
+    let chosen: Vec<&Kind> = FIGURES.iter().filter(|f| args.all || args.id.as_deref() == Some(f.id())).collect();
+    if chosen.is_empty() {
+        let ids: Vec<_> = FIGURES.iter().map(Kind::id).collect();
+        return Err(Failure::Usage(format!(
+            "error: no figure is called `{}`\nhelp: figures are {}",
+            args.id.as_deref().unwrap_or_default(),
+            ids.join(", ")
+        )));
+    }
+    let mut ending = Ending::Ok;
+    for figure in chosen {
+        if stop_flag().load(Ordering::Relaxed) {
+            return Ok(Ending::Interrupted);
+        }
+        let folder = args.out.as_ref().map(|dir| if args.all { dir.join(figure.id()) } else { dir.clone() });
+        let one = match figure {
+            Kind::Stages(recipe) => stages(args, recipe, folder.as_deref()),
+            Kind::Command(id, _, words) => command(args, id, words, folder),
+        }?;
+        ending = if one == Ending::Ok { ending } else { one };
+    }
+    Ok(ending)
+}
+
+/// Runs another command for its figure.
+fn command(args: &Figure, id: &str, words: &[&str], folder: Option<PathBuf>) -> Result<Ending, Failure> {
+    let seed = args.seed.to_string();
+    let folder = folder.unwrap_or_else(|| Path::new("fredholm-out").join(id)).to_string_lossy().into_owned();
+    let mut line: Vec<String> = words.iter().map(|w| (*w).to_string()).collect();
+    if let Some([w, h]) = args.size
+        && let Some(at) = line.iter().position(|w| w == "--size")
+    {
+        line[at + 1] = format!("{w}x{h}");
+    }
+    line.extend(["--seed".into(), seed, "--out".into(), folder]);
+    line.extend(args.force.then(|| "--force".into()));
+    line.extend(args.quiet.then(|| "--quiet".into()));
+    // the words stand in this file, so that a mistake in them is one of the program; the tests make every figure
+    let wrong =
+        |e: clap::Error| Failure::Usage(format!("error: this is a defect of the program: {e}\nhelp: please report it"));
+    match Words::try_parse_from(line).map_err(wrong)? {
+        Words::Sweep(sweep) => super::sweep::run(&sweep),
+    }
+}
+
+/// The commands that make figures.
+#[derive(Debug, Parser)]
+#[command(no_binary_name = true, mut_subcommand("sweep", super::sweep_spp::several_values))]
+enum Words {
+    /// A sweep.
+    Sweep(args::Sweep),
+}
+
+/// One image as it grows.
+fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Ending, Failure> {
+    let (started, command) = (Instant::now(), output::canonical_command());
+    let [w, h] = args.size.unwrap_or(recipe.size);
+    let loaded =
+        load::scene(recipe.scene, &Options { set: vec![format!("camera.size=[{w},{h}]")], ..Options::default() })?;
+    let (description, scene) = (&loaded.description, Scene::new(&loaded.description));
+    let max_bounces = 8;
+    let end = Roulette::Albedo { from: 2 };
+    let settings = Settings {
+        spp: recipe.reference_spp,
+        seed: args.seed,
+        max_bounces,
+        roulette: end.clone().after(max_bounces),
+        path_roulette: end,
+        ..Settings::default()
+    };
+    guard::fits_in_memory(&settings, description.camera.size)?;
+    let folder = output::folder(folder, recipe.id, &command, args.force)?;
+    let progress = Progress::new(args.quiet, |_: &TermFilm| {});
+    let grown = render_stages(&scene, recipe, &settings, &progress, stop_flag());
+    progress.finish();
+    let Some(grown) = grown else {
+        super::note("nothing to save yet");
+        let _ = std::fs::remove_dir(&folder); // only if it is empty
+        return Ok(Ending::Interrupted);
+    };
+
+    let caption = Caption { command: command.clone(), seed: args.seed, scene: description.name.clone() };
+    let size = [w as usize, h as usize];
+    let (png, csv) = (format!("{}.png", recipe.id), format!("{}.csv", recipe.id));
+    report::sheet(recipe.title, size, &grown, &caption)?.picture.write(&folder.join(&png))?;
+    write_atomically(&folder.join(&csv), report::csv(&grown).as_bytes())?;
+    let record = summary::Summary {
+        command: command.clone(),
+        scene: description.name.clone(),
+        scene_hash: solve::scene_hash(&loaded.canonical),
+        seed: args.seed,
+        spp: grown.stages.last().map_or(0, |s| s.paths).into(),
+        max_bounces,
+        threads: rayon::current_num_threads(),
+        seconds: started.elapsed().as_secs_f64(),
+        width: size[0],
+        height: size[1],
+        path: grown.stages.last().map(|s| s.mean),
+        files: vec![csv, png, "summary.json".into()],
+        ..summary::Summary::default()
+    };
+    let old = output::left_by_the_last_run(&folder);
+    summary::write(&folder.join("summary.json"), &record)?;
+    output::remove_stale(&folder, &old, &record.files);
+    let head = format!(
+        "{command}\n{}: {}, seed {}, {w}×{h} pixels, path tracer, one render\n\
+         reference: {}, {} spp, seed {}; its variance is subtracted from the squared error",
+        recipe.title,
+        description.name,
+        args.seed,
+        grown.reference.label,
+        recipe.reference_spp,
+        reference_seed(args.seed)
+    );
+    let foot = "mean: what the samples say; mean shown: with everything above white cut off, as the screen does.\n\
+                Lamps in view and bright light are lost on every screen: what is lost beyond the reference is noise";
+    let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
+    super::say(&super::paragraphs(&[head, format!("{}{foot}", report::table(&grown)), files]))?;
+    Ok(if stop_flag().load(Ordering::Relaxed) { Ending::Interrupted } else { Ending::Ok })
+}

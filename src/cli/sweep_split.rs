@@ -1,0 +1,96 @@
+//! `fredholm sweep [SCENE] --over split`: the samples of separate terms shared equally, shared best, and one path for all.
+
+use super::args::{self, WorldName};
+use super::progress::{Progress, stop_flag};
+use super::sweep::usage;
+use super::{Ending, Failure, guard, output, solve};
+use fredholm::estimator::Roulette;
+use fredholm::report::{split as report, summary, typeset::Caption, write_atomically};
+use fredholm::scene::Scene;
+use fredholm::scene::load::{self, Options};
+use fredholm::terms::TermFilm;
+use fredholm::worlds::{Settings, sampled::Estimator, split};
+use std::time::Instant;
+
+/// Measures the three ways.
+pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
+    let started = Instant::now();
+    if args.several.estimators.is_some() {
+        return Err(usage("--over split always compares single with prefix", "leave --estimator out"));
+    }
+    let args = &super::sweep_spp::one_of_each(args)?;
+    let run = &args.run;
+    let max_bounces = usize::from(run.max_bounces.unwrap_or(8));
+    let spp = run.spp.unwrap_or(256);
+    let settings = Settings {
+        spp,
+        seed: run.seed,
+        points: run.points,
+        max_bounces,
+        technique: run.technique,
+        sampling: run.sampling,
+        roulette: run.roulette.clone().unwrap_or(Roulette::Albedo { from: 2 }.after(max_bounces)),
+        ..Settings::default()
+    };
+    if spp < 16 {
+        return Err(usage(&format!("{spp} samples are fewer than the 16 replicates"), "choose at least --spp 16"));
+    }
+    if let Some(n) = run.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
+    }
+    let command = output::canonical_command();
+    let mut set = run.set.clone();
+    set.extend(run.size.map(|[w, h]| format!("camera.size=[{w},{h}]")));
+    let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
+    loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
+    let description = loaded.description;
+    let scene = Scene::new(&description).select_lights(run.lights);
+    guard::fits_in_memory(&settings, description.camera.size)?;
+    guard::light_is_seen(&scene, &[Estimator::Prefix], &settings, &[])?;
+    guard::light_is_lost(&scene, &settings, &[WorldName::Terms])?;
+    let folder = output::folder(run.out.as_deref(), &format!("{}-split", description.name), &command, run.force)?;
+    let progress = Progress::new(run.quiet, |_: &TermFilm| {});
+    let pilot = args.pilot.unwrap_or(spp / 4);
+    let study = split::study(&scene, &settings, pilot, &progress, stop_flag());
+    progress.finish();
+    let Some(study) = study else {
+        super::note("nothing to save yet: the comparison needs all its renders");
+        let _ = std::fs::remove_dir(&folder); // only if it is empty
+        return Ok(Ending::Interrupted);
+    };
+
+    let caption = Caption { command: command.clone(), seed: run.seed, scene: description.name.clone() };
+    write_atomically(&folder.join("split.csv"), report::csv(&study).as_bytes())?;
+    write_atomically(&folder.join("covariance.csv"), report::covariance_csv(&study.reuse.covariance).as_bytes())?;
+    let slots = study.pilot.len();
+    report::draw(&study.reuse.covariance, slots, "What terms of one path share", &caption)?
+        .write(&folder, "covariance")?;
+    let files = ["covariance.csv", "covariance.png", "covariance.svg", "split.csv", "summary.json"];
+    let record = summary::Summary {
+        command,
+        scene: description.name.clone(),
+        scene_hash: solve::scene_hash(&loaded.canonical),
+        seed: run.seed,
+        spp: spp.into(),
+        max_bounces,
+        threads: rayon::current_num_threads(),
+        seconds: started.elapsed().as_secs_f64(),
+        width: description.camera.size[0] as usize,
+        height: description.camera.size[1] as usize,
+        files: files.map(String::from).into(),
+        ..summary::Summary::default()
+    };
+    let old = output::left_by_the_last_run(&folder);
+    summary::write(&folder.join("summary.json"), &record)?;
+    output::remove_stale(&folder, &old, &record.files);
+    if run.json {
+        return super::say(&serde_json::to_string_pretty(&record)?).map(|()| Ending::Ok);
+    }
+    let head = format!(
+        "{}\nseed {}, {}×{} pixels, k ≤ {max_bounces}, technique {}, {} threads; cost per pixel",
+        record.command, run.seed, record.width, record.height, settings.technique, record.threads
+    );
+    let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
+    super::say(&super::paragraphs(&[head, report::table(&study), files]))?;
+    Ok(Ending::Ok)
+}

@@ -1,0 +1,227 @@
+//! How the replicates of a film scatter: variance, squared error, and the honest error of both.
+//!
+//! ```text
+//! x_r = R S_r / N      m = mean of the x_r      q_r = ⟨(x_r − m)²⟩      V = Σ q_r / (R(R−1))
+//! MSE = ⟨(m − X)²⟩ − ⟨se_X²⟩                    se² = (R−1)/R · Σ_i (θ_(i) − θ̄_(·))²
+//! ```
+//!
+//! with ⟨ ⟩ the mean over pixels and channels, and θ_(i) the estimate without replicate i, brought to the same R. Pixels and
+//! channels of one replicate may depend on each other (colours of one path, splats, Sobol points), and samples may have
+//! heavy tails: leaving out whole replicates sees all of it, where a formula for independent normal pixels would not.
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | V | variance of the mean, averaged over pixels and channels; unbiased | [`Scatter::variance`] |
+//! | X, se_X | a reference with its own independent error | [`Scatter::of`] |
+//! | MSE | bias² + V; unbiased, so it may be negative | [`Scatter::squared_error`] |
+//! | θ_(i) | without replicate i | [`Scatter::variance_without`], [`Scatter::squared_error_without`] |
+//!
+//! The error of MSE holds for this reference; what the noise of the reference itself adds is [`Scatter::reference_error`],
+//! common to all n. Reference: Efron and Stein, *Annals of Statistics* 9 (1981), the jackknife.
+
+use super::TermImage;
+use super::film::TermFilm;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// What the replicates of a sum of slots say about its error.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scatter {
+    /// q_r by replicate.
+    pub q: Vec<f64>,
+    /// V per channel.
+    pub channels: DVec3,
+    /// ⟨(x_r − m)(m − X)⟩ by replicate; empty without a reference.
+    cross: Vec<f64>,
+    /// ⟨(m − X)²⟩ − ⟨se_X²⟩; NaN without a reference.
+    error: f64,
+    /// What the noise of the reference adds to the error of MSE.
+    pub reference_error: f64,
+}
+
+/// Sums over some pixels.
+#[derive(Clone)]
+struct Sums {
+    q: Vec<f64>,
+    channels: DVec3,
+    cross: Vec<f64>,
+    square: f64,
+    noise: f64,
+    noise_squared: f64,
+}
+
+impl Scatter {
+    /// Of the sum over some slots; `reference` is an image of the same quantity from an independent stream.
+    ///
+    /// Needs at least one sample per replicate and pixel.
+    pub fn of(film: &TermFilm, slots: Range<usize>, reference: Option<&TermImage>) -> Self {
+        let (pixels, r) = (film.shape.pixels(), film.shape.replicates);
+        let zero = Sums {
+            q: vec![0.0; r],
+            channels: DVec3::ZERO,
+            cross: vec![0.0; if reference.is_some() { r } else { 0 }],
+            square: 0.0,
+            noise: 0.0,
+            noise_squared: 0.0,
+        };
+        // chunks of a fixed size, added in order: the same bits for any number of threads
+        let chunk = |c: usize| {
+            let mut sums = zero.clone();
+            (c * 1024..((c + 1) * 1024).min(pixels)).for_each(|p| sums.pixel(film, p, slots.clone(), reference));
+            sums
+        };
+        let parts: Vec<Sums> = (0..pixels.div_ceil(1024)).into_par_iter().map(chunk).collect();
+        let s = parts.iter().fold(zero, |a, b| a.plus(b));
+        let (count, n) = (3.0 * pixels as f64, r as f64);
+        let mean = |all: Vec<f64>| all.into_iter().map(|x| x / count).collect();
+        Self {
+            q: mean(s.q),
+            channels: s.channels / (pixels as f64 * n * (n - 1.0)),
+            cross: mean(s.cross),
+            error: if reference.is_some() { (s.square - s.noise) / count } else { f64::NAN },
+            // |e|² about its mean, and se² about its own: normal errors, channels fully correlated, pixels independent
+            reference_error: (2.0 * s.noise_squared * (1.0 + 1.0 / (n - 1.0))).sqrt() / count,
+        }
+    }
+
+    /// R.
+    pub fn replicates(&self) -> usize {
+        self.q.len()
+    }
+
+    /// V; NaN with one replicate.
+    pub fn variance(&self) -> f64 {
+        let n = self.q.len() as f64;
+        self.q.iter().sum::<f64>() / (n * (n - 1.0))
+    }
+
+    /// V of R replicates, estimated without replicate `i`; NaN with fewer than three.
+    pub fn variance_without(&self, i: usize) -> f64 {
+        let n = self.q.len() as f64;
+        (self.q.iter().sum::<f64>() - self.q[i] * n / (n - 1.0)) / (n * (n - 2.0))
+    }
+
+    /// Standard error of V; NaN with fewer than three replicates.
+    pub fn variance_error(&self) -> f64 {
+        jackknife((0..self.q.len()).map(|i| self.variance_without(i)))
+    }
+
+    /// MSE, if there is a reference.
+    pub fn squared_error(&self) -> Option<f64> {
+        (!self.cross.is_empty()).then_some(self.error)
+    }
+
+    /// MSE of R replicates without replicate `i`. NaN without a reference.
+    pub fn squared_error_without(&self, i: usize) -> f64 {
+        let Some(cross) = self.cross.get(i) else { return f64::NAN };
+        let n = self.q.len() as f64;
+        // m without i, about X; its variance is that of R − 1 replicates
+        let about = self.error - 2.0 * cross / (n - 1.0) + self.q[i] / ((n - 1.0) * (n - 1.0));
+        about - self.variance_without(i) * (n / (n - 1.0) - 1.0)
+    }
+
+    /// Standard error of MSE, with that of the reference. NaN without a reference.
+    pub fn squared_error_error(&self) -> f64 {
+        jackknife((0..self.q.len()).map(|i| self.squared_error_without(i))).hypot(self.reference_error)
+    }
+}
+
+/// `√((R−1)/R · Σ (θ_(i) − θ̄)²)` of the estimates without one replicate each.
+///
+/// ```
+/// // for a mean it is the usual standard error: √(Σ(x−x̄)²/(n(n−1)))
+/// let x = [1.0, 2.0, 4.0, 5.0];
+/// let without = x.iter().map(|xi| (12.0 - xi) / 3.0);
+/// assert!((fredholm::terms::scatter::jackknife(without) - (10.0f64 / 12.0).sqrt()).abs() < 1e-15);
+/// ```
+pub fn jackknife(without: impl Iterator<Item = f64>) -> f64 {
+    let all: Vec<f64> = without.collect();
+    let n = all.len() as f64;
+    let mean = all.iter().sum::<f64>() / n;
+    let spread: f64 = all.iter().map(|x| (x - mean) * (x - mean)).sum();
+    (spread * (n - 1.0) / n).sqrt()
+}
+
+impl Sums {
+    fn pixel(&mut self, film: &TermFilm, p: usize, slots: Range<usize>, reference: Option<&TermImage>) {
+        let (r, samples) = (film.shape.replicates, f64::from(film.samples[p]));
+        let of = |i: usize| slots.clone().map(|s| film.sum(p, i, s)).sum::<DVec3>();
+        let sums: Vec<DVec3> = (0..r).map(of).collect();
+        let mean = sums.iter().sum::<DVec3>() / samples;
+        let about = |i: usize| (sums[i] - mean * film.count(p, i)) * (r as f64 / samples);
+        for i in 0..r {
+            let d = about(i);
+            self.q[i] += d.length_squared();
+            self.channels += d * d;
+        }
+        if let Some(x) = reference {
+            let rgb = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
+            let (off, noise) = (mean - rgb(x.mean[p]), rgb(x.std_error[p]).powf(2.0));
+            (0..r).for_each(|i| self.cross[i] += about(i).dot(off));
+            self.square += off.length_squared();
+            self.noise += noise.element_sum();
+            self.noise_squared += noise.element_sum() * noise.element_sum();
+        }
+    }
+
+    fn plus(mut self, other: &Self) -> Self {
+        self.q.iter_mut().zip(&other.q).for_each(|(a, b)| *a += b);
+        self.cross.iter_mut().zip(&other.cross).for_each(|(a, b)| *a += b);
+        self.channels += other.channels;
+        self.square += other.square;
+        self.noise += other.noise;
+        self.noise_squared += other.noise_squared;
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::math::Rgb;
+    use crate::terms::Shape;
+
+    /// A film of two pixels with `replicates` known replicate means, two samples each; without `skip`.
+    fn film(replicates: usize, skip: Option<usize>) -> TermFilm {
+        let kept: Vec<usize> = (0..replicates).filter(|&r| Some(r) != skip).collect();
+        let mut film = TermFilm::new(Shape { size: [2, 1], slots: 1, replicates: kept.len() });
+        for (place, &r) in kept.iter().enumerate() {
+            for (pixel, half) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let x = ((r * r * 7 + r * 3 + half + 5 * pixel as usize) % 11) as f32;
+                film.splat(0, pixel, (place + half * kept.len()) as u32, Rgb::new(x, 0.5 * x, 1.0));
+            }
+        }
+        film.samples = vec![2 * kept.len() as u32; 2];
+        film
+    }
+
+    fn reference() -> TermImage {
+        TermImage { mean: vec![[4.0, 2.0, 1.0], [5.0, 3.0, 1.0]], std_error: vec![[0.1, 0.2, 0.0], [0.3, 0.0, 0.0]] }
+    }
+
+    #[test]
+    fn leaving_out_is_what_a_film_without_that_replicate_says() {
+        let (r, x) = (6, reference());
+        let all = Scatter::of(&film(r, None), 0..1, Some(&x));
+        for i in 0..r {
+            let less = Scatter::of(&film(r, Some(i)), 0..1, Some(&x));
+            // variances of the mean of R and of R − 1 replicates
+            let v = less.variance() * (r as f64 - 1.0) / r as f64;
+            assert!((all.variance_without(i) / v - 1.0).abs() < 1e-12, "{i}");
+            let mse = less.squared_error().unwrap() - less.variance() + v;
+            assert!((all.squared_error_without(i) - mse).abs() < 1e-12, "{i}");
+        }
+    }
+
+    #[test]
+    fn the_variance_is_the_mean_square_of_the_errors_of_the_pixels() {
+        let film = film(5, None);
+        let s = Scatter::of(&film, 0..1, None);
+        let pixels: DVec3 = (0..2).map(|p| film.pixel(p, 0..1).1.powf(2.0)).sum::<DVec3>() / 2.0;
+        assert!((s.channels - pixels).length() < 1e-14);
+        assert!((s.variance() - pixels.element_sum() / 3.0).abs() < 1e-14);
+        assert!(s.squared_error().is_none() && s.squared_error_error().is_nan());
+    }
+}

@@ -1,0 +1,156 @@
+//! How error and cost grow with the samples of one render: V(n), MSE(n), rays and seconds, read off the film as it fills.
+//!
+//! ```text
+//! V(n) ∝ n^b,  b = −1 for independent samples        MSE = bias² + V        efficiency = 1 / (V · cost)
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | V, MSE | see [`scatter`](crate::terms::scatter) | [`Stand::parts`] |
+//! | n | samples per pixel at a stand | [`Stand::spp`] |
+//! | b | fitted slope | [`Part::slope`] |
+//!
+//! Nothing is rendered twice: the film of n samples is a part of the film of 2n. The points of a curve therefore share their
+//! replicates, and the error of a slope comes from curves without one replicate each.
+
+use super::Observer;
+use super::sampled::Sampled;
+use crate::stats::{Slope, falling_slope};
+use crate::terms::scatter::Scatter;
+use crate::terms::{TermFilm, TermImage};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+/// A film at one number of samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stand {
+    /// Samples per pixel.
+    pub spp: u32,
+    /// Rays so far.
+    pub rays: u64,
+    /// Wall-clock seconds spent on samples so far.
+    pub seconds: f64,
+    /// Each slot, then the sum.
+    pub parts: Vec<Scatter>,
+}
+
+/// Images to compare with, from an independent stream.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Reference {
+    /// In words.
+    pub label: String,
+    /// T^k E, k = 0..=K.
+    pub terms: Vec<TermImage>,
+    /// Everything longer, where it is known.
+    pub tail: Option<TermImage>,
+    /// The whole.
+    pub total: TermImage,
+}
+
+impl From<Sampled> for Reference {
+    fn from(s: Sampled) -> Self {
+        let tail = (!s.series.image().tail.is_none()).then_some(s.tail);
+        Self { label: s.series.label, terms: s.terms, tail, total: s.total }
+    }
+}
+
+/// An observer that keeps what the film says at chosen numbers of samples, and passes on everything else.
+pub struct Recorder<'a> {
+    observer: &'a dyn Observer,
+    reference: Option<&'a Reference>,
+    /// Where to look; empty: after every pass.
+    at: Vec<u32>,
+    kept: Mutex<(Instant, f64, Vec<Stand>)>,
+}
+
+impl<'a> Recorder<'a> {
+    /// Keeps the numbers of samples `at`, in rising order, or all that the render stops at.
+    pub fn new(observer: &'a dyn Observer, reference: Option<&'a Reference>, at: Vec<u32>) -> Self {
+        Self { observer, reference, at, kept: Mutex::new((Instant::now(), 0.0, vec![])) }
+    }
+
+    /// What was kept.
+    pub fn stands(self) -> Vec<Stand> {
+        self.kept.into_inner().unwrap_or_else(PoisonError::into_inner).2
+    }
+
+    fn parts(&self, film: &TermFilm) -> Vec<Scatter> {
+        let slots = film.shape.slots;
+        let reference = |slot: Option<usize>| -> Option<&TermImage> {
+            let r = self.reference?;
+            match slot {
+                None => Some(&r.total),
+                Some(s) if s + 1 == slots => r.tail.as_ref(),
+                Some(s) => r.terms.get(s),
+            }
+        };
+        let alone = if slots == 1 { vec![] } else { (0..slots).map(|s| (s..s + 1, Some(s))).collect() };
+        let all = alone.into_iter().chain([(0..slots, None)]);
+        all.map(|(range, slot)| Scatter::of(film, range, reference(slot))).collect()
+    }
+}
+
+impl Observer for Recorder<'_> {
+    fn begin(&self, what: &str, units: u64) {
+        self.observer.begin(what, units);
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).0 = Instant::now();
+    }
+    fn advance(&self, units: u64) {
+        self.observer.advance(units);
+    }
+    fn stop(&self, done: u32) -> Option<u32> {
+        self.at.iter().copied().find(|&n| n > done).or_else(|| self.observer.stop(done))
+    }
+    fn preview(&self, film: &TermFilm) {
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.1 += kept.0.elapsed().as_secs_f64();
+        let spp = film.least_samples();
+        if film.shape.replicates > 1 && (self.at.is_empty() || self.at.contains(&spp)) {
+            let (rays, seconds) = (film.rays.iter().sum(), kept.1);
+            kept.2.push(Stand { spp, rays, seconds, parts: self.parts(film) });
+        }
+        self.observer.preview(film);
+        kept.0 = Instant::now();
+    }
+}
+
+/// One term, the tail or the sum of one render, as it falls.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// `0`, `1`, …, `tail`, `all`.
+    pub name: String,
+    /// n and what the film says there, in rising order.
+    pub points: Vec<(u32, Scatter)>,
+}
+
+impl Part {
+    /// The parts of a render: its slots (a tail only if it is `known`), then the sum.
+    pub fn all(stands: &[Stand], tail_is_known: bool) -> Vec<Self> {
+        let count = stands.first().map_or(0, |s| s.parts.len());
+        let name = |i: usize| match count - i {
+            1 => "all".to_owned(),
+            2 => "tail".to_owned(),
+            _ => i.to_string(),
+        };
+        let kept = (0..count).filter(|&i| tail_is_known || i + 2 != count);
+        let part = |i| Self { name: name(i), points: stands.iter().map(|s| (s.spp, s.parts[i].clone())).collect() };
+        kept.map(part).collect()
+    }
+
+    /// The slope of V; none where there is no noise, or fewer than two points.
+    pub fn slope(&self) -> Option<Slope> {
+        self.fit(Scatter::variance, Scatter::variance_without)
+    }
+
+    /// The slope of MSE; none without a reference, or where an estimate of it is not positive.
+    pub fn error_slope(&self) -> Option<Slope> {
+        self.fit(|s| s.squared_error().unwrap_or(f64::NAN), Scatter::squared_error_without)
+    }
+
+    fn fit(&self, value: impl Fn(&Scatter) -> f64, without: impl Fn(&Scatter, usize) -> f64) -> Option<Slope> {
+        let points: Vec<(f64, f64)> = self.points.iter().map(|(n, s)| (f64::from(*n), value(s))).collect();
+        let leave = |s: &Scatter| (0..s.replicates()).map(|i| without(s, i)).collect();
+        let curves: Vec<Vec<f64>> = self.points.iter().map(|(_, s)| leave(s)).collect();
+        falling_slope(&points, &curves)
+    }
+}

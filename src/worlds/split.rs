@@ -1,0 +1,240 @@
+//! Where samples go: the terms with so many samples each, at one cost.
+//!
+//! ```text
+//! Var = Σ σ_k²/n_k      Cost = Σ n_k c_k      Var · Cost ≥ (Σ σ_k √c_k)²,  equal iff  n_k ∝ σ_k/√c_k
+//! equal split: Var · Cost = Σ σ_k² · Σ c_k    prefix reuse: 1ᵀC1 · c,  all terms from one path
+//! ```
+//!
+//! The bound is the Cauchy–Schwarz inequality for (σ_k/√n_k) and (√(n_k c_k)); Neyman found the split for strata
+//! (*J. Royal Statistical Society* 97, 1934).
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | σ_k² | variance of one sample of term k, averaged over pixels and channels | [`Term::variance`] |
+//! | c_k | rays, or seconds, of one sample of term k | [`Term::rays`], [`Term::seconds`] |
+//! | n_k | samples per pixel of term k | [`Term::spp`], [`optimal`] |
+//! | C | covariance of the terms of one path | [`Reuse::covariance`] |
+//!
+//! Terms with films and streams of their own are independent, so that the variance of their sum is the sum of variances.
+
+use super::{Advance, Observer, Settings};
+use crate::estimator::render::{Amount, render};
+use crate::estimator::{OneTerm, Prefix, SingleTerm};
+use crate::math::Key;
+use crate::operator::{SceneTransport, Sensor, Transport};
+use crate::scene::Scene;
+use crate::terms::covariance::{Covariance, covariance};
+use crate::terms::scatter::Scatter;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// What one term gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// Samples per pixel.
+    pub spp: u32,
+    /// σ_k².
+    pub variance: f64,
+    /// Its standard error.
+    pub std_error: f64,
+    /// Rays of one sample.
+    pub rays: f64,
+    /// Wall-clock seconds of one sample.
+    pub seconds: f64,
+}
+
+/// What prefix reuse gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reuse {
+    /// Samples per pixel.
+    pub spp: u32,
+    /// C, slot by slot.
+    pub covariance: Covariance,
+    /// Rays of one path.
+    pub rays: f64,
+    /// Wall-clock seconds of one path.
+    pub seconds: f64,
+}
+
+/// A product of variance and cost with its standard error.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work {
+    /// Var · Cost.
+    pub value: f64,
+    /// Its standard error; the cost is taken as known.
+    pub std_error: f64,
+}
+
+/// What a unit of cost is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Rays per pixel.
+    Rays,
+    /// Wall-clock seconds per pixel.
+    Seconds,
+}
+
+impl Term {
+    /// c_k.
+    pub fn cost(&self, unit: Unit) -> f64 {
+        if unit == Unit::Rays { self.rays } else { self.seconds }
+    }
+}
+
+impl Reuse {
+    /// 1ᵀC1 · c.
+    pub fn work(&self, unit: Unit) -> Work {
+        let (sum, error) = self.covariance.sum();
+        let cost = if unit == Unit::Rays { self.rays } else { self.seconds };
+        Work { value: sum * cost, std_error: error * cost }
+    }
+}
+
+/// Var · Cost of terms with `counts` samples each.
+pub fn work(terms: &[Term], counts: &[u32], unit: Unit) -> Work {
+    let pairs = || terms.iter().zip(counts).map(|(t, &n)| (t, f64::from(n)));
+    let cost: f64 = pairs().map(|(t, n)| n * t.cost(unit)).sum();
+    let variance: f64 = pairs().map(|(t, n)| t.variance / n).sum();
+    let error = pairs().map(|(t, n)| (t.std_error / n).powi(2)).sum::<f64>().sqrt();
+    Work { value: variance * cost, std_error: error * cost }
+}
+
+/// (Σ σ_k √c_k)², the least that any split can do, with its error by the delta method.
+///
+/// ```
+/// use fredholm::worlds::split::{Term, Unit, best, work};
+/// // two terms with σ = 1, 3 and c = 1, 4: (1·1 + 3·2)² against (1 + 9)(1 + 4) of the equal split
+/// let term = |variance, rays| Term { spp: 16, variance, std_error: 0.0, rays, seconds: 1.0 };
+/// let terms = [term(1.0, 1.0), term(9.0, 4.0)];
+/// assert_eq!(best(&terms, Unit::Rays).value, 49.0);
+/// assert_eq!(work(&terms, &[16, 16], Unit::Rays).value, 50.0);
+/// ```
+pub fn best(terms: &[Term], unit: Unit) -> Work {
+    let root: f64 = terms.iter().map(|t| (t.variance * t.cost(unit)).sqrt()).sum();
+    // ∂(Σ σ√c)²/∂σ² = Σ σ√c · √c/σ; a term without noise has no error either
+    let slope = |t: &Term| if t.variance > 0.0 { root * (t.cost(unit) / t.variance).sqrt() } else { 0.0 };
+    let error = terms.iter().map(|t| (slope(t) * t.std_error).powi(2)).sum::<f64>().sqrt();
+    Work { value: root * root, std_error: error }
+}
+
+/// n_k ∝ σ_k/√c_k with Σ n_k c_k near `budget`, rounded to whole replicates: multiples of `replicates`, at least one of
+/// them, also for a term without noise.
+pub fn optimal(terms: &[Term], unit: Unit, budget: f64, replicates: u32) -> Vec<u32> {
+    let root: f64 = terms.iter().map(|t| (t.variance * t.cost(unit)).sqrt()).sum();
+    let count = |t: &Term| {
+        let n = if root > 0.0 { budget * (t.variance / t.cost(unit)).sqrt() / root } else { 0.0 };
+        whole(n, replicates)
+    };
+    terms.iter().map(count).collect()
+}
+
+/// The multiple of `replicates` nearest to `n`, not 0.
+pub fn whole(n: f64, replicates: u32) -> u32 {
+    let most = f64::from((1u32 << 30) / replicates);
+    (n / f64::from(replicates)).round().clamp(1.0, most) as u32 * replicates
+}
+
+/// Replicates of every film here.
+pub const REPLICATES: usize = 16;
+
+/// Renders slot by slot with so many samples each: the terms, and the tail if the roulette ends. None if interrupted.
+pub fn measure<T: Transport>(
+    t: &T,
+    sensor: &impl Sensor<T>,
+    single: &SingleTerm,
+    counts: &[u32],
+    key: Key,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Option<Vec<Term>> {
+    let pixels = f64::from(sensor.size()[0]) * f64::from(sensor.size()[1]);
+    let mut terms = vec![];
+    for (slot, &spp) in counts.iter().enumerate() {
+        observer.begin(&format!("term {slot}, {spp} spp"), pixels as u64 * u64::from(spp));
+        let (started, estimator) = (Instant::now(), OneTerm { single: single.clone(), slot });
+        let film =
+            render(t, sensor, &estimator, Amount { spp, replicates: REPLICATES, key }, &mut Advance(observer), stop);
+        let seconds = started.elapsed().as_secs_f64();
+        if stop.load(Ordering::Relaxed) {
+            return None;
+        }
+        let (scatter, n, paths) = (Scatter::of(&film, 0..1, None), f64::from(spp), f64::from(spp) * pixels);
+        terms.push(Term {
+            spp,
+            variance: n * scatter.variance(),
+            std_error: n * scatter.variance_error(),
+            rays: film.rays[0] as f64 / paths,
+            seconds: seconds / paths,
+        });
+    }
+    Some(terms)
+}
+
+/// Renders all terms from one path, and keeps how they depend on each other. None if interrupted.
+pub fn reuse<T: Transport>(
+    t: &T,
+    sensor: &impl Sensor<T>,
+    prefix: &Prefix,
+    spp: u32,
+    key: Key,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Option<Reuse> {
+    let pixels = f64::from(sensor.size()[0]) * f64::from(sensor.size()[1]);
+    observer.begin(&format!("prefix, {spp} spp"), pixels as u64 * u64::from(spp));
+    let started = Instant::now();
+    let film = render(t, sensor, prefix, Amount { spp, replicates: REPLICATES, key }, &mut Advance(observer), stop);
+    let seconds = started.elapsed().as_secs_f64();
+    if stop.load(Ordering::Relaxed) {
+        return None;
+    }
+    let paths = f64::from(spp) * pixels;
+    let rays = film.rays.iter().sum::<u64>() as f64 / paths;
+    Some(Reuse { spp, covariance: covariance(&film), rays, seconds: seconds / paths })
+}
+
+/// Pilot and measurement of the three ways.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    /// What the prediction knows: every term alone, from a stream of its own.
+    pub pilot: Vec<Term>,
+    /// The same for prefix reuse.
+    pub pilot_reuse: Reuse,
+    /// As many samples for every term.
+    pub equal: Vec<Term>,
+    /// n_k ∝ σ_k/√c_k of the pilot, by rays.
+    pub optimal: Vec<Term>,
+    /// All terms from one path.
+    pub reuse: Reuse,
+}
+
+/// Measures the three ways at about the rays that `settings.spp` samples of every term take; the pilot takes `pilot` samples
+/// of its own. Counts are rounded to multiples of [`REPLICATES`]. None if interrupted.
+pub fn study(
+    scene: &Scene,
+    settings: &Settings,
+    pilot: u32,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Option<Study> {
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let (single, prefix) = (SingleTerm(settings.plan()), Prefix(settings.plan()));
+    let slots = settings.max_bounces + 1 + usize::from(settings.roulette.ends());
+    let round = |n: f64| whole(n, REPLICATES as u32);
+    let (pilot, spp) = (round(pilot.into()), round(settings.spp.into()));
+    let terms = |counts: &[u32], stream: &str| {
+        measure(&t, &scene.camera, &single, counts, settings.key(stream, REPLICATES), observer, stop)
+    };
+    let paths =
+        |spp, stream: &str| reuse(&t, &scene.camera, &prefix, spp, settings.key(stream, REPLICATES), observer, stop);
+    let (known, known_reuse) = (terms(&vec![pilot; slots], "pilot, single")?, paths(pilot, "pilot, prefix")?);
+    let budget = f64::from(spp) * known.iter().map(|t| t.rays).sum::<f64>();
+    let counts = optimal(&known, Unit::Rays, budget, REPLICATES as u32);
+    Some(Study {
+        equal: terms(&vec![spp; slots], "single")?,
+        optimal: terms(&counts, "single, optimal")?,
+        reuse: paths(round(budget / known_reuse.rays), "prefix")?,
+        pilot: known,
+        pilot_reuse: known_reuse,
+    })
+}

@@ -1,0 +1,160 @@
+//! One image as it grows: the same pixels after n₁ < n₂ < … paths each, from one render.
+//!
+//! ```text
+//! MSE(n) = ⟨(m_n − X)²⟩ − ⟨se_X²⟩,  unbiased       shown(m) = ⟨min(max(g m, 0), 1)⟩ / g  ≤  ⟨m⟩  where m ≥ 0
+//! ```
+//!
+//! A screen shows nothing above white. Few paths make few pixels very bright, and what is cut off there is missing: the noisy
+//! image *looks* darker than the clean one though its mean is the same within its error. Both means are kept.
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | m_n | image after n paths per pixel | [`Stage::pixels`] |
+//! | X | image of an independent, longer render | [`Grown::reference`] |
+//! | g | one gain for all images | chosen by who shows them |
+//!
+//! Reference: Kajiya, *The Rendering Equation* (1986); Pharr, Jakob and Humphreys, *Physically Based Rendering*, on fireflies.
+
+use super::falling::Reference;
+use super::sampled::{self, Estimator};
+use super::{Advance, Observer, Settings};
+use crate::estimator::render::{Amount, Watch, render};
+use crate::estimator::{PathTracer, Plan};
+use crate::operator::SceneTransport;
+use crate::scene::Scene;
+use crate::terms::functional::image_replicates;
+use crate::terms::scatter::Scatter;
+use crate::terms::{Estimate, TermFilm, TermImage};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What is to be made: data, so that a command, a chapter and a test make the same figure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recipe {
+    /// Its name.
+    pub id: &'static str,
+    /// What it shows.
+    pub title: &'static str,
+    /// Built-in scene.
+    pub scene: &'static str,
+    /// Pixels.
+    pub size: [u32; 2],
+    /// Paths per pixel, rising; the first is the number of replicates.
+    pub paths: &'static [u32],
+    /// Estimator of the reference.
+    pub reference: Estimator,
+    /// Samples per pixel of the reference.
+    pub reference_spp: u32,
+}
+
+/// Kajiya's series: 4, 8, …, 128 paths per pixel.
+pub const KAJIYA: Recipe = Recipe {
+    id: "kajiya-series",
+    title: "Kajiya's series: 4 to 128 paths per pixel",
+    scene: "cornell-spheres",
+    size: [128, 128],
+    paths: &[4, 8, 16, 32, 64, 128],
+    reference: Estimator::Bidirectional,
+    reference_spp: 192,
+};
+
+/// 10, 100 and 1000 paths per pixel of light that is hard to find.
+pub const NOISE: Recipe = Recipe {
+    id: "noise-paths",
+    title: "A caustic by 10, 100 and 1000 paths per pixel",
+    scene: "caustic",
+    size: [128, 128],
+    paths: &[10, 100, 1000],
+    reference: Estimator::Bidirectional,
+    reference_spp: 256,
+};
+
+/// The image at one number of paths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// Paths per pixel.
+    pub paths: u32,
+    /// Linear radiance, row by row.
+    pub pixels: Vec<[f32; 3]>,
+    /// Image mean; its error is from as many replicates as the first stage has paths.
+    pub mean: Estimate,
+    /// Variance and squared error.
+    pub scatter: Scatter,
+}
+
+/// All stages.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grown {
+    /// In rising order; those before an interruption.
+    pub stages: Vec<Stage>,
+    /// What they are compared with.
+    pub reference: Reference,
+    /// Image mean of the reference.
+    pub reference_mean: Estimate,
+}
+
+/// Renders `recipe` by path tracing, and its reference from an independent stream. None if interrupted before the first
+/// stage.
+pub fn render_stages(
+    scene: &Scene,
+    recipe: &Recipe,
+    settings: &Settings,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Option<Grown> {
+    let reference = sampled::terms(
+        scene,
+        recipe.reference,
+        &Settings { spp: recipe.reference_spp, seed: reference_seed(settings.seed), ..settings.clone() },
+        observer,
+        stop,
+    );
+    if stop.load(Ordering::Relaxed) {
+        return None;
+    }
+    let reference_mean = reference.series.image().total;
+    let reference = Reference::from(reference);
+    let (first, last) = (*recipe.paths.first()?, *recipe.paths.last()?);
+    let pixels = u64::from(scene.camera.size[0]) * u64::from(scene.camera.size[1]);
+    observer.begin(recipe.id, pixels * u64::from(last));
+    let replicates = first.clamp(2, 16);
+    let amount = Amount { spp: last, replicates: replicates as usize, key: settings.key("path", replicates as usize) };
+    let tracer = PathTracer(Plan { roulette: settings.path_roulette.clone(), ..settings.plan() });
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let mut keeper = Keeper { advance: Advance(observer), at: recipe.paths, reference: &reference, stages: vec![] };
+    render(&t, &scene.camera, &tracer, amount, &mut keeper, stop);
+    let stages = keeper.stages;
+    (!stages.is_empty()).then_some(Grown { stages, reference, reference_mean })
+}
+
+/// A seed for a reference that shares no numbers with the run of seed `seed`.
+pub fn reference_seed(seed: u64) -> u64 {
+    crate::math::fnv1a(b"reference".iter().copied().chain(seed.to_le_bytes()))
+}
+
+/// Keeps the film at chosen numbers of samples.
+struct Keeper<'a> {
+    advance: Advance<'a>,
+    at: &'a [u32],
+    reference: &'a Reference,
+    stages: Vec<Stage>,
+}
+
+impl Watch for Keeper<'_> {
+    fn paths(&self, paths: u64) {
+        self.advance.paths(paths);
+    }
+    fn stop(&self, done: u32) -> Option<u32> {
+        self.at.iter().copied().find(|&n| n > done)
+    }
+    fn pass(&mut self, film: &TermFilm) {
+        let paths = film.least_samples();
+        if self.at.contains(&paths) {
+            self.stages.push(Stage {
+                paths,
+                pixels: TermImage::of(film, 0..1).mean,
+                mean: image_replicates(film).estimate(0..1),
+                scatter: Scatter::of(film, 0..1, Some(&self.reference.total)),
+            });
+        }
+    }
+}

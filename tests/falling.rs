@@ -1,0 +1,191 @@
+//! Variance and squared error as they fall: slopes with honest errors, and squared errors without the noise of the reference.
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
+
+mod common;
+
+use common::sampling::plan;
+use fredholm::estimator::render::{Amount, Watch, render};
+use fredholm::estimator::{Prefix, Roulette, Technique, TermEstimator};
+use fredholm::math::{Key, Points, Rgb};
+use fredholm::operator::matrix_walk::Rows;
+use fredholm::operator::{MatrixWalk, SceneTransport, Sensor, Transport};
+use fredholm::scene::Scene;
+use fredholm::scene::bsdf::Sampling;
+use fredholm::scene::load::{self, Options};
+use fredholm::stats::{Measured, critical, two_sided_p};
+use fredholm::terms::scatter::Scatter;
+use fredholm::terms::{TermFilm, TermImage};
+use fredholm::worlds::falling::Part;
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
+
+/// Keeps the scatter of a sum of slots after every pass.
+struct Kept(Range<usize>, Vec<(u32, Scatter)>);
+
+impl Watch for Kept {
+    fn pass(&mut self, film: &TermFilm) {
+        self.1.push((film.least_samples(), Scatter::of(film, self.0.clone(), None)));
+    }
+}
+
+/// The curve of a sum of slots from 1 to `spp / replicates` samples per replicate.
+fn curve<T: Transport>(
+    t: &T,
+    sensor: &impl Sensor<T>,
+    estimator: &impl TermEstimator<T>,
+    amount: Amount,
+    slots: Range<usize>,
+) -> Part {
+    let mut kept = Kept(slots, vec![]);
+    render(t, sensor, estimator, amount, &mut kept, &AtomicBool::new(false));
+    Part { name: "all".into(), points: kept.1 }
+}
+
+/// Four rows that lose light; rows 0 and 2 emit.
+fn walk() -> MatrixWalk {
+    let rows = [[0.1, 0.3, 0.3, 0.2], [0.4, 0.1, 0.2, 0.3], [0.3, 0.3, 0.1, 0.2], [0.5, 0.0, 0.4, 0.1]];
+    let rho = vec![Rgb::new(0.5, 0.3, 0.6), Rgb::new(0.6, 0.5, 0.4), Rgb::new(0.3, 0.6, 0.5), Rgb::splat(0.4)];
+    let emission = vec![Rgb::new(1.0, 2.0, 3.0), Rgb::ZERO, Rgb::splat(0.5), Rgb::ZERO];
+    MatrixWalk::new(rows.concat(), rho, emission)
+}
+
+fn builtin(name: &str, size: [u32; 2]) -> Scene {
+    let mut d = load::scene(name, &Options::default()).unwrap().description;
+    d.camera.size = size;
+    Scene::new(&d)
+}
+
+#[test]
+fn slopes_of_renders_cover_minus_one() {
+    let mut account = common::open("slopes_of_renders_cover_minus_one");
+    let key = |trial: u32| Key::new(account.seed(), "slopes").branch(trial);
+    let amount = |trial| Amount { spp: 16 * 16, replicates: 16, key: key(trial) };
+    // nothing here is taken to be normal: hits of a lamp are rare, and three channels share every path
+    let (walk, estimator) = (walk(), Prefix(plan(3, Technique::Scatter, &Roulette::Never)));
+    let cornell = builtin("cornell", [6, 6]);
+    let t = SceneTransport::new(&cornell);
+    let misses = |trials: u32, of: &dyn Fn(u32) -> Part| {
+        let (mut missed, mut sum, mut claimed) = (0, vec![], 0.0);
+        for trial in 0..trials {
+            let s = of(trial).slope().unwrap();
+            missed += u64::from((s.slope + 1.0).abs() > critical(0.05, 15.0) * s.std_error);
+            sum.push(s.slope);
+            claimed += s.std_error * s.std_error / f64::from(trials);
+        }
+        let n = f64::from(trials);
+        let mean = sum.iter().sum::<f64>() / n;
+        let variance = sum.iter().map(|b| (b - mean) * (b - mean)).sum::<f64>() / (n - 1.0);
+        eprintln!(
+            "{missed} of {trials} miss −1 at 95 %; mean {mean:.4}, claimed/true error {:.3}",
+            (claimed / variance).sqrt()
+        );
+        missed
+    };
+    let matrix = misses(1000, &|i| curve(&walk, &Rows(4), &estimator, amount(i), 0..5));
+    let mis = Prefix(plan(2, Technique::Mis, &Roulette::Never));
+    let smooth = misses(400, &|i| curve(&t, &cornell.camera, &mis, amount(i), 2..3));
+    let edges = misses(400, &|i| curve(&t, &cornell.camera, &mis, amount(i), 0..4));
+    common::assert_rate(&mut account, "matrix, scatter", matrix, 1000, 0.05);
+    common::assert_rate(&mut account, "Cornell box, T2", smooth, 400, 0.05);
+    // in 36 pixels the edge of the lamp is seen by a few: their fourth moment is all the error there is
+    common::assert_rate_at_most(&mut account, "Cornell box, all", edges, 400, 0.1);
+}
+
+#[test]
+fn sobol_points_fall_faster_in_a_smooth_scene() {
+    let mut account = common::open("sobol_points_fall_faster_in_a_smooth_scene");
+    let scene = builtin("furnace", [4, 4]);
+    let t = SceneTransport { scene: &scene, sampling: Sampling::Uniform };
+    // uniform directions: T1 is the integral of a cosine, as smooth as they come
+    let estimator = Prefix(plan(1, Technique::Scatter, &Roulette::Never));
+    let slope = |points| {
+        let key = Key::new(account.seed(), "smooth").with_points(points, 64);
+        let amount = Amount { spp: 64 * 128, replicates: 64, key };
+        curve(&t, &scene.camera, &estimator, amount, 1..2).slope().unwrap()
+    };
+    let (loose, even) = (slope(Points::Independent), slope(Points::Sobol));
+    let t = critical(account.spend(2), 63.0);
+    eprintln!("{loose:?}\n{even:?}");
+    assert!((loose.slope + 1.0).abs() <= t * loose.std_error, "{loose:?}");
+    assert!(even.slope + t * even.std_error < -1.5, "{even:?}");
+}
+
+#[test]
+fn squared_errors_are_unbiased() {
+    let mut account = common::open("squared_errors_are_unbiased");
+    let (walk, estimator) = (walk(), Prefix(plan(2, Technique::Scatter, &Roulette::Never)));
+    let film = |key| {
+        let amount = Amount { spp: 64, replicates: 16, key };
+        render(
+            &walk,
+            &Rows(4),
+            &estimator,
+            amount,
+            &mut fredholm::estimator::render::Unwatched,
+            &AtomicBool::new(false),
+        )
+    };
+    let truth: Vec<[f64; 3]> = {
+        let terms = walk.powers(2);
+        (0..4).map(|row| terms.iter().map(|t| t[row]).sum::<glam::DVec3>().to_array()).collect()
+    };
+    // a reference as noisy as the render, and one that is 20 % too bright
+    let (mut honest, mut biased, mut naive) = (vec![], vec![], vec![]);
+    let trials = 2000;
+    let mut claimed = 0.0;
+    for trial in 0..trials {
+        let key = |name| Key::new(account.seed(), name).branch(trial);
+        let (film, other) = (film(key("render")), film(key("reference")));
+        let mut x = TermImage::of(&other, 0..4);
+        let s = Scatter::of(&film, 0..4, Some(&x));
+        let (mse, v) = (s.squared_error().unwrap(), s.variance());
+        honest.push(mse - v);
+        claimed += s.squared_error_error().powi(2) / f64::from(trials);
+        let noise: f64 = x.std_error.iter().flatten().map(|&e| f64::from(e).powi(2)).sum::<f64>() / 12.0;
+        naive.push(mse + noise - v);
+        x.mean.iter_mut().zip(&truth).for_each(|(m, t)| (0..3).for_each(|c| m[c] += 0.2 * t[c] as f32));
+        let s = Scatter::of(&film, 0..4, Some(&x));
+        biased.push(s.squared_error().unwrap() - s.variance());
+    }
+    let square = truth.iter().flatten().map(|t| (0.2 * t).powi(2)).sum::<f64>() / 12.0;
+    let mean = |all: &[f64]| {
+        let n = all.len() as f64;
+        let mean = all.iter().sum::<f64>() / n;
+        let variance = all.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+        Measured { mean, std_error: (variance / n).sqrt(), dof: n - 1.0 }
+    };
+    let level = account.spend(4);
+    let p = |m: Measured, truth: f64| two_sided_p((m.mean - truth) / m.std_error, m.dof);
+    let (honest, biased, naive) = (mean(&honest), mean(&biased), mean(&naive));
+    eprintln!("bias² {:?}, of a biased one {:?} against {square:.5}, naive {:?}", honest, biased, naive);
+    assert!(p(honest, 0.0) > level, "{honest:?}");
+    assert!(p(biased, square) > level && p(biased, 0.0) < level, "{biased:?}, {square}");
+    assert!(p(naive, 0.0) < level, "the noise of the reference must be seen: {naive:?}");
+    assert!(claimed > 0.0);
+}
+
+/// Looking at other numbers of samples changes no bit of the film, and the looks are where they were asked for.
+#[test]
+fn looking_changes_nothing() {
+    struct At(Vec<u32>, Vec<u32>);
+    impl Watch for At {
+        fn stop(&self, done: u32) -> Option<u32> {
+            self.0.iter().copied().find(|&n| n > done)
+        }
+        fn pass(&mut self, film: &TermFilm) {
+            self.1.push(film.least_samples());
+        }
+    }
+    let (walk, estimator) = (walk(), Prefix(plan(3, Technique::Scatter, &Roulette::Never)));
+    let film = |at: Vec<u32>| {
+        let mut watch = At(at, vec![]);
+        let amount = Amount { spp: 200, replicates: 10, key: Key::new(1, "looks") };
+        let film = render(&walk, &Rows(4), &estimator, amount, &mut watch, &AtomicBool::new(false));
+        (film, watch.1)
+    };
+    let ((plain, usual), (looked, asked)) = (film(vec![]), film(vec![10, 100, 200]));
+    assert_eq!((usual, asked), (vec![10, 20, 40, 80, 160, 200], vec![10, 20, 40, 80, 100, 200]));
+    for (p, r, s) in (0..4).flat_map(|p| (0..10).flat_map(move |r| (0..5).map(move |s| (p, r, s)))) {
+        assert_eq!(plain.sum(p, r, s), looked.sum(p, r, s));
+    }
+}
