@@ -7,6 +7,7 @@
 //! |---|---|---|
 //! | single | each X_k from a path of its own | [`single_term`] |
 //! | prefix | all X_k from one path, by its prefixes | [`prefix`] |
+//! | vertices | the same, hits and connections of every vertex apart | [`vertices`] |
 //! | light | all X_k from one particle, walked from the light | [`light_tracer`] |
 //! | bidirectional | every way to find each path from both ends, weighted | [`bidirectional`] |
 //! | branching | a tree of paths, N children at every vertex | [`branching`] |
@@ -23,10 +24,12 @@ pub mod light_tracer;
 pub mod path_tracer;
 pub mod paths;
 pub mod prefix;
+pub mod record;
 pub mod render;
 pub mod roulette;
 pub mod single_term;
 pub mod technique;
+pub mod vertices;
 
 pub use bidirectional::{Bidirectional, Pyramid};
 pub use branching::Branching;
@@ -38,6 +41,7 @@ pub use prefix::Prefix;
 pub use roulette::Roulette;
 pub use single_term::SingleTerm;
 pub use technique::Technique;
+pub use vertices::Vertices;
 
 use crate::math::Columns;
 use crate::operator::{Sensor, Transport};

@@ -6,8 +6,10 @@
 //! | image of T^k E with its error | [`TermImage`] | [`image`] |
 //! | φ(T^k E) | [`Functional`] | [`functional`] |
 //! | ‖T^k E‖₂ of the image | [`norms::SquaredNorm`] | [`norms`] |
+//! | E\[Y_a Y_b\] over the slots of one path | [`CrossMoments`] | [`cross_moments`] |
 //! | everything a world returns | [`Series`] | [`series`] |
 
+pub mod cross_moments;
 pub mod film;
 pub mod functional;
 pub mod image;
@@ -15,6 +17,7 @@ pub mod norms;
 pub mod series;
 pub mod variance;
 
+pub use cross_moments::{CrossMoments, Recorded};
 pub use film::{Shape, TermFilm};
 pub use image::TermImage;
 pub use series::{Cost, Estimate, Functional, Series, Unseen, World};
