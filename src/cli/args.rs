@@ -18,6 +18,7 @@ const EXAMPLES: &str = "Examples:
   fredholm series box.toml --set materials.white.reflectance=[0.6,0.6,0.6]
   fredholm compare fredholm-out/cornell other     verdict per term
   fredholm sweep cornell --over technique         one setting, several values: cost and gain
+  fredholm roulette cornell --optimise            how paths should end, predicted and measured
   fredholm info                                   the built-in scenes
   fredholm info cornell                           materials, lights, bounds
 
@@ -91,6 +92,9 @@ Example:
 Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged
 over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for the same error.")]
     Sweep(Sweep),
+    /// Roulette schedules: predicted without rendering, verified, optimised
+    #[command(after_help = super::roulette::EXAMPLES)]
+    Roulette(super::roulette::Args),
     /// Scenes, materials, lights, bounds on the norm of T
     #[command(after_help = "Examples:
   fredholm info            the built-in scenes
@@ -99,6 +103,15 @@ over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for 
     Info(Info),
     /// Runs a chapter of the book
     Chapter(Chapter),
+}
+
+/// Roulette as it is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Schedule {
+    /// This schedule.
+    Given(Roulette),
+    /// The one with the most efficiency, which only the scene can tell.
+    Optimal,
 }
 
 /// A result as a choice on the command line.
@@ -196,8 +209,9 @@ pub struct Run {
     ///   table:q0,q1,…        as listed, the last for all that follow
     ///   albedo[@V]           q = 1 − albedo from vertex V on (2)
     ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
-    #[arg(long, value_name = "SCHEDULE", verbatim_doc_comment)]
-    pub roulette: Option<Roulette>,
+    ///   optimal              the table with the most efficiency, found by a pilot of 2^18 paths
+    #[arg(long, value_name = "SCHEDULE", value_parser = schedule, verbatim_doc_comment)]
+    pub roulette: Option<Schedule>,
     /// Which worlds to solve, with commas: terms, path, radiosity
     ///
     /// terms: each term by its own estimator; path: the full path tracer;
@@ -285,8 +299,8 @@ pub struct Sweep {
     /// Its values, with commas
     ///
     /// [default: 1,2,3,4; 16,64,256; scatter,connect,mis; uniform,cosine,bsdf;
-    /// prefix,single,branching; independent,sobol; none,lecture,albedo]
-    #[arg(long, value_name = "V,…", verbatim_doc_comment)]
+    /// prefix,single,branching; independent,sobol; none,lecture,albedo,optimal]
+    #[arg(long, visible_alias = "schedules", value_name = "V,…", verbatim_doc_comment)]
     pub values: Option<String>,
     /// Give every value the rays of the dearest, instead of the same spp
     #[arg(long)]
@@ -349,7 +363,7 @@ pub struct Chapter {
     pub out: Option<PathBuf>,
 }
 
-fn size(s: &str) -> Result<[u32; 2], String> {
+pub(super) fn size(s: &str) -> Result<[u32; 2], String> {
     let wrong = || format!("`{s}` is not a size such as 128x128 (each side 1 to 32768)");
     let (w, h) = s.split_once('x').ok_or_else(wrong)?;
     let side = |s: &str| s.parse().ok().filter(|n| (1..=32768).contains(n)).ok_or_else(wrong);
@@ -374,6 +388,10 @@ pub(super) fn technique(s: &str) -> Result<Technique, String> {
     }
 }
 
+pub(super) fn schedule(s: &str) -> Result<Schedule, String> {
+    if s == "optimal" { Ok(Schedule::Optimal) } else { s.parse().map(Schedule::Given) }
+}
+
 pub(super) fn points(s: &str) -> Result<Points, String> {
     match s {
         "independent" => Ok(Points::Independent),
@@ -390,7 +408,7 @@ pub(super) fn selection(s: &str) -> Result<Selection, String> {
     }
 }
 
-pub fn sampling(s: &str) -> Result<Sampling, String> {
+pub(super) fn sampling(s: &str) -> Result<Sampling, String> {
     match s {
         "uniform" => Ok(Sampling::Uniform),
         "cosine" => Ok(Sampling::Cosine),

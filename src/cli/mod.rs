@@ -13,6 +13,7 @@ mod guard;
 mod info;
 mod output;
 mod progress;
+mod roulette;
 mod solve;
 mod strategies;
 mod sweep;
@@ -81,6 +82,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Radiosity(run)) => solve::radiosity(run),
         Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
+        Some(Command::Roulette(args)) => roulette::run(args),
         Some(Command::Info(args)) => info::run(args),
         Some(Command::Chapter(args)) => chapter::run(args),
     };

@@ -44,8 +44,8 @@ impl TermSink for Wave {
     }
 }
 
-/// The moments of what one path of an estimator scores. Samples are dealt to the replicates in runs, and are independent
-/// whatever the points of the key: moments are those of one sample. Nothing if `stop` is set before all is done, because half
+/// The moments of what one path of an estimator scores, from a key with independent points: products of two samples of a pixel
+/// are those of the means only then. Samples are dealt to the replicates in runs. Nothing if `stop` is set before all is done, because half
 /// an image has other moments; nothing for estimators that splat, whose paths have no pixel.
 pub fn record<T: Transport>(
     t: &T,
@@ -71,8 +71,7 @@ pub fn record<T: Transport>(
         // S_a by pixel, channel, replicate
         let per_channel = counts.len() * slots;
         let mut pixel_sums = vec![0.0; count * 3 * per_channel];
-        let mut wave =
-            Wave { first, pixels: count as u32, sample: 0, slots, values: vec![], rays: vec![0; slots] };
+        let mut wave = Wave { first, pixels: count as u32, sample: 0, slots, values: vec![], rays: vec![0; slots] };
         for r in 0..counts.len() {
             wave.rays.fill(0);
             let of_replicate = start(r as u32)..start(r as u32 + 1);
@@ -112,8 +111,7 @@ pub fn record<T: Transport>(
         if stop.load(Ordering::Relaxed) {
             return None;
         }
-        let done: Vec<Sums> =
-            some.par_iter().map_init(Paths::default, |paths, &first| job(paths, first)).collect();
+        let done: Vec<Sums> = some.par_iter().map_init(Paths::default, |paths, &first| job(paths, first)).collect();
         done.iter().for_each(|sums| all.add(sums));
     }
     Some(all.moments(started.elapsed().as_secs_f64()))

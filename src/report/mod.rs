@@ -9,6 +9,7 @@
 //! | `T00.png`, `terms.png`, `partial_00.png` | [`picture`], [`sheet`] |
 //! | z maps of `compare` | [`zmap`] |
 //! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
+//! | `roulette.csv`, `roulette.svg`, and its table | [`roulette`] |
 //! | `summary.json` | [`summary`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
@@ -29,6 +30,7 @@ pub mod picture;
 pub mod plot;
 pub mod pyramid;
 mod rate;
+pub mod roulette;
 pub mod sheet;
 pub mod summary;
 pub mod sweep;

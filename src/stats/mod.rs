@@ -12,6 +12,8 @@
 //! | n, β | sample sizes and what a test could have seen | [`power`] |
 //! | γ | observed rate of decay of the terms | [`decay`] |
 //! | b | slope of the variance against samples | [`slope`] |
+//! | Q_v, A_v, c_v | noise and cost of a roulette schedule, without rendering it | [`schedule`] |
+//! | Q* | the schedule with the most efficiency | [`optimal`] |
 //! | SUITE_ALPHA | significance of this project's own tests | [`ledger`] |
 //!
 //! Two principles. *Not rejected is not agreed*: a verdict of agreement is an equivalence test, and it needs samples.
@@ -23,13 +25,17 @@ pub mod hypothesis;
 pub mod ledger;
 mod line;
 pub mod moments;
+pub mod optimal;
 pub mod power;
+pub mod schedule;
 pub mod slope;
 pub mod verdict;
 
 pub use decay::{NoRate, Rate, TermMeans, observed_rate, ratio, tail_window};
 pub use hypothesis::{Measured, critical, difference, holm, two_sided_p};
 pub use moments::{Moments, estimate};
+pub use optimal::optimal_reach;
 pub use power::{min_detectable, needed_samples};
+pub use schedule::{Noise, Part, Separable};
 pub use slope::{Slope, variance_slope};
 pub use verdict::{Comparison, Criterion, Outcome, Verdict, compare, discretisation};

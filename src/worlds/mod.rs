@@ -7,10 +7,12 @@
 //! | path | Σ T^k E by the full path tracer | [`sampled::path`] |
 //! | radiosity | `T_h^k E` and the solve, through the same camera | [`discrete::radiosity`] |
 //! | strategies | every way to find every term from both ends | [`pyramid::strategies`] |
+//! | roulette | noise and cost of schedules, the best of them | [`roulette::pilot`], [`roulette::optimal`] |
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 
 pub mod discrete;
 pub mod pyramid;
+pub mod roulette;
 pub mod sampled;
 pub mod surface;
 pub mod unseen;
