@@ -186,7 +186,8 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
     summary::write(&folder.join("summary.json"), &record)?;
     output::remove_stale(&folder, &old, &record.files);
 
-    let warnings = warnings(&all, &description, &scene, &recorded);
+    let doubts = doubts(&all, &description, &scene);
+    let warnings = warnings(&doubts, &recorded);
     if args.json {
         warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
         super::say(&serde_json::to_string_pretty(&record)?)?;
@@ -208,7 +209,9 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
         let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
         super::say(&super::paragraphs(&[head, rows::table(&all), found, warned, files]))?;
     }
-    let contradicted = all.iter().filter_map(Row::z).any(|z| z.abs() > critical(all.len()));
+    // a variance that cannot be measured contradicts nothing
+    let told = all.iter().filter(|r| doubts.iter().all(|d| d.0 != r.name));
+    let contradicted = told.filter_map(Row::z).any(|z| z.abs() > critical(all.len(), recorded.replicates()));
     Ok(match (stopped, contradicted) {
         (true, _) => Ending::Interrupted,
         (_, true) => Ending::Failed,
@@ -217,8 +220,8 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
 }
 
 /// |z| beyond which a prediction is contradicted: family level 10⁻³ over the schedules.
-fn critical(schedules: usize) -> f64 {
-    fredholm::stats::critical(1e-3 / schedules as f64, 30.0)
+fn critical(schedules: usize, replicates: u64) -> f64 {
+    fredholm::stats::critical(1e-3 / schedules as f64, replicates as f64 - 1.0)
 }
 
 fn schedules(args: &Args) -> Result<Vec<Asked>, Failure> {
@@ -306,17 +309,24 @@ fn ratio(a: Value, b: Value) -> Value {
     Value { value, std_error: value * (a.std_error / a.value).hypot(b.std_error / b.value) }
 }
 
-/// Where a variance, or what is measured of it, may be infinite; and what else spoils an error bar.
-fn warnings(all: &[Row], description: &Description, scene: &Scene, recorded: &Recorded) -> Vec<String> {
-    let mut out = vec![];
+/// The schedules whose variance, or whose measured variance, may be infinite, were they to go on for ever as they were typed.
+fn doubts(all: &[Row], description: &Description, scene: &Scene) -> Vec<(String, String)> {
     let coarse = solve::coarse(description, scene);
-    // typed as constant: what it would be without the table's end
-    for row in all {
-        let Ok(estimator::Roulette::Constant { q, .. }) = row.name.parse() else { continue };
-        if let Some(what) = Radii::new(coarse.as_ref().map(|m| &m.radiosity), scene, q).warning() {
-            out.push(format!("{} {what}", row.name));
-        }
-    }
+    let doubt = |row: &Row| {
+        let q = match row.name.parse().ok()? {
+            estimator::Roulette::Constant { q, .. } => q,
+            estimator::Roulette::Table(q) => *q.last()?,
+            _ => return None,
+        };
+        let what = Radii::new(coarse.as_ref().map(|m| &m.radiosity), scene, q).warning()?;
+        Some((row.name.clone(), what))
+    };
+    all.iter().filter_map(doubt).collect()
+}
+
+/// What spoils an error bar.
+fn warnings(doubts: &[(String, String)], recorded: &Recorded) -> Vec<String> {
+    let mut out: Vec<String> = doubts.iter().map(|(name, what)| format!("{name} {what}")).collect();
     if !out.is_empty() {
         out.push("predictions are finite, since all go on with the q above from vertex K on".into());
     }

@@ -90,7 +90,7 @@ pub fn table(rows: &[Row]) -> String {
                 seconds(&|s| 1.0 / (m.all.value * s)),
             ]);
         }
-        out += "\n\nmeasured\n";
+        out += "\nmeasured\n";
         out += &aligned(&lines, &[[Side::Left].as_slice(), &[Side::Right; 7]].concat());
     }
     out

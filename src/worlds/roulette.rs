@@ -37,7 +37,7 @@ const DEPTH: [usize; 2] = [16, 64];
 /// The least q beyond K, where a scene may keep all its light.
 const LEAST: f64 = 1.0 / 64.0;
 /// Replicates behind the errors.
-const REPLICATES: u32 = 32;
+const REPLICATES: u32 = 64;
 
 /// q from vertex K on: 1 − the largest albedo of the scene, at least 1/64.
 pub fn beyond(scene: &Scene) -> f64 {
