@@ -18,6 +18,7 @@ const EXAMPLES: &str = "Examples:
   fredholm series box.toml --set materials.white.reflectance=[0.6,0.6,0.6]
   fredholm compare fredholm-out/cornell other     verdict per term
   fredholm sweep cornell --over technique         one setting, several values: cost and gain
+  fredholm roulette cornell --optimise            how paths should end, predicted and measured
   fredholm info                                   the built-in scenes
   fredholm info cornell                           materials, lights, bounds
 
@@ -124,6 +125,9 @@ Exit code 1: a bias was found, or the equation was rejected.")]
     /// Rebuilds a figure: data, pictures, and the command that makes them
     #[command(after_help = super::figure::EXAMPLES)]
     Figure(super::figure::Figure),
+    /// Roulette schedules: predicted without rendering, verified, optimised
+    #[command(after_help = super::roulette::EXAMPLES)]
+    Roulette(super::roulette::Args),
     /// Scenes, materials, lights, bounds on the norm of T
     #[command(after_help = "Examples:
   fredholm info            the built-in scenes
@@ -132,6 +136,15 @@ Exit code 1: a bias was found, or the equation was rejected.")]
     Info(Info),
     /// Runs a chapter of the book
     Chapter(Chapter),
+}
+
+/// Roulette as it is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Schedule {
+    /// This schedule.
+    Given(Roulette),
+    /// The one with the most efficiency, which only the scene can tell.
+    Optimal,
 }
 
 /// A result as a choice on the command line.
@@ -229,8 +242,9 @@ pub struct Run {
     ///   table:q0,q1,…        as listed, the last for all that follow
     ///   albedo[@V]           q = 1 − albedo from vertex V on (2)
     ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
-    #[arg(long, value_name = "SCHEDULE", verbatim_doc_comment)]
-    pub roulette: Option<Roulette>,
+    ///   optimal              the table with the most efficiency, found by a pilot of 2^18 paths
+    #[arg(long, value_name = "SCHEDULE", value_parser = schedule, verbatim_doc_comment)]
+    pub roulette: Option<Schedule>,
     /// Which worlds to solve, with commas: terms, path, radiosity
     ///
     /// terms: each term by its own estimator; path: the full path tracer;
@@ -323,9 +337,9 @@ pub struct Sweep {
     ///
     /// With --over spp the numbers of samples to look at: multiples of 16.
     /// [default: 1,2,3,4; 16,32,64,…; scatter,connect,mis,mis-power; uniform,cosine,bsdf;
-    /// prefix,single,branching,light,bidirectional; independent,sobol; none,lecture,albedo;
-    /// 38,150,600,2400]
-    #[arg(long, value_name = "V,…", verbatim_doc_comment)]
+    /// prefix,single,branching,light,bidirectional; independent,sobol;
+    /// none,lecture,albedo,optimal; 38,150,600,2400]
+    #[arg(long, visible_alias = "schedules", value_name = "V,…", verbatim_doc_comment)]
     pub values: Option<String>,
     /// Give every value the rays of the dearest, instead of the same spp
     #[arg(long)]
@@ -425,6 +439,10 @@ pub(super) fn technique(s: &str) -> Result<Technique, String> {
     }
 }
 
+pub(super) fn schedule(s: &str) -> Result<Schedule, String> {
+    if s == "optimal" { Ok(Schedule::Optimal) } else { s.parse().map(Schedule::Given) }
+}
+
 pub(super) fn points(s: &str) -> Result<Points, String> {
     match s {
         "independent" => Ok(Points::Independent),
@@ -441,7 +459,7 @@ pub(super) fn selection(s: &str) -> Result<Selection, String> {
     }
 }
 
-pub fn sampling(s: &str) -> Result<Sampling, String> {
+pub(super) fn sampling(s: &str) -> Result<Sampling, String> {
     match s {
         "uniform" => Ok(Sampling::Uniform),
         "cosine" => Ok(Sampling::Cosine),

@@ -137,10 +137,9 @@ pub fn warnings(found: &Found) -> Vec<String> {
             r.matrix.invariants.row_sum_max
         ));
     }
-    if let Some(radius) = found.second_moment.filter(|&r| r >= 1.0) {
+    if let Some(what) = found.radii.and_then(|r| r.warning()) {
         out.push(format!(
-            "the second moment of the path tracer diverges under roulette {} (spectral radius of\n\
-             ρ²F/(1−q) is {radius:.3} ≥ 1): its error bars cannot be trusted; use --roulette albedo",
+            "the path tracer under roulette {} {what}; --roulette albedo or optimal is safe",
             found.settings.path_roulette
         ));
     }

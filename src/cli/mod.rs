@@ -15,13 +15,14 @@ mod guard;
 mod info;
 mod output;
 mod progress;
+mod roulette;
 mod solve;
 mod strategies;
 mod sweep;
 mod sweep_patches;
-mod walk;
 mod sweep_split;
 mod sweep_spp;
+mod walk;
 mod write;
 
 use args::{Cli, Command};
@@ -90,6 +91,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Walk(args)) => walk::run(args),
         Some(Command::Check(args)) => check::run(args),
         Some(Command::Figure(args)) => figure::run(args),
+        Some(Command::Roulette(args)) => roulette::run(args),
         Some(Command::Info(args)) => info::run(args),
         Some(Command::Chapter(args)) => chapter::run(args),
     };

@@ -1,6 +1,6 @@
 //! `tour`, `series`, `render`, `radiosity`: load, solve in the worlds asked for, compare, write, print.
 
-use super::args::{EstimatorName, Run, WorldName};
+use super::args::{EstimatorName, Run, Schedule, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, facts, guard, output, write};
 use fredholm::estimator::Roulette;
@@ -9,12 +9,13 @@ use fredholm::report::{summary, table};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
 use fredholm::stats::{Criterion, compare, discretisation};
-use fredholm::terms::Series;
 use fredholm::terms::functional::Replicates;
+use fredholm::terms::{Recorded, Series};
 use fredholm::worlds::discrete::{self, Discrete, MatrixError};
 use fredholm::worlds::pyramid::{self, Strategy};
+use fredholm::worlds::roulette::Radii;
 use fredholm::worlds::sampled::{self, Estimator, Sampled};
-use fredholm::worlds::{Settings, Unobserved, surface};
+use fredholm::worlds::{Settings, Unobserved, roulette, surface};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -39,8 +40,10 @@ pub struct Found {
     pub strategies: Vec<Strategy>,
     /// Surface norms by estimator.
     pub surface: Vec<(Estimator, Replicates)>,
-    /// Spectral radius of ρ²F/(1−q), where the path tracer's roulette is constant and the matrix is known.
-    pub second_moment: Option<f64>,
+    /// Whether the moments of the path tracer are finite, where its roulette is constant.
+    pub radii: Option<Radii>,
+    /// Moments of paths without roulette, where the terms are estimated by prefixes.
+    pub moments: Option<Recorded>,
     pub verdicts: Vec<summary::Verdict>,
 }
 
@@ -110,7 +113,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     // what to do with it
     let max_bounces = usize::from(run.max_bounces.unwrap_or(8));
     let fallback = default.roulette.unwrap_or(Roulette::Albedo { from: 2 });
-    let roulette = run.roulette.clone();
+    let asked = given(run.roulette.as_ref());
     let settings = Settings {
         spp: run.spp.unwrap_or(256),
         seed: run.seed,
@@ -118,8 +121,8 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         max_bounces,
         technique: run.technique,
         sampling: run.sampling,
-        roulette: roulette.clone().unwrap_or(fallback.clone().after(max_bounces)),
-        path_roulette: roulette.unwrap_or(fallback),
+        roulette: asked.clone().unwrap_or(fallback.clone().after(max_bounces)),
+        path_roulette: asked.unwrap_or(fallback),
         patches: run.patches.unwrap_or(default.patches) as usize,
         read_patches: run.read_patches,
     };
@@ -173,9 +176,16 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         orders: vec![],
         surface: vec![],
         strategies: vec![],
-        second_moment: None,
+        radii: None,
+        moments: None,
         verdicts: vec![],
     };
+
+    if run.roulette == Some(Schedule::Optimal)
+        && let Some(best) = roulette::optimal(&found.scene, &found.settings, &progress, stop)
+    {
+        (found.settings.roulette, found.settings.path_roulette) = (best.roulette.clone(), best.roulette);
+    }
 
     // the quick estimator first, so that there is something to see
     for &estimator in estimators.iter().rev() {
@@ -209,6 +219,9 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
             }
         }
     }
+    if let (true, Some(spp)) = (estimators.contains(&Estimator::Prefix) && !stopped(), aside(&found.settings)) {
+        found.moments = roulette::pilot(&found.scene, &found.settings, spp, &progress, stop);
+    }
     progress.finish();
 
     if found.terms.is_empty() && found.path.is_none() && found.radiosity.is_none() {
@@ -216,7 +229,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         let _ = std::fs::remove_dir(&found.folder); // only if it is empty
         return Ok(Ending::Interrupted);
     }
-    found.second_moment = second_moment(&found);
+    found.radii = radii(&found);
     found.verdicts = verdicts(&found);
     let summary = write::all(&found)?;
     if run.json {
@@ -232,19 +245,48 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     Ok(if differs { Ending::Failed } else { Ending::Ok })
 }
 
-/// Whether the variance of the path tracer is finite can be known from the matrix; a coarse one will do.
-fn second_moment(found: &Found) -> Option<f64> {
+/// Whether the variance of the path tracer is finite can be known from the matrix; a coarse one will do. Where there is none,
+/// the largest albedo gives a bound.
+fn radii(found: &Found) -> Option<Radii> {
     let Roulette::Constant { q, .. } = found.settings.path_roulette else { return None };
     found.path.as_ref()?;
-    let largest = |m: &discrete::Matrix| m.radiosity.second_moment_radius(1.0 - q).into_iter().fold(0.0, f64::max);
     if let Some(r) = &found.radiosity {
-        return Some(largest(&r.matrix));
+        return Some(Radii::new(Some(&r.matrix.radiosity), &found.scene, q));
     }
-    if found.scene.sides() > 400 {
-        return None; // not worth a matrix of its own
+    let coarse = coarse(&found.description, &found.scene);
+    Some(Radii::new(coarse.as_ref().map(|m| &m.radiosity), &found.scene, q))
+}
+
+/// A coarse matrix, where the scene has one that costs little.
+pub fn coarse(description: &Description, scene: &Scene) -> Option<discrete::Matrix> {
+    if scene.sides() > 400 || description.radiosity_suits().is_err() {
+        return None;
     }
-    let coarse = discrete::matrix(&found.description, &found.scene, 150, 0, &Unobserved, stop_flag());
-    coarse.ok().map(|m| largest(&m))
+    discrete::matrix(description, scene, 150, 0, &Unobserved, stop_flag()).ok()
+}
+
+/// The schedule that was typed; none if there is none, or if it is yet to be found.
+pub fn given(asked: Option<&Schedule>) -> Option<Roulette> {
+    match asked {
+        Some(Schedule::Given(roulette)) => Some(roulette.clone()),
+        _ => None,
+    }
+}
+
+/// The same where nothing else will do: the study keeps all samples of its terms, or compares them, and has none to find.
+pub fn fixed(asked: Option<&Schedule>) -> Result<Option<Roulette>, Failure> {
+    match asked {
+        Some(Schedule::Optimal) => Err(Failure::Usage(
+            "error: --roulette optimal has no part in this\nhelp: `fredholm roulette SCENE --optimise` finds it; give its table here".into(),
+        )),
+        asked => Ok(given(asked)),
+    }
+}
+
+/// Samples per pixel of the moments that `series` records aside: 3 % of the run; none where that is less than two, or where
+/// the moments of so many slots would fill the memory.
+fn aside(settings: &Settings) -> Option<u32> {
+    (settings.spp >= 64 && settings.max_bounces <= 64).then(|| (settings.spp / 32).min(16))
 }
 
 /// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.

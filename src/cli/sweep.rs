@@ -14,7 +14,7 @@ use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
 use fredholm::terms::{Series, TermFilm};
 use fredholm::worlds::sampled::{self, Estimator};
-use fredholm::worlds::{Observer, Settings};
+use fredholm::worlds::{Observer, Settings, roulette};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -24,6 +24,8 @@ struct Case {
     value: String,
     estimator: Estimator,
     settings: Settings,
+    /// The schedule is still to be found.
+    optimal: bool,
 }
 
 /// Renders the terms for every value.
@@ -59,6 +61,12 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     }
     let folder = output::folder(run.out.as_deref(), &format!("{}-{over}", description.name), &command, run.force)?;
     let progress = Progress::new(run.quiet, |_: &TermFilm| {});
+    for case in cases.iter_mut().filter(|c| c.optimal) {
+        if let Some(best) = roulette::optimal(&scene, &case.settings, &progress, stop_flag()) {
+            case.settings.roulette = best.roulette;
+            super::note(&format!("{}: optimal is {}", case.value, case.settings.roulette));
+        }
+    }
     if args.equal_rays {
         share_rays(&mut cases, &scene);
         for case in &cases {
@@ -177,6 +185,7 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
     let (run, over) = (&args.run, args.over);
     let max_bounces = usize::from(run.max_bounces.unwrap_or(if over == Over::Branching { 4 } else { 8 }));
     let after = Roulette::Albedo { from: 2 }.after(max_bounces);
+    let (given, wish) = (solve::given(run.roulette.as_ref()), run.roulette == Some(args::Schedule::Optimal));
     let common = Settings {
         spp: run.spp.unwrap_or(if over == Over::Branching { 32 } else { 256 }),
         seed: run.seed,
@@ -184,7 +193,7 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
         max_bounces,
         technique: run.technique,
         sampling: run.sampling,
-        roulette: run.roulette.clone().unwrap_or(after),
+        roulette: given.unwrap_or(after),
         ..Settings::default()
     };
     let usual = match over {
@@ -193,12 +202,13 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
         Over::Sampling => "uniform,cosine,bsdf",
         Over::Estimator => "prefix,single,branching,light,bidirectional",
         Over::Points => "independent,sobol",
-        Over::Roulette => "none,lecture,albedo",
+        Over::Roulette => "none,lecture,albedo,optimal",
         Over::Spp | Over::Split | Over::Patches => "", // commands of their own
     };
     let case = |value: String| {
         let (mut estimator, mut settings) =
             (solve::estimator(run.estimator.unwrap_or(EstimatorName::Prefix), run.branching), common.clone());
+        let mut optimal = wish;
         let set = || -> Result<(), String> {
             match over {
                 Over::Branching => estimator = Estimator::Branching { children: number(&value, 1000)? },
@@ -206,7 +216,11 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
                 Over::Technique => settings.technique = args::technique(&value)?,
                 Over::Sampling => settings.sampling = args::sampling(&value)?,
                 Over::Points => settings.points = args::points(&value)?,
-                Over::Roulette => settings.roulette = value.parse()?,
+                Over::Roulette => {
+                    let asked = args::schedule(&value)?;
+                    optimal = asked == args::Schedule::Optimal;
+                    settings.roulette = solve::given(Some(&asked)).unwrap_or(settings.roulette.clone());
+                }
                 Over::Estimator => {
                     let name = <args::EstimatorName as clap::ValueEnum>::from_str(&value, false);
                     let wrong = |_| format!("`{value}` is none of prefix, single, branching, light, bidirectional");
@@ -217,7 +231,7 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
         };
         let mut set = set;
         set().map_err(|why| usage(&why, &format!("values of --over {over} are such as --values {usual}")))?;
-        Ok(Case { value, estimator, settings })
+        Ok(Case { value, estimator, settings, optimal })
     };
     values(args.values.as_deref().unwrap_or(usual)).into_iter().map(case).collect()
 }

@@ -55,7 +55,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         max_bounces,
         technique: run.technique,
         sampling: run.sampling,
-        roulette: run.roulette.clone().unwrap_or(Roulette::Albedo { from: 2 }.after(max_bounces)),
+        roulette: solve::fixed(run.roulette.as_ref())?.unwrap_or(Roulette::Albedo { from: 2 }.after(max_bounces)),
         read_patches: run.read_patches,
         ..Settings::default()
     };

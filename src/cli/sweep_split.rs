@@ -29,7 +29,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         max_bounces,
         technique: run.technique,
         sampling: run.sampling,
-        roulette: run.roulette.clone().unwrap_or(Roulette::Albedo { from: 2 }.after(max_bounces)),
+        roulette: solve::fixed(run.roulette.as_ref())?.unwrap_or(Roulette::Albedo { from: 2 }.after(max_bounces)),
         ..Settings::default()
     };
     if spp < 16 {

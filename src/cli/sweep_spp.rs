@@ -1,7 +1,7 @@
 //! `fredholm sweep [SCENE] --over spp`: one render for every combination of estimator, technique, schedule and points; variance
 //! and squared error against samples per pixel, read off the film as it fills.
 
-use super::args::{self, EstimatorName, WorldName};
+use super::args::{self, EstimatorName, Schedule, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::sweep::{number, usage, values};
 use super::{Ending, Failure, guard, output, solve};
@@ -17,7 +17,7 @@ use fredholm::terms::{TermFilm, TermImage};
 use fredholm::worlds::falling::{Recorder, Reference};
 use fredholm::worlds::sampled::{self, Estimator};
 use fredholm::worlds::stages::reference_seed;
-use fredholm::worlds::{Observer, Settings, unseen::unseen};
+use fredholm::worlds::{Observer, Settings, roulette, unseen::unseen};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -80,7 +80,7 @@ pub fn one_of_each(args: &args::Sweep) -> Result<args::Sweep, Failure> {
     if let Some(t) = one("--technique", several.techniques.as_ref(), args::technique)? {
         args.run.technique = t;
     }
-    args.run.roulette = one("--roulette", several.schedules.as_ref(), |s| s.parse::<Roulette>())?;
+    args.run.roulette = one("--roulette", several.schedules.as_ref(), args::schedule)?;
     if let Some(p) = one("--points", several.spreads.as_ref(), args::points)? {
         args.run.points = p;
     }
@@ -102,6 +102,8 @@ struct Case {
     /// None: the path tracer.
     estimator: Option<Estimator>,
     settings: Settings,
+    /// The schedule is yet to be found.
+    optimal: bool,
 }
 
 /// Every combination of the lists.
@@ -122,7 +124,7 @@ fn cases(args: &args::Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
     if techniques.is_empty() {
         techniques.push((String::new(), Technique::Mis));
     }
-    let mut schedules = parsed(list(&several.schedules), |s| s.parse::<Roulette>().map(Some))?;
+    let mut schedules = parsed(list(&several.schedules), |s| args::schedule(s).map(Some))?;
     if schedules.is_empty() {
         schedules.push((String::new(), None));
     }
@@ -131,6 +133,7 @@ fn cases(args: &args::Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
         points.push((String::new(), Points::Independent));
     }
     let end = Roulette::Albedo { from: 2 };
+    let given = |r: &Option<Schedule>| solve::given(r.as_ref());
     let mut cases: Vec<Case> = vec![];
     for (e, estimator) in &estimators {
         let estimator = estimator.map(|name| solve::estimator(name, run.branching));
@@ -150,11 +153,12 @@ fn cases(args: &args::Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
                         max_bounces,
                         technique: *technique,
                         sampling: run.sampling,
-                        roulette: roulette.clone().unwrap_or(end.clone().after(max_bounces)),
-                        path_roulette: roulette.clone().unwrap_or(end.clone()),
+                        roulette: given(roulette).unwrap_or(end.clone().after(max_bounces)),
+                        path_roulette: given(roulette).unwrap_or(end.clone()),
                         ..Settings::default()
                     };
-                    cases.push(Case { label: words.join(" "), estimator, settings });
+                    let optimal = *roulette == Some(Schedule::Optimal);
+                    cases.push(Case { label: words.join(" "), estimator, settings, optimal });
                 }
             }
         }
@@ -193,7 +197,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     if spp < 3 {
         return Err(usage(&format!("{spp} samples leave no error of a variance"), "choose at least --spp 32"));
     }
-    let cases = cases(args, spp)?;
+    let mut cases = cases(args, spp)?;
     if let Some(n) = run.threads {
         rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
     }
@@ -216,6 +220,11 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let folder = output::folder(run.out.as_deref(), &format!("{}-spp", description.name), &command, run.force)?;
     let progress = Progress::new(run.quiet, |_: &TermFilm| {});
     let stopped = || stop_flag().load(Ordering::Relaxed);
+    for case in cases.iter_mut().filter(|c| c.optimal) {
+        if let Some(best) = roulette::optimal(&scene, &case.settings, &progress, stop_flag()) {
+            (case.settings.roulette, case.settings.path_roulette) = (best.roulette.clone(), best.roulette);
+        }
+    }
     let reference = match planned {
         Some(Planned::Read(reference)) => Some(*reference),
         Some(Planned::Render(estimator, settings)) => {

@@ -13,6 +13,7 @@ use fredholm::scene::Description;
 use fredholm::stats::{TermMeans, observed_rate, variance_slope};
 use fredholm::terms::{Estimate, TermFilm, TermImage};
 use fredholm::worlds::discrete::Discrete;
+use fredholm::worlds::roulette;
 use fredholm::worlds::sampled::{Estimator, Sampled};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -355,6 +356,7 @@ fn summarise(found: &Found, files: &[String]) -> summary::Summary {
         sum: image.map_or(Estimate::NONE, |f| f.sum),
         path: found.path.as_ref().map(|p| p.series.image().total),
         radiosity: found.radiosity.as_ref().map(radiosity_summary),
+        cross_moments: found.moments.as_ref().map(|m| summary::cross_moments(m, roulette::beyond(&found.scene))),
         bounds: summary::Bounds {
             max_albedo: g,
             observed_rate: fit.as_ref().map_or(f64::NAN, |f| f.rate),

@@ -75,7 +75,7 @@ impl Branching {
         for c in 0..self.children {
             let key = lineage(key, v, c, self.children);
             child.descend_from(parents, key, 1.0 / self.children as f32);
-            prefix::step(t, &self.plan, v, v + 1, child, sink);
+            prefix::step(t, &self.plan, v, [v + 1; 2], child, sink);
             self.descend(t, v + 1, key, child, below, sink);
         }
     }

@@ -7,6 +7,7 @@
 //! |---|---|---|
 //! | single | each X_k from a path of its own | [`single_term`] |
 //! | prefix | all X_k from one path, by its prefixes | [`prefix`] |
+//! | vertices | the same, hits and connections of every vertex apart | [`vertices`] |
 //! | light | all X_k from one particle, walked from the light | [`light_tracer`] |
 //! | bidirectional | every way to find each path from both ends, weighted | [`bidirectional`] |
 //! | branching | a tree of paths, N children at every vertex | [`branching`] |
@@ -27,10 +28,12 @@ pub mod light_tracer;
 pub mod path_tracer;
 pub mod paths;
 pub mod prefix;
+pub mod record;
 pub mod render;
 pub mod roulette;
 pub mod single_term;
 pub mod technique;
+pub mod vertices;
 
 pub use absorption::Absorption;
 pub use bidirectional::{Bidirectional, Pyramid};
@@ -44,6 +47,7 @@ pub use prefix::Prefix;
 pub use roulette::Roulette;
 pub use single_term::{OneTerm, SingleTerm};
 pub use technique::Technique;
+pub use vertices::Vertices;
 
 use crate::math::Columns;
 use crate::operator::{Sensor, Transport};

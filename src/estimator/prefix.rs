@@ -66,17 +66,17 @@ pub(super) fn follow<T: Transport>(
             break;
         }
 
-        step(t, plan, v, slot, paths, sink);
+        step(t, plan, v, [slot; 2], paths, sink);
     }
 }
 
-/// Scores term v + 1 from paths that stand at vertex v, which move on to v + 1; it goes to `slot`. Where nothing is left to
-/// be found beyond the last connection, the paths stay.
+/// Scores term v + 1 from paths that stand at vertex v, which move on to v + 1: the connection goes to one slot, the hit to
+/// another. Where nothing is left to be found beyond the last connection, the paths stay.
 pub(super) fn step<T: Transport>(
     t: &T,
     plan: &Plan,
     v: usize,
-    slot: usize,
+    [connection, hit]: [usize; 2],
     paths: &mut Paths<T::Wave>,
     sink: &mut impl TermSink,
 ) {
@@ -85,9 +85,9 @@ pub(super) fn step<T: Transport>(
 
     // next-event estimation of term v + 1
     if technique.connects() {
-        sink.rays(slot, paths.n);
+        sink.rays(connection, paths.n);
         paths.connect(t, v);
-        paths.score_connections(technique, slot, sink);
+        paths.score_connections(technique, connection, sink);
     }
     if v + 1 == max_bounces && !hits && !roulette.ends() {
         return;
@@ -97,10 +97,10 @@ pub(super) fn step<T: Transport>(
     paths.roulette(t, v, roulette);
 
     // x_v → x_{v+1}, and its emission if hits count
-    sink.rays(slot, paths.n);
+    sink.rays(hit, paths.n);
     paths.scatter(t, v);
     if hits {
         paths.emission(t);
-        paths.score_hits(technique, slot, sink);
+        paths.score_hits(technique, hit, sink);
     }
 }

@@ -75,6 +75,22 @@ impl Roulette {
         }
     }
 
+    /// q at vertex `v` where it is the same on every path; none where it follows the albedo or the throughput.
+    pub fn fixed(&self, v: usize) -> Option<f64> {
+        match self {
+            Self::Never => Some(0.0),
+            Self::Constant { from, q } => Some(if v < *from { 0.0 } else { *q }),
+            Self::Table(q) => Some(q.get(v).or(q.last()).copied().unwrap_or(0.0)),
+            Self::Albedo { .. } | Self::Throughput { .. } => None,
+        }
+    }
+
+    /// The same q before vertex `v`, as a table, and `q` from there on; none where it is not the same on every path.
+    pub fn then(&self, v: usize, q: f64) -> Option<Self> {
+        let before: Option<Vec<f64>> = (0..v).map(|i| self.fixed(i)).collect();
+        before.map(|table| Self::Table(table.into_iter().chain([q]).collect()))
+    }
+
     /// Whether q is 0 at vertex `v` on every path: nothing to draw.
     pub fn sleeps(&self, v: usize) -> bool {
         match self {

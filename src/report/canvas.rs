@@ -136,10 +136,12 @@ impl Page<'_> {
         for entry in entries {
             let (indent, bold) = match entry.sample {
                 Sample::Heading => (0.0, true),
+                Sample::Plain => (0.0, false),
                 _ => (SAMPLE, false),
             };
             match entry.sample {
                 Sample::Heading => y += 4.0,
+                Sample::Plain => {}
                 Sample::Mark(look) => {
                     self.line((x + 13.0, y - 8.0), (x + 13.0, y + 8.0), Stroke::solid(look.color, 1.4))?;
                     self.mark((x + 13.0, y), look)?;
@@ -181,6 +183,7 @@ impl Entry {
 /// What stands before the words of a legend entry.
 pub(super) enum Sample {
     Heading,
+    Plain,
     Mark(Look),
     Line(Stroke),
     Limit(RGBColor),

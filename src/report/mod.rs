@@ -13,6 +13,7 @@
 //! | `variance.svg` of a sweep over spp | [`sweep::fall`] |
 //! | `covariance.svg`, `split.csv` | [`split`] |
 //! | sheets of one image as it grows | [`stages`] |
+//! | `roulette.csv`, `roulette.svg`, and its table | [`roulette`] |
 //! | `summary.json` | [`summary`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
@@ -35,6 +36,7 @@ pub mod plot;
 pub mod pyramid;
 mod rate;
 pub mod refine;
+pub mod roulette;
 pub mod sheet;
 pub mod split;
 pub mod stages;

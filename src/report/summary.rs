@@ -18,7 +18,7 @@
 //! | `path` | estimate by the full path tracer, or `null` |
 //! | `radiosity` | the matrix world, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solve), `spectral_radius` per channel, `discretisation` (abs. difference to half as many patches) |
 //! | `bounds` | `max_albedo` per channel (the guarantee ‖T‖₁ ≤ max albedo), `observed_rate` and `observed_rate_error` (fitted, no guarantee), `tail_bound` (a-posteriori bound of the surface norm beyond K) |
-//! | `cross_moments` | `null` in version 1 |
+//! | `cross_moments` | of paths without roulette up to vertex K, or `null` where none were recorded: `max_bounces` (their own K), `paths`, `beyond` (q from vertex K on), `slots` (per slot `vertex`, `kind` `hit`, `connect` or `tail`, and `term`), `second` and `product` (per channel M_ab and m_ab, rows of numbers), `rays` (per path, by slot); see [`crate::stats::schedule`] for what they predict |
 //! | `verdicts` | list of `name`, `effect`, `interval`, `p`, `min_detectable`, `outcome` (`agrees`, `differs`, `inconclusive`) |
 //! | `files` | names of the files of this run, relative to this one |
 //! | `series` | per world: `world`, `label`, `functionals` (`name`, `terms`, `tail`, `sum`, `total` as estimates; the image mean first, then regions and projections), `cost` (`paths`, `rays`, `non_finite`, `seconds`) |
@@ -29,8 +29,9 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{ReportError, files, null_as_nan::NullAsNan, write_atomically};
+use crate::estimator::Vertices;
 use crate::stats;
-use crate::terms::{Estimate, Series};
+use crate::terms::{Estimate, Recorded, Series};
 
 /// Name of the schema.
 pub const SCHEMA: &str = "fredholm-summary";
@@ -161,6 +162,29 @@ impl Default for Bounds {
         let unknown = f64::NAN;
         Self { max_albedo: DVec3::NAN, observed_rate: unknown, observed_rate_error: unknown, tail_bound: DVec3::NAN }
     }
+}
+
+/// Moments of [`Vertices`] as a value of the key `cross_moments`; `beyond` is q from vertex K on.
+pub fn cross_moments(recorded: &Recorded, beyond: f64) -> serde_json::Value {
+    let m = &recorded.all;
+    let last = m.slots.saturating_sub(1);
+    let kind = |a: usize| match a {
+        _ if a == last => "tail",
+        _ if a % 2 == 0 => "hit",
+        _ => "connect",
+    };
+    let slot =
+        |a: usize| serde_json::json!({"vertex": Vertices::vertex(a), "kind": kind(a), "term": Vertices::term(a)});
+    let rows = |channel: &Vec<f64>| channel.chunks(m.slots.max(1)).map(<[f64]>::to_vec).collect::<Vec<_>>();
+    serde_json::json!({
+        "max_bounces": last / 2,
+        "paths": recorded.paths,
+        "beyond": beyond,
+        "slots": (0..m.slots).map(slot).collect::<Vec<_>>(),
+        "second": m.second.each_ref().map(rows),
+        "product": m.product.each_ref().map(rows),
+        "rays": m.rays,
+    })
 }
 
 /// One comparison and its result.

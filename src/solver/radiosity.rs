@@ -10,6 +10,7 @@
 //! | E | emission per patch | [`Radiosity::emission`] |
 //! | A | area of all reflecting sides, covered or not | [`Radiosity::surface_mean`] |
 //! | M | diag(ρ²/s) F: second moments of a walk with survival s | [`Radiosity::second_moment_radius`] |
+//! | | diag(ρ⁴/s³) F: moments of fourth order | [`Radiosity::fourth_moment_radius`] |
 
 use super::{
     direct::{self, Singular},
@@ -116,6 +117,15 @@ impl Radiosity {
     pub fn second_moment_radius(&self, survival: f64) -> [f64; 3] {
         [0, 1, 2].map(|c| {
             let w: Vec<f64> = self.reflectance(c).iter().map(|r| r * r / survival).collect();
+            spectral_radius(&self.factors, &w, 1e-12, 2000).radius
+        })
+    }
+
+    /// r(diag(ρ⁴/s³) F) per channel: below 1 moments of fourth order are finite, without which a measured variance has an
+    /// infinite variance itself.
+    pub fn fourth_moment_radius(&self, survival: f64) -> [f64; 3] {
+        [0, 1, 2].map(|c| {
+            let w: Vec<f64> = self.reflectance(c).iter().map(|r| r.powi(4) / survival.powi(3)).collect();
             spectral_radius(&self.factors, &w, 1e-12, 2000).radius
         })
     }

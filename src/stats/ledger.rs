@@ -118,6 +118,11 @@ pub const ENTRIES: &[Entry] = &[
     entry("a_sphere_above_the_horizon_is_a_point_light", 18, 1e-8),
     // tests/roulette.rs
     entry("no_term_moves_under_roulette", 75, 1e-8),
+    // tests/schedules.rs
+    entry("recorded_moments_are_those_of_the_matrix", 120, 1e-8),
+    entry("predicted_variances_are_measured", 36, 1e-8),
+    entry("predicted_variances_are_measured_at_length", 378, 1e-8),
+    entry("the_best_schedule_is_the_most_efficient", 8, 1e-8),
     // tests/points.rs
     entry("sobol_points_move_no_mean", 2_000, 1e-8),
     entry("errors_from_replicates_cover_the_truth", 1, 1e-8),

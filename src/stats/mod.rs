@@ -16,6 +16,8 @@
 //! | p | order of convergence under refinement | [`order`] |
 //! | b | slope of the variance against samples | [`slope`] |
 //! | D | distance of p-values from uniform ones | [`uniformity`] |
+//! | Q_v, A_v, c_v | noise and cost of a roulette schedule, without rendering it | [`schedule`] |
+//! | Q* | the schedule with the most efficiency | [`optimal`] |
 //! | SUITE_ALPHA | significance of this project's own tests | [`ledger`] |
 //!
 //! Two principles. *Not rejected is not agreed*: a verdict of agreement is an equivalence test, and it needs samples.
@@ -28,8 +30,10 @@ pub mod hypothesis;
 pub mod ledger;
 mod line;
 pub mod moments;
+pub mod optimal;
 pub mod order;
 pub mod power;
+pub mod schedule;
 pub mod sequential;
 pub mod slope;
 pub mod uniformity;
@@ -39,8 +43,10 @@ pub use decay::{NoRate, Rate, TermMeans, observed_rate, ratio, tail_window};
 pub use detector::{Detector, Finding};
 pub use hypothesis::{Measured, critical, difference, holm, two_sided_p};
 pub use moments::{Moments, estimate};
+pub use optimal::optimal_reach;
 pub use order::{Order, convergence_order};
 pub use power::{min_detectable, needed_samples};
+pub use schedule::{Noise, Part, Separable};
 pub use sequential::MeanSequence;
 pub use slope::{Slope, falling_slope, variance_slope};
 pub use uniformity::{Uniformity, uniformity};

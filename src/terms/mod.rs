@@ -7,9 +7,11 @@
 //! | φ(T^k E) | [`Functional`] | [`functional`] |
 //! | ‖T^k E‖₂ of the image | [`norms::SquaredNorm`] | [`norms`] |
 //! | how replicates scatter | [`scatter::Scatter`] | [`scatter`] |
+//! | E\[Y_a Y_b\] over the slots of one path | [`CrossMoments`] | [`cross_moments`] |
 //! | everything a world returns | [`Series`] | [`series`] |
 
 pub mod covariance;
+pub mod cross_moments;
 pub mod film;
 pub mod functional;
 pub mod image;
@@ -18,6 +20,7 @@ pub mod scatter;
 pub mod series;
 pub mod variance;
 
+pub use cross_moments::{CrossMoments, Recorded};
 pub use film::{Shape, TermFilm};
 pub use image::TermImage;
 pub use series::{Cost, Estimate, Functional, Series, Unseen, World};

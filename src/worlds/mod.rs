@@ -14,6 +14,7 @@
 //! | strategies | every way to find every term from both ends | [`pyramid::strategies`] |
 //! | refine | the matrix on finer and finer meshes, against rays | [`refine::refine`] |
 //! | walk | the same estimators on the radiosity matrix | [`walk::walk`], [`zero_variance::study`] |
+//! | roulette | noise and cost of schedules, the best of them | [`roulette::pilot`], [`roulette::optimal`] |
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 
 pub mod batches;
@@ -22,6 +23,7 @@ pub mod equilibrium;
 pub mod falling;
 pub mod pyramid;
 pub mod refine;
+pub mod roulette;
 pub mod sampled;
 pub mod split;
 pub mod stages;

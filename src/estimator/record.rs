@@ -1,0 +1,118 @@
+//! From an estimator and a sensor to [cross moments](crate::terms::cross_moments): every path as a vector of slots.
+//!
+//! A block of pixels is one job: it takes all samples of its pixels, a replicate after the other, and adds the products of
+//! every path. Blocks are added up in their order, so the sums are the same bits for any number of threads. Memory does not
+//! grow with the image: what is kept is `R · slots²`, not an image per slot.
+
+use super::render::{Amount, Watch};
+use super::{Batch, Paths, TermEstimator, TermSink};
+use crate::math::Columns;
+use crate::operator::{Sensor, Transport};
+use crate::terms::cross_moments::{Recorded, Sums};
+use crate::terms::film::BLOCK;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Samples of each pixel of a block that walk together.
+const AT_ONCE: u32 = 8;
+/// Blocks whose sums are held at once.
+const SIDE_BY_SIDE: usize = 16;
+
+/// The slots of the paths of one batch: `values[(path · 3 + channel) · slots + slot]`.
+struct Wave {
+    first: u32,
+    pixels: u32,
+    sample: u32,
+    slots: usize,
+    values: Vec<f64>,
+    rays: Vec<u64>,
+}
+
+impl TermSink for Wave {
+    fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
+        for i in 0..pixel.len() {
+            let path = ((sample[i] - self.sample) * self.pixels + pixel[i] - self.first) as usize;
+            let at = |channel: usize| (path * 3 + channel) * self.slots + slot;
+            self.values[at(0)] += f64::from(value.x[i]);
+            self.values[at(1)] += f64::from(value.y[i]);
+            self.values[at(2)] += f64::from(value.z[i]);
+        }
+    }
+    fn rays(&mut self, slot: usize, rays: usize) {
+        self.rays[slot] += rays as u64;
+    }
+}
+
+/// The moments of what one path of an estimator scores, from a key with independent points: products of two samples of a pixel
+/// are those of the means only then. Samples are dealt to the replicates in runs. Nothing if `stop` is set before all is done, because half
+/// an image has other moments; nothing for estimators that splat, whose paths have no pixel.
+pub fn record<T: Transport>(
+    t: &T,
+    sensor: &impl Sensor<T>,
+    estimator: &impl TermEstimator<T>,
+    amount: Amount,
+    watch: &impl Watch,
+    stop: &AtomicBool,
+) -> Option<Recorded> {
+    if estimator.splats() {
+        return None;
+    }
+    let started = Instant::now();
+    let (slots, [w, h]) = (estimator.slots(), sensor.size());
+    let replicates = (amount.replicates as u32).clamp(1, amount.spp.max(1));
+    let start = |r: u32| (u64::from(r) * u64::from(amount.spp) / u64::from(replicates)) as u32;
+    let counts: Vec<u32> = (0..replicates).map(|r| start(r + 1) - start(r)).collect();
+
+    let job = |paths: &mut Paths<T::Wave>, first: u32| {
+        let pixels = first..(first + BLOCK as u32).min(w * h);
+        let count = pixels.len();
+        let mut sums = Sums::new(slots, counts.clone());
+        // S_a by pixel, channel, replicate
+        let per_channel = counts.len() * slots;
+        let mut pixel_sums = vec![0.0; count * 3 * per_channel];
+        let mut wave = Wave { first, pixels: count as u32, sample: 0, slots, values: vec![], rays: vec![0; slots] };
+        for r in 0..counts.len() {
+            wave.rays.fill(0);
+            let of_replicate = start(r as u32)..start(r as u32 + 1);
+            for s in of_replicate.clone().step_by(AT_ONCE as usize) {
+                let samples = s..(s + AT_ONCE).min(of_replicate.end);
+                wave.sample = s;
+                wave.values.clear();
+                wave.values.resize(samples.len() * count * 3 * slots, 0.0);
+                estimator.sample(
+                    t,
+                    sensor,
+                    &Batch { key: amount.key, pixels: pixels.clone(), samples },
+                    paths,
+                    &mut wave,
+                );
+                for (i, y) in wave.values.chunks(slots).enumerate() {
+                    let (path, channel) = (i / 3, i % 3);
+                    sums.path(r, channel, y);
+                    let at = ((path % count) * 3 + channel) * per_channel + r * slots;
+                    pixel_sums[at..at + slots].iter_mut().zip(y).for_each(|(s, y)| *s += y);
+                    sums.non_finite += u64::from(channel == 0 && y.iter().any(|y| !y.is_finite()));
+                }
+            }
+            sums.rays[r * slots..(r + 1) * slots].copy_from_slice(&wave.rays);
+        }
+        for (i, s) in pixel_sums.chunks(per_channel).enumerate() {
+            sums.pixel(i % 3, s);
+        }
+        sums.pixels = count as u64;
+        watch.paths(count as u64 * u64::from(amount.spp));
+        sums
+    };
+
+    let blocks: Vec<u32> = (0..w * h).step_by(BLOCK).collect();
+    let mut all = Sums::new(slots, counts.clone());
+    for some in blocks.chunks(SIDE_BY_SIDE) {
+        if stop.load(Ordering::Relaxed) {
+            return None;
+        }
+        let done: Vec<Sums> = some.par_iter().map_init(Paths::default, |paths, &first| job(paths, first)).collect();
+        done.iter().for_each(|sums| all.add(sums));
+    }
+    Some(all.moments(started.elapsed().as_secs_f64()))
+}

@@ -1,0 +1,63 @@
+//! The prefix estimator with what every vertex scores kept apart: the slots of the [cross moments](crate::terms::cross_moments).
+//!
+//! ```text
+//! slot 2v        the hit at vertex v,           v = 0..=K        scores term v
+//! slot 2v + 1    the connection at vertex v,    v = 0..K         scores term v + 1
+//! slot 2K + 1    the tail: the connection at vertex K and all that follows
+//! ```
+//!
+//! so that slot a stands at vertex ⌊a/2⌋ and scores term ⌈a/2⌉. It reads the same random numbers as
+//! [`Prefix`](super::Prefix): hit and connection of one term add up to it, to rounding.
+//!
+//! The rays of a slot are those that are asked for once its vertex is reached: the ray that leads to a vertex counts there,
+//! because roulette has already spared the path when it is cast.
+
+use super::{Batch, Paths, Plan, TermEstimator, TermSink, prefix};
+use crate::operator::{Sensor, Transport};
+
+/// The prefix estimator, vertex by vertex.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vertices(pub Plan);
+
+impl Vertices {
+    /// Number of slots for terms up to K.
+    pub fn slots_for(max_bounces: usize) -> usize {
+        2 * max_bounces + 2
+    }
+
+    /// The vertex that a path must reach to score a slot.
+    pub fn vertex(slot: usize) -> usize {
+        slot / 2
+    }
+
+    /// The term that a slot scores; K + 1 for the tail.
+    pub fn term(slot: usize) -> usize {
+        slot.div_ceil(2)
+    }
+}
+
+impl<T: Transport> TermEstimator<T> for Vertices {
+    fn slots(&self) -> usize {
+        Self::slots_for(self.0.max_bounces)
+    }
+
+    fn sample(
+        &self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        batch: &Batch,
+        paths: &mut Paths<T::Wave>,
+        sink: &mut impl TermSink,
+    ) {
+        let Plan { max_bounces, ref roulette, .. } = self.0;
+        let tail = 2 * max_bounces + 1;
+        prefix::start(t, sensor, batch, paths, sink);
+        for v in 0.. {
+            if paths.n == 0 || v >= max_bounces && !roulette.ends() {
+                break;
+            }
+            let slots = [2 * v + 1, 2 * v + 2].map(|slot| slot.min(tail));
+            prefix::step(t, &self.0, v, slots, paths, sink);
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! What a roulette schedule costs and what noise it makes, from the cross moments of paths without roulette.
+//!
+//! ```text
+//! Q_v = Π_{i<v} (1 − q[i])                       the probability of reaching vertex v
+//! E[S_a S_b] = M_ab / Q_{v(a)∧v(b)}              both weigh 1/Q, and both are there if the later vertex is reached
+//! Var = Σ_ab ( M_ab / Q_{v(a)∧v(b)} − m_ab )  =  Σ_v A_v / Q_v − m
+//! cost = Σ_v c_v Q_v                             rays per path
+//! ```
+//!
+//! exact for every schedule that does not depend on the path: `Q_max / (Q_v(a) Q_v(b)) = 1/Q_min` vertex for vertex. The tail is
+//! one more slot, at vertex K; what happens beyond is part of it, and is as it was when the moments were recorded.
+//!
+//! | notation | meaning | place |
+//! |---|---|---|
+//! | v(a), k(a) | vertex and term of a slot | [`Vertices::vertex`], [`Vertices::term`] |
+//! | A_v | Σ of M_ab over pairs whose smaller vertex is v | [`Separable::second`] |
+//! | m | Σ of m_ab | [`Separable::product`] |
+//! | c_v | rays asked for once vertex v is reached | [`Separable::rays`] |
+//!
+//! Efficiency is 1/(V · rays), V being the variance of one sample averaged over pixels and channels. Reference for the weight:
+//! Arvo and Kirk, *Particle transport and image synthesis* (1990); the sum over vertices is elementary.
+
+use crate::estimator::{Roulette, Vertices};
+use crate::terms::cross_moments::{CrossMoments, Recorded, Value};
+
+/// Of which part of the image the noise is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// One term.
+    Term(usize),
+    /// Everything longer than K.
+    Tail,
+    /// The whole image.
+    All,
+}
+
+/// Noise and cost as functions of the probabilities of reaching each vertex.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Separable {
+    /// A_v, v = 0..=K.
+    pub second: Vec<f64>,
+    /// m.
+    pub product: f64,
+    /// c_v, v = 0..=K, of the whole path.
+    pub rays: Vec<f64>,
+}
+
+impl Separable {
+    /// A part of the image, from the moments of [`Vertices`], averaged over the channels.
+    pub fn of(moments: &CrossMoments, part: Part) -> Self {
+        let vertices = moments.slots / 2;
+        let mut of = Self { second: vec![0.0; vertices], product: 0.0, rays: vec![0.0; vertices] };
+        for (a, rays) in moments.rays.iter().enumerate() {
+            of.rays[Vertices::vertex(a)] += rays;
+        }
+        let wanted = |&a: &usize| match part {
+            Part::Term(k) => Vertices::term(a) == k && k < vertices,
+            Part::Tail => Vertices::term(a) == vertices,
+            Part::All => true,
+        };
+        for a in (0..moments.slots).filter(wanted) {
+            for b in (0..moments.slots).filter(wanted) {
+                of.second[Vertices::vertex(a.min(b))] += moments.second(a, b);
+                of.product += moments.product(a, b);
+            }
+        }
+        of
+    }
+
+    /// V: variance of one sample under roulette that reaches vertex v with probability `reach[v]`.
+    pub fn variance(&self, reach: &[f64]) -> f64 {
+        self.second.iter().zip(reach).map(|(a, q)| a / q).sum::<f64>() - self.product
+    }
+
+    /// Rays per path.
+    pub fn cost(&self, reach: &[f64]) -> f64 {
+        self.rays.iter().zip(reach).map(|(c, q)| c * q).sum()
+    }
+
+    /// V · rays: what the efficiency is one over.
+    pub fn work(&self, reach: &[f64]) -> f64 {
+        self.variance(reach) * self.cost(reach)
+    }
+}
+
+/// Q_v for v = 0..=`last`; none where q depends on the path.
+pub fn reach(schedule: &Roulette, last: usize) -> Option<Vec<f64>> {
+    let mut q = 1.0;
+    let mut all = vec![q];
+    for v in 0..last {
+        q *= 1.0 - schedule.fixed(v)?;
+        all.push(q);
+    }
+    Some(all)
+}
+
+/// Noise of one sample, and its price.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Noise {
+    /// V of each term k = 0..=K.
+    pub terms: Vec<Value>,
+    /// V of the tail.
+    pub tail: Value,
+    /// V of the whole image.
+    pub all: Value,
+    /// Rays per path.
+    pub rays: Value,
+    /// 1/(V · rays) of the whole image.
+    pub efficiency: Value,
+}
+
+impl Noise {
+    /// Predicted from the moments of [`Vertices`] without roulette before vertex K; none where q depends on the path.
+    pub fn predicted(recorded: &Recorded, schedule: &Roulette) -> Option<Self> {
+        let last = (recorded.all.slots / 2).checked_sub(1)?;
+        let reach = reach(schedule, last)?;
+        let variance = |part: Part| recorded.value(|m| Separable::of(m, part).variance(&reach));
+        Some(Self {
+            terms: (0..=last).map(|k| variance(Part::Term(k))).collect(),
+            tail: variance(Part::Tail),
+            all: variance(Part::All),
+            rays: recorded.value(|m| Separable::of(m, Part::All).cost(&reach)),
+            efficiency: recorded.value(|m| 1.0 / Separable::of(m, Part::All).work(&reach)),
+        })
+    }
+
+    /// As it is: from the moments of an estimator whose slots are the terms and the tail, under whatever roulette it used.
+    pub fn measured(recorded: &Recorded) -> Self {
+        let last = recorded.all.slots.saturating_sub(1);
+        let variance = |m: &CrossMoments, slots: std::ops::RangeInclusive<usize>| {
+            let pairs = slots.clone().flat_map(|a| slots.clone().map(move |b| (a, b)));
+            pairs.map(|(a, b)| m.second(a, b) - m.product(a, b)).sum::<f64>()
+        };
+        let rays = |m: &CrossMoments| m.rays.iter().sum::<f64>();
+        Self {
+            terms: (0..last).map(|k| recorded.value(|m| variance(m, k..=k))).collect(),
+            tail: recorded.value(|m| variance(m, last..=last)),
+            all: recorded.value(|m| variance(m, 0..=last)),
+            rays: recorded.value(rays),
+            efficiency: recorded.value(|m| 1.0 / (variance(m, 0..=last) * rays(m))),
+        }
+    }
+}
+
+/// The ratio of two efficiencies from one recording, with an error that knows that they share their samples.
+pub fn gain(recorded: &Recorded, of: &Roulette, over: &Roulette) -> Option<Value> {
+    let last = (recorded.all.slots / 2).checked_sub(1)?;
+    let (of, over) = (reach(of, last)?, reach(over, last)?);
+    Some(recorded.value(|m| {
+        let s = Separable::of(m, Part::All);
+        s.work(&over) / s.work(&of)
+    }))
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// The moments of a furnace, E = 1, one albedo ρ, hits alone: Y_k = ρ^k on every path. The tail is ρ^{K+1}/(1 − ρ) as if
+    /// nothing ended it.
+    pub(in super::super) fn furnace(rho: f64, last: usize) -> CrossMoments {
+        sphere(rho, last, 0.0)
+    }
+
+    /// The same with emission of mean 1 and variance σ² at every vertex but the first, all independent.
+    pub(in super::super) fn sphere(rho: f64, last: usize, variance: f64) -> CrossMoments {
+        let slots = Vertices::slots_for(last);
+        // hits stand at even slots; the tail at the odd last one, without what roulette would do to it
+        let mean = |a: usize| match a {
+            _ if a == slots - 1 => rho.powi(last as i32 + 1) / (1.0 - rho),
+            _ if a % 2 == 0 => rho.powi(a as i32 / 2),
+            _ => 0.0,
+        };
+        let product: Vec<f64> = (0..slots * slots).map(|i| mean(i / slots) * mean(i % slots)).collect();
+        let mut second = product.clone();
+        (1..=last).for_each(|v| second[2 * v * slots + 2 * v] += variance * mean(2 * v).powi(2));
+        let rays = (0..slots).map(|a| if a > 0 && a % 2 == 0 { 1.0 } else { 0.0 }).collect();
+        CrossMoments {
+            slots,
+            second: [0, 1, 2].map(|_| second.clone()),
+            product: [0, 1, 2].map(|_| product.clone()),
+            rays,
+        }
+    }
+
+    fn constant(q: f64) -> Roulette {
+        Roulette::Constant { from: 0, q }
+    }
+
+    fn near(a: f64, b: f64, what: &str) {
+        assert!((a - b).abs() <= 1e-9 * b.abs() + 1e-12, "{what}: {a}, expected {b}");
+    }
+
+    /// `Var[T^k] = ρ^{2k}(s^{−k} − 1)`, its covariances, and the whole image for K → ∞: `ρ²q / ((1 − ρ)²(1 − q − ρ²))`.
+    #[test]
+    fn a_furnace_has_its_closed_forms() {
+        for (rho, q) in [(0.5, 0.5), (0.5, 0.1), (0.8, 0.1), (0.7, 0.2), (0.95, 0.02)] {
+            let (s, last) = (1.0 - q, 150);
+            let m = furnace(rho, last);
+            let reach_all = reach(&constant(q), last).unwrap();
+            for k in 0..=8 {
+                let of = Separable::of(&m, Part::Term(k));
+                let expected = f64::powi(rho, 2 * k as i32) * (f64::powi(s, -(k as i32)) - 1.0);
+                near(of.variance(&reach_all), expected, &format!("Var T{k}, ρ = {rho}, q = {q}"));
+            }
+            // the variance of a sum of two terms tells their covariance ρ^{j+k}(s^{−min(j,k)} − 1)
+            let (j, k) = (2, 5);
+            let pair = m.second(2 * j, 2 * k) / reach_all[j.min(k)] - m.product(2 * j, 2 * k);
+            let power = |x: f64, n: usize| x.powi(n as i32);
+            near(pair, power(rho, j + k) * (1.0 / power(s, j.min(k)) - 1.0), "covariance");
+            if rho < 0.9 {
+                let all = Separable::of(&m, Part::All);
+                let expected = rho * rho * q / ((1.0 - rho).powi(2) * (1.0 - q - rho * rho));
+                near(all.variance(&reach_all), expected, &format!("whole image, ρ = {rho}, q = {q}"));
+                near(all.cost(&reach_all), s * (1.0 - f64::powi(s, last as i32)) / q, "rays");
+            }
+        }
+    }
+
+    /// Emission of variance σ²: `ρ²/(1 − q − ρ²) · (q/(1 − ρ)² + σ²)`, whose best constant q is
+    /// `(−b + √(b² + a b D))/a` with a = 1/(1 − ρ)², b = σ², D = 1 − ρ², found here by search.
+    #[test]
+    fn the_best_constant_schedule_of_a_sphere_is_the_known_one() {
+        for (rho, sigma) in [(0.5, 1.0), (0.8, 3.0), (0.3, 0.5)] {
+            let mut all = Separable::of(&sphere(rho, 120, sigma * sigma), Part::All);
+            // the closed form counts vertices, the camera's too
+            all.rays[0] += 1.0;
+            let work = |q: f64| all.work(&reach(&constant(q), 120).unwrap());
+            let (a, b, d) = (1.0 / f64::powi(1.0 - rho, 2), sigma * sigma, 1.0 - rho * rho);
+            let best = (-b + (b * b + a * b * d).sqrt()) / a;
+            near(
+                work(best) * best,
+                {
+                    let v = rho * rho / (1.0 - best - rho * rho) * (best * a + b);
+                    v * (1.0 - f64::powi(1.0 - best, 121))
+                },
+                "V / q",
+            );
+            let (mut lo, mut hi) = (1e-3, d - 1e-3);
+            for _ in 0..200 {
+                let (x, y) = (lo + (hi - lo) / 3.0, hi - (hi - lo) / 3.0);
+                if work(x) < work(y) { hi = y } else { lo = x }
+            }
+            assert!((lo - best).abs() < 1e-4, "ρ = {rho}, σ = {sigma}: {lo}, expected {best}");
+        }
+    }
+
+    #[test]
+    fn what_depends_on_the_path_has_no_prediction() {
+        assert_eq!(reach(&Roulette::Albedo { from: 2 }, 4), None);
+        assert_eq!(reach(&Roulette::LECTURE, 4), Some(vec![1.0, 1.0, 1.0, 0.5, 0.25]));
+        assert_eq!(Roulette::LECTURE.then(4, 0.1), Some(Roulette::Table(vec![0.0, 0.0, 0.5, 0.5, 0.1])));
+    }
+}

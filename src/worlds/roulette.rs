@@ -1,0 +1,198 @@
+//! Roulette schedules of a scene: predicted, measured, chosen.
+//!
+//! ```text
+//! pilot: paths without roulette up to vertex K  →  M_ab, m_ab, c_v  →  V and rays of every schedule  →  the best one
+//! ```
+//!
+//! Beyond vertex K the pilot goes on with constant q = 1 − max albedo ([`beyond`]), and so does every schedule that is compared
+//! with it: with survival s = max albedo no weight grows, `ρ²/s ≤ ρ` and `ρ⁴/s³ ≤ ρ`, so that the tail has finite moments of
+//! second and of fourth order whatever stands in the table before.
+//!
+//! | what | finite where | place |
+//! |---|---|---|
+//! | variance under constant q | the spectral radius of ρ²F/(1 − q) is below 1 | [`Radii::second`] |
+//! | variance of the measured variance | that of ρ⁴F/(1 − q)³ is | [`Radii::fourth`] |
+//!
+//! Without a matrix the largest albedo stands for F: then a radius below 1 proves that the moment is finite, and one above 1
+//! proves nothing. Both speak of directions drawn like the reflectance, whose weights are albedos.
+
+use super::{Advance, Observer, Settings};
+use crate::estimator::record::record;
+use crate::estimator::render::{Amount, Unwatched, render};
+use crate::estimator::{Plan, Prefix, Roulette, Vertices};
+use crate::math::Key;
+use crate::operator::SceneTransport;
+use crate::scene::Scene;
+use crate::solver::Radiosity;
+use crate::stats::optimal::{optimal_reach, schedule};
+use crate::stats::schedule::{Noise, Part, Separable, gain};
+use crate::terms::cross_moments::{Recorded, Value};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Paths of a pilot: enough for a schedule that is as good as the best to a percent or two.
+const PILOT: u64 = 1 << 18;
+/// Vertices a pilot looks at: at least, and at most.
+const DEPTH: [usize; 2] = [16, 64];
+/// The least q beyond K, where a scene may keep all its light.
+const LEAST: f64 = 1.0 / 64.0;
+/// Replicates behind the errors.
+const REPLICATES: u32 = 64;
+
+/// q from vertex K on: 1 − the largest albedo of the scene, at least 1/64.
+pub fn beyond(scene: &Scene) -> f64 {
+    // as the estimators will read it, rounded up to two digits so that it can be typed
+    let q = 1.0 - f64::from(scene.max_albedo().max_element());
+    ((q * 100.0).ceil() / 100.0).clamp(LEAST, 0.99)
+}
+
+fn amount(spp: u32, settings: &Settings, stream: &str) -> Amount {
+    // moments are those of one sample: independent points, whatever the images are made with
+    Amount { spp, replicates: spp.min(REPLICATES) as usize, key: Key::new(settings.seed, stream) }
+}
+
+/// The cross moments of paths without roulette before vertex K = `settings.max_bounces`; nothing if interrupted.
+pub fn pilot(
+    scene: &Scene,
+    settings: &Settings,
+    spp: u32,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Option<Recorded> {
+    let roulette = Roulette::Constant { from: settings.max_bounces, q: beyond(scene) };
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let [w, h] = scene.camera.size;
+    observer.begin("cross moments", u64::from(w) * u64::from(h) * u64::from(spp));
+    let estimator = Vertices(Plan { roulette, ..settings.plan() });
+    record(&t, &scene.camera, &estimator, amount(spp, settings, "cross moments"), &Advance(observer), stop)
+}
+
+/// Terms under a schedule as the path tracer would use it, from vertex 0 on; nothing if interrupted. Read with
+/// [`Noise::measured`].
+pub fn measure(
+    scene: &Scene,
+    settings: &Settings,
+    schedule: &Roulette,
+    spp: u32,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Option<Recorded> {
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let [w, h] = scene.camera.size;
+    observer.begin(&format!("roulette {schedule}"), u64::from(w) * u64::from(h) * u64::from(spp));
+    let estimator = Prefix(Plan { roulette: schedule.clone(), ..settings.plan() });
+    let amount = amount(spp, settings, &format!("roulette {schedule}"));
+    record(&t, &scene.camera, &estimator, amount, &Advance(observer), stop)
+}
+
+/// Wall-clock seconds per path that the terms take under each schedule without any bookkeeping: the least of three rounds of
+/// `spp` samples, taken in turn so that a busy machine is unfair to all alike.
+pub fn seconds_per_path(scene: &Scene, settings: &Settings, schedules: &[Roulette], spp: u32) -> Vec<f64> {
+    let t = SceneTransport { scene, sampling: settings.sampling };
+    let never = AtomicBool::new(false);
+    let paths = f64::from(scene.camera.size[0]) * f64::from(scene.camera.size[1]) * f64::from(spp);
+    let mut least = vec![f64::INFINITY; schedules.len()];
+    for _ in 0..3 {
+        for (least, schedule) in least.iter_mut().zip(schedules) {
+            let estimator = Prefix(Plan { roulette: schedule.clone(), ..settings.plan() });
+            let started = Instant::now();
+            let film = render(&t, &scene.camera, &estimator, amount(spp, settings, "time"), &mut Unwatched, &never);
+            *least = least.min(started.elapsed().as_secs_f64() / paths);
+            drop(film);
+        }
+    }
+    least
+}
+
+/// The schedule with the most efficiency, and what it is expected to be.
+#[derive(Clone, Debug)]
+pub struct Optimal {
+    /// A table: K entries, then q beyond.
+    pub roulette: Roulette,
+    /// Predicted noise and cost.
+    pub noise: Noise,
+    /// Its efficiency over that of the lecture's schedule, both as tables to K.
+    pub gain: Value,
+}
+
+/// The best schedule for the whole image, from a recording of [`pilot`]. Its prediction comes from the same paths that chose
+/// it, and is a little too good.
+pub fn best(recorded: &Recorded, scene: &Scene) -> Option<Optimal> {
+    let last = (recorded.all.slots / 2).checked_sub(1)?;
+    let roulette = schedule(&optimal_reach(&Separable::of(&recorded.all, Part::All)), beyond(scene));
+    let noise = Noise::predicted(recorded, &roulette)?;
+    let lecture = Roulette::LECTURE.then(last, beyond(scene))?;
+    let gain = gain(recorded, &roulette, &lecture)?;
+    Some(Optimal { roulette, noise, gain })
+}
+
+/// The best schedule for a scene and these settings, from a pilot of its own stream; nothing if interrupted.
+///
+/// ```
+/// use fredholm::scene::{Scene, load};
+/// use fredholm::worlds::{Settings, Unobserved, roulette};
+/// use std::sync::atomic::AtomicBool;
+///
+/// let options = load::Options { set: vec!["camera.size=[8,8]".into()], ..Default::default() };
+/// let scene = Scene::new(&load::scene("cornell", &options)?.description);
+/// let best = roulette::optimal(&scene, &Settings::default(), &Unobserved, &AtomicBool::new(false));
+/// assert!(best.is_some_and(|b| b.gain.value > 1.0));
+/// # Ok::<(), fredholm::scene::SceneError>(())
+/// ```
+pub fn optimal(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &AtomicBool) -> Option<Optimal> {
+    let settings = Settings { max_bounces: settings.max_bounces.clamp(DEPTH[0], DEPTH[1]), ..settings.clone() };
+    let [w, h] = scene.camera.size.map(u64::from);
+    let spp = (PILOT / (w * h)).clamp(8, 1 << 12) as u32;
+    best(&pilot(scene, &settings, spp, observer, stop)?, scene)
+}
+
+/// Spectral radii that decide whether moments are finite under constant survival.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Radii {
+    /// Of ρ²F/s: the variance.
+    pub second: f64,
+    /// Of ρ⁴F/s³: the variance of the measured variance.
+    pub fourth: f64,
+    /// Whether these are only upper bounds, from the largest albedo.
+    pub bounds: bool,
+}
+
+impl Radii {
+    /// For walks that end with probability `q` everywhere; the largest over the channels.
+    pub fn new(matrix: Option<&Radiosity>, scene: &Scene, q: f64) -> Self {
+        let (s, largest) = (1.0 - q, |r: [f64; 3]| r.into_iter().fold(0.0, f64::max));
+        match matrix {
+            Some(m) => Self {
+                second: largest(m.second_moment_radius(s)),
+                fourth: largest(m.fourth_moment_radius(s)),
+                bounds: false,
+            },
+            None => {
+                let rho = f64::from(scene.max_albedo().max_element());
+                Self { second: rho * rho / s, fourth: rho.powi(4) / s.powi(3), bounds: true }
+            }
+        }
+    }
+
+    /// What the reader of an error bar must know, if anything: in words, after the name of what is estimated.
+    pub fn warning(&self) -> Option<String> {
+        let Self { second, fourth, bounds } = *self;
+        match (bounds, second >= 1.0, fourth >= 1.0) {
+            (false, true, _) => {
+                Some(format!("has infinite variance: the spectral radius of ρ²F/(1−q) is {second:.3} ≥ 1"))
+            }
+            (false, false, true) => Some(format!(
+                "has finite variance, but that of the measured variance is infinite: the spectral radius\n\
+                 of ρ⁴F/(1−q)³ is {fourth:.3} ≥ 1, and error bars come out too small"
+            )),
+            (true, true, _) => Some(format!(
+                "may have infinite variance: the bound max ρ²/(1−q) = {second:.3} ≥ 1 does not exclude it"
+            )),
+            (true, false, true) => Some(format!(
+                "has finite variance, but error bars may come out too small: the bound\n\
+                 max ρ⁴/(1−q)³ = {fourth:.3} ≥ 1 does not exclude that the measured variance has an infinite one"
+            )),
+            _ => None,
+        }
+    }
+}
