@@ -9,6 +9,7 @@
 //! | `T00.png`, `terms.png`, `partial_00.png` | [`picture`], [`sheet`] |
 //! | z maps of `compare` | [`zmap`] |
 //! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
+//! | `NAME-ratios.svg` of the zoo and its PNG | [`signature`] |
 //! | `summary.json` | [`summary`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
@@ -30,6 +31,7 @@ pub mod plot;
 pub mod pyramid;
 mod rate;
 pub mod sheet;
+pub mod signature;
 pub mod summary;
 pub mod sweep;
 pub mod table;
