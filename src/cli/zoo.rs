@@ -9,7 +9,7 @@ use fredholm::report::sheet::{self, Cell};
 use fredholm::report::signature::{self, Signature};
 use fredholm::report::table::significant;
 use fredholm::report::typeset::{Caption, superscript};
-use fredholm::report::{ReportError, exr, half_width_95};
+use fredholm::report::{ReportError, exr, half_width_95, write_atomically};
 use fredholm::scene::Scene;
 use fredholm::terms::Functional;
 use fredholm::worlds::Settings;
@@ -158,24 +158,31 @@ pub fn settings(args: &Zoo, spp: u32) -> Settings {
     Settings { spp: args.spp.unwrap_or(spp), seed: args.seed, max_bounces: BOUNCES, roulette, ..Settings::default() }
 }
 
-/// A folder that is absent, empty, or holds what this command left: decided by its list of files.
+/// A folder that is absent, empty, or holds what this very command left.
 fn folder(args: &Zoo, default: &str) -> Result<PathBuf, Failure> {
     let wanted = args.out.clone().unwrap_or_else(|| PathBuf::from(default));
-    let marked = wanted.join(MARK).exists();
+    let marked = std::fs::read_to_string(wanted.join(MARK)).is_ok_and(|text| text.starts_with(&mark()));
     output::folder(Some(&wanted), "zoo", &output::canonical_command(), args.force || marked)
 }
 
-/// Says that a folder is the zoo's own.
+/// The numbers of a run, under a line that says whose folder this is.
 const MARK: &str = "ratios.csv";
+
+fn mark() -> String {
+    format!("# {}\n", output::canonical_command())
+}
 
 /// Every member on the scene that shows it, and the control.
 fn everyone(args: &Zoo) -> Result<Ending, Failure> {
     let folder = folder(args, "zoo-out")?;
     let (settings, progress) = (settings(args, 16), Progress::new(args.quiet, |_| {}));
+    let stopped = || stop_flag().load(Ordering::Relaxed);
     let mut rights: Vec<(Stage, Scene, Functional)> = vec![];
-    let mut csv = String::from("member,scene,k,ratio,std_error,predicted\n");
+    let mut csv = format!("{}member,scene,k,ratio,std_error,predicted\n", mark());
+    // first, so that the folder is known as this command's even if the rest never comes
+    write_atomically(&folder.join(MARK), csv.as_bytes())?;
     let mut table =
-        vec![format!("{:24} {:15} r₁          r₂          r₃          r₄          whole", "member", "scene")];
+        vec![format!("{:24} {:15} r₀          r₁          r₂          r₃          whole", "member", "scene")];
     for bug in zoo::all() {
         let stage = bug.exposed_by;
         if !rights.iter().any(|r| r.0 == stage) {
@@ -186,10 +193,10 @@ fn everyone(args: &Zoo) -> Result<Ending, Failure> {
             rights.push((stage, scene, right.series.image().clone()));
         }
         let Some((_, scene, right)) = rights.iter().find(|r| r.0 == stage) else { continue };
+        let settings = enough(bug, &settings);
         let wrong = zoo::render(bug, scene, &settings, &progress, stop_flag());
-        if stop_flag().load(Ordering::Relaxed) {
-            progress.finish();
-            return Ok(Ending::Interrupted);
+        if stopped() {
+            break;
         }
         write(&place(&folder, stage, bug.name)?, args.size, &wrong)?;
         let image = wrong.series.image();
@@ -198,18 +205,24 @@ fn everyone(args: &Zoo) -> Result<Ending, Failure> {
             let predicted = (bug.ratio)(k).map_or(String::new(), |r| r.to_string());
             csv += &format!("{},{},{k},{},{},{predicted}\n", bug.name, stage.label, r.value, r.std_error);
         }
-        let cells: Vec<String> = ratios[1..5].iter().chain([&whole(image, right)]).map(brief).collect();
+        let cells: Vec<String> = ratios[..4].iter().chain([&whole(image, right)]).map(brief).collect();
         let cells: Vec<String> = cells.iter().map(|c| format!("{c:11}")).collect();
         table.push(format!("{:24} {:15} {}", bug.name, stage.label, cells.join(" ").trim_end()));
     }
     progress.finish();
-    fredholm::report::write_atomically(&folder.join(MARK), csv.as_bytes())?;
+    write_atomically(&folder.join(MARK), csv.as_bytes())?;
     let note =
         "rₖ = Tₖ wrong / Tₖ right, mean of the image and the channels; the last digits' 95 % interval in brackets";
     let left =
         format!("{}: NAME.exr seen in cornell, SCENE/NAME.exr seen elsewhere, correct.exr, {MARK}", folder.display());
     say(&paragraphs(&[table.join("\n"), note.into(), left]))?;
-    Ok(Ending::Ok)
+    Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })
+}
+
+/// A generator that starts again shows only where more samples are drawn than it has: four times as many.
+fn enough(bug: &Bug, settings: &Settings) -> Settings {
+    let least = if bug.name == "same-numbers" { 4 * zoo::bookkeeping::DIFFERENT } else { 1 };
+    Settings { spp: settings.spp.max(least), ..settings.clone() }
 }
 
 /// The whole against the whole, or the sum where paths are cut at K.
@@ -276,10 +289,10 @@ fn one(args: &Zoo, bug: &'static Bug) -> Result<Ending, Failure> {
     let blind = bug.blind.map(|stage| pair(stage).map(|p| (stage, p))).transpose()?;
     progress.finish();
 
-    let judgement = zoo::judge::judge(&wrong, right.series.image());
+    let judgement = zoo::judge::judge(&wrong, &right);
     let theory = stage == bug.exposed_by;
     let mut blocks = vec![introduction(bug), format!("{}\n{}", stage.label, rows(bug, &wrong, &right, theory))];
-    blocks.push(format!("the right renderer would look like this with p = {:.1e} ({})", judgement.p, judgement.what));
+    blocks.push(format!("p = {:.1e} that the right renderer gives this: judged by {}", judgement.p, judgement.what));
     if let Some((stage, (wrong, right))) = &blind {
         blocks.push(format!("{}, which is blind to it\n{}", stage.label, rows(bug, wrong, right, false)));
     }
@@ -291,9 +304,9 @@ fn one(args: &Zoo, bug: &'static Bug) -> Result<Ending, Failure> {
     let ratios = measured(wrong.series.image(), right.series.image());
     signature::draw(&plot(&format!("{}: {}", bug.name, bug.what), bug, &ratios, theory), &caption)?
         .write(&folder, &format!("{}-ratios", bug.name))?;
-    let mut csv = String::from("k,ratio,std_error\n");
+    let mut csv = format!("{}k,ratio,std_error\n", mark());
     ratios.iter().enumerate().for_each(|(k, r)| csv += &format!("{k},{},{}\n", r.value, r.std_error));
-    fredholm::report::write_atomically(&folder.join(MARK), csv.as_bytes())?;
+    write_atomically(&folder.join(MARK), csv.as_bytes())?;
     blocks.push(format!(
         "{}: {n}.exr, correct.exr, {n}.png, {n}-ratios.svg and .png, {MARK}",
         folder.display(),
@@ -374,7 +387,7 @@ fn pictures(
         let gain = Some(auto_gain_beside_lamps(a, emitted));
         cells.push(Cell { label: format!("{name}, right"), pixels: a, gain });
         cells.push(Cell { label: format!("{name}, wrong"), pixels: b, gain });
-        cells.push(Cell { label: "red: too bright, blue: too dark".into(), pixels: difference, gain });
+        cells.push(Cell { label: "difference: + red, − blue".into(), pixels: difference, gain });
     }
     sheet::grid_of(3, &format!("{}: {}", bug.name, bug.what), w as usize, h as usize, &cells, caption)
 }

@@ -86,7 +86,7 @@ pub static BUGS: [Bug; 8] = [
         technique: Technique::Connect,
         ends: Ends::AsSet,
         exposed_by: Stage::CORNELL,
-        blind: Some(Stage::DIM_FURNACE),
+        blind: Some(Stage::DIM_SPHERE),
         spp: 16,
         mistake: &Clamped(0.5),
     },

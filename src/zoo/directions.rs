@@ -5,7 +5,7 @@
 //! ```
 //!
 //! In a furnace it does not matter where rays go, so it sees none of the members but `cosine-as-uniform`, whose weight 2ρ cos θ has the mean
-//! 4ρ/3. Under a disk of radius R at height h, d² = h² + R²: R²/d² becomes `1 − h/d`, `R/d` and `(2/π) atan(R/h)`.
+//! 4ρ/3; nor does a sphere lit by its cap, where all points are alike. Under a disk of radius R at height h, d² = h² + R²: R²/d² becomes `1 − h/d`, `R/d` and `(2/π) atan(R/h)`.
 
 use super::signature::unknown;
 use super::{Bug, Ends, Mistake, Stage};
@@ -22,27 +22,27 @@ pub static BUGS: [Bug; 4] = [
         what: "directions are uniform, but weighted as if they followed the cosine",
         place: "direction: p = 1/2π, believed cos θ/π",
         expected: "under a disk of radius R at height h: 1 − h/d instead of R²/d², d² = h² + R²",
-        signature: "depends on the place at every k: dark where light comes from above, bright where it grazes",
+        signature: "1 at k = 1; then bright on what has bright surroundings near the horizon, dark on what is lit from above",
         ratio: unknown,
-        technique: Technique::Scatter,
+        technique: Technique::Connect,
         ends: Ends::AsSet,
         exposed_by: Stage::CORNELL,
-        blind: Some(Stage::FURNACE),
-        spp: 128,
+        blind: Some(Stage::SPHERE),
+        spp: 256,
         mistake: &UniformAsCosine,
     },
     Bug {
         name: "cosine-as-uniform",
         what: "directions follow the cosine, but are weighted as if they were uniform",
         place: "direction: p = cos θ/π, believed 1/2π",
-        expected: "in a furnace (4ρ/3)^k: 1/(1 − 4ρ/3) in all",
-        signature: "grows with k, about (4/3)^k",
+        expected: "in a furnace under scatter (4ρ/3)^k: 1/(1 − 4ρ/3) in all",
+        signature: "1 at k = 1, then it grows, about (4/3)^(k−1)",
         ratio: unknown,
-        technique: Technique::Scatter,
+        technique: Technique::Connect,
         ends: Ends::AtK,
         exposed_by: Stage::CORNELL,
         blind: Some(Stage::GLASS_BALL),
-        spp: 128,
+        spp: 64,
         mistake: &CosineAsUniform,
     },
     Bug {
@@ -50,13 +50,13 @@ pub static BUGS: [Bug; 4] = [
         what: "the disk that is lifted to the hemisphere is sampled with radius u instead of √u",
         place: "direction: sin θ = u instead of √u, believed p = cos θ/π",
         expected: "under a disk of radius R at height h: R/d instead of R²/d², d² = h² + R²",
-        signature: "depends on the place at every k: bright where light comes along the normal",
+        signature: "1 at k = 1; then bright on what faces bright surfaces, dark on what has them beside",
         ratio: unknown,
-        technique: Technique::Scatter,
+        technique: Technique::Connect,
         ends: Ends::AsSet,
         exposed_by: Stage::CORNELL,
-        blind: Some(Stage::FURNACE),
-        spp: 128,
+        blind: Some(Stage::SPHERE),
+        spp: 768,
         mistake: &MalleyWithoutRoot,
     },
     Bug {
@@ -64,13 +64,13 @@ pub static BUGS: [Bug; 4] = [
         what: "the polar angle is uniform, but weighted as if directions followed the cosine",
         place: "direction: θ = (π/2) u instead of asin √u, believed p = cos θ/π",
         expected: "under a disk of radius R at height h: (2/π) atan(R/h) instead of R²/d², d² = h² + R²",
-        signature: "depends on the place at every k: bright along the normal and at grazing light, dark between",
+        signature: "1 at k = 1; then too much from along the normal and from the horizon, too little from between",
         ratio: unknown,
-        technique: Technique::Scatter,
+        technique: Technique::Connect,
         ends: Ends::AsSet,
         exposed_by: Stage::CORNELL,
-        blind: Some(Stage::FURNACE),
-        spp: 128,
+        blind: Some(Stage::SPHERE),
+        spp: 768,
         mistake: &UniformTheta,
     },
 ];

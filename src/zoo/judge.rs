@@ -14,7 +14,7 @@
 
 use crate::stats::hypothesis::ROUNDING;
 use crate::stats::{Measured, difference, holm, two_sided_p, variance_slope};
-use crate::terms::{Estimate, Functional};
+use crate::terms::Estimate;
 use crate::worlds::sampled::Sampled;
 
 /// Below this many equal events nothing is judged.
@@ -32,16 +32,20 @@ pub struct Judgement {
 }
 
 /// Judges a render by a reference of the same terms, made with the same K.
-pub fn judge(suspect: &Sampled, reference: &Functional) -> Judgement {
+pub fn judge(suspect: &Sampled, reference: &Sampled) -> Judgement {
     if suspect.series.cost.non_finite > 0 {
         return Judgement { p: 0.0, what: format!("{} samples that are no number", suspect.series.cost.non_finite) };
     }
-    let image = suspect.series.image();
+    let share = suspect.series.cost.paths as f64 / reference.series.cost.paths as f64;
+    let (image, reference) = (suspect.series.image(), reference.series.image());
     let last = image.terms.len();
     let mut names = vec![];
     let mut p = vec![];
     let mut compare = |name: String, slot: usize, a: &Estimate, b: &Estimate| {
-        if image.events.get(slot).is_some_and(|&n| n < FEW) {
+        // a term that is black altogether is judged by what the reference would have seen in as many paths
+        let seen = image.events.get(slot).copied().unwrap_or(0.0);
+        let expected = reference.events.get(slot).copied().unwrap_or(0.0) * share;
+        if (if seen == 0.0 { expected } else { seen }) < FEW {
             return;
         }
         for c in 0..3 {
@@ -52,8 +56,10 @@ pub fn judge(suspect: &Sampled, reference: &Functional) -> Judgement {
     for (k, (a, b)) in image.terms.iter().zip(&reference.terms).enumerate() {
         compare(format!("k = {k}"), k, a, b);
     }
-    if image.tail.is_none() {
-        compare("whole".into(), last + 2, &image.total, &reference.sum);
+    if image.tail.is_none() || reference.tail.is_none() {
+        // one of them ends at K; what is finished as a whole is no sum
+        let whole = if image.tail.is_none() { &image.total } else { &image.sum };
+        compare("whole".into(), last + 1, whole, &reference.sum);
     } else {
         compare("tail".into(), last, &image.tail, &reference.tail);
         compare("whole".into(), last + 2, &image.total, &reference.total);

@@ -38,7 +38,7 @@ pub static BUGS: [Bug; 4] = [
         ends: Ends::Roulette(0.1),
         exposed_by: Stage::CORNELL,
         blind: Some(Stage::BLACK_ROOM),
-        spp: 64,
+        spp: 256,
         mistake: &Twice,
     },
     Bug {

@@ -23,14 +23,14 @@ impl Stage {
     pub const CORNELL: Self = Self::plain("cornell");
     /// A closed box of albedo ½ that glows.
     pub const FURNACE: Self = Self::plain("furnace");
-    /// The same, glowing with 0.2.
-    pub const DIM_FURNACE: Self =
-        Self { label: "furnace-dim", scene: "furnace", set: &["shapes.0.emission=[0.2,0.2,0.2]"] };
     /// The same without reflection: only emission is seen.
     pub const BLACK_ROOM: Self =
         Self { label: "furnace-black", scene: "furnace", set: &["materials.wall.reflectance=[0,0,0]"] };
     /// An integrating sphere of radius 1, lit by its cap.
     pub const SPHERE: Self = Self::plain("sphere");
+    /// The same with a cap of radiance 0.2.
+    pub const DIM_SPHERE: Self =
+        Self { label: "sphere-dim", scene: "sphere", set: &["shapes.0.emission=[0.2,0.2,0.2]"] };
     /// The same of radius 10.
     pub const LARGE_SPHERE: Self =
         Self { label: "sphere-r10", scene: "sphere", set: &["shapes.0.radius=10", "shapes.1.radius=10"] };
@@ -50,12 +50,26 @@ impl Stage {
     pub const SKY_BOWL: Self = Self::plain("sky-bowl");
     /// 96 lamps.
     pub const MANY_LIGHTS: Self = Self::plain("many-lights");
-    /// The Cornell box lit by a disk.
+    /// The Cornell box with a second lamp, a point.
+    pub const TWO_LAMPS: Self = Self {
+        label: "cornell-two-lamps",
+        scene: "cornell",
+        set: &["lights=[{ type = \"point\", position = [-0.4,0.5,0.5], intensity = [0.5,0.5,0.5] }]"],
+    };
+    /// The Cornell box with its lamp half-way down: there is light to be had behind it.
+    pub const LOW_LAMP: Self =
+        Self { label: "cornell-low-lamp", scene: "cornell", set: &["shapes.5.origin=[-0.23,0.5,-0.18]"] };
+    /// A floor of two metres under a round lamp of radius 1 at height 1.5.
     pub const DISK: Self = Self {
-        label: "cornell-disk",
+        label: "disk-over-floor",
         scene: "cornell",
         set: &[
-            "shapes.5={ type = \"disk\", center = [0,0.2,0], normal = [0,-1,0], radius = 0.6, material = \"white\", emission = [4,4,4] }",
+            concat!(
+                "shapes=[{ type = \"quad\", origin = [-1,-1,1], edge_u = [2,0,0], edge_v = [0,0,-2], material = \"white\" }, ",
+                "{ type = \"disk\", center = [0,0.5,0], normal = [0,-1,0], radius = 1, material = \"white\", emission = [4,4,4] }]"
+            ),
+            "camera.origin=[0,0.2,1.9]",
+            "camera.target=[0,-1,0]",
         ],
     };
 
