@@ -6,18 +6,19 @@ use std::{fs, path::Path};
 /// Rank of each folder of `src/`; a module may use modules of lower rank, and itself. Equal ranks are siblings that do
 /// not know each other. `main.rs`, `lib.rs` and `cli/` tie everything together and are exempt as users; nobody may use
 /// `cli`.
-const ORDER: [(&str, u32); 11] = [
+const ORDER: [(&str, u32); 12] = [
     ("math", 0),
     ("scene", 1),
     ("terms", 2),
     ("operator", 3),
     ("estimator", 4),
     ("solver", 4),
-    ("zoo", 5),
-    ("stats", 6),
-    ("worlds", 7),
-    ("report", 8),
-    ("cli", 9),
+    ("stats", 5),
+    ("worlds", 6),
+    ("zoo", 7),
+    ("diagnosis", 8),
+    ("report", 9),
+    ("cli", 10),
 ];
 
 fn rank(module: &str) -> Option<u32> {

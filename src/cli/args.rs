@@ -128,6 +128,18 @@ Exit code 1: a bias was found, or the equation was rejected.")]
     /// Roulette schedules: predicted without rendering, verified, optimised
     #[command(after_help = super::roulette::EXAMPLES)]
     Roulette(super::roulette::Args),
+    /// Estimators that are wrong on purpose, each beside the right one
+    #[command(after_help = "Examples:
+  fredholm zoo                     all members: NAME.exr in zoo-out, and r_k of each
+  fredholm zoo --list              who lives there, and what is wrong with them
+  fredholm zoo double-emission     one beside the right estimator: table, picture, plot
+  fredholm zoo mixed-measures --scene cornell
+  fredholm zoo --quiz --seed 3     predict, then reveal
+
+r_k = T_k wrong / T_k right. Flat in k: the connection to the light is wrong; c^(k-1): the bounce or
+the roulette; c^k: the BSDF. Written: zoo-out/NAME.exr for what cornell shows, zoo-out/SCENE/NAME.exr
+for what it does not, correct.exr as the control. Layers: the image, T00, T01, …, T00_se, ….")]
+    Zoo(super::zoo::Zoo),
     /// Scenes, materials, lights, bounds on the norm of T
     #[command(after_help = "Examples:
   fredholm info            the built-in scenes
@@ -414,7 +426,7 @@ pub struct Chapter {
     pub out: Option<PathBuf>,
 }
 
-pub(super) fn size(s: &str) -> Result<[u32; 2], String> {
+pub fn size(s: &str) -> Result<[u32; 2], String> {
     let wrong = || format!("`{s}` is not a size such as 128x128 (each side 1 to 32768)");
     let (w, h) = s.split_once('x').ok_or_else(wrong)?;
     let side = |s: &str| s.parse().ok().filter(|n| (1..=32768).contains(n)).ok_or_else(wrong);

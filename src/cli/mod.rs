@@ -15,6 +15,7 @@ mod guard;
 mod info;
 mod output;
 mod progress;
+mod quiz;
 mod roulette;
 mod solve;
 mod strategies;
@@ -24,6 +25,7 @@ mod sweep_split;
 mod sweep_spp;
 mod walk;
 mod write;
+mod zoo;
 
 use args::{Cli, Command};
 use std::process::ExitCode;
@@ -92,6 +94,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Check(args)) => check::run(args),
         Some(Command::Figure(args)) => figure::run(args),
         Some(Command::Roulette(args)) => roulette::run(args),
+        Some(Command::Zoo(args)) => zoo::run(args),
         Some(Command::Info(args)) => info::run(args),
         Some(Command::Chapter(args)) => chapter::run(args),
     };

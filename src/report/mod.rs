@@ -14,6 +14,7 @@
 //! | `covariance.svg`, `split.csv` | [`split`] |
 //! | sheets of one image as it grows | [`stages`] |
 //! | `roulette.csv`, `roulette.svg`, and its table | [`roulette`] |
+//! | `NAME-ratios.svg` of the zoo and its PNG | [`signature`] |
 //! | `summary.json` | [`summary`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
@@ -38,6 +39,7 @@ mod rate;
 pub mod refine;
 pub mod roulette;
 pub mod sheet;
+pub mod signature;
 pub mod split;
 pub mod stages;
 pub mod summary;

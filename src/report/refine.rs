@@ -215,7 +215,8 @@ pub fn places(r: &Refinement, [w, h]: [usize; 2], range: f64, caption: &Caption)
         "Where the mesh fails: indirect light too bright (red) or too dark (blue); full colour is {:.0} % of its mean",
         100.0 * range
     );
-    sheet::grid(&title, 2 * w, 2 * h, &cells, caption)
+    let notes: Vec<Vec<String>> = r.meshes.iter().map(|m| vec![format!("h = {:.3} m", m.h)]).collect();
+    sheet::annotated(&title, 2 * w, 2 * h, &cells, &notes, caption)
 }
 
 /// White at 0, red at 1, blue at −1, in linear light.
