@@ -45,6 +45,7 @@
 //! # Ok::<(), fredholm::scene::SceneError>(())
 //! ```
 
+pub mod diagnosis;
 pub mod estimator;
 pub mod math;
 pub mod operator;

@@ -6,7 +6,7 @@ use std::{fs, path::Path};
 /// Rank of each folder of `src/`; a module may use modules of lower rank, and itself. Equal ranks are siblings that do
 /// not know each other. `main.rs`, `lib.rs` and `cli/` tie everything together and are exempt as users; nobody may use
 /// `cli`.
-const ORDER: [(&str, u32); 11] = [
+const ORDER: [(&str, u32); 12] = [
     ("math", 0),
     ("scene", 1),
     ("terms", 2),
@@ -16,8 +16,9 @@ const ORDER: [(&str, u32); 11] = [
     ("zoo", 5),
     ("stats", 6),
     ("worlds", 7),
-    ("report", 8),
-    ("cli", 9),
+    ("diagnosis", 8),
+    ("report", 9),
+    ("cli", 10),
 ];
 
 fn rank(module: &str) -> Option<u32> {

@@ -1,0 +1,87 @@
+//! Explanations by simulation: every candidate renders the same scene, and those that the suspect contradicts are struck off.
+//!
+//! ```text
+//! candidate c stays while  p(S, P_c) ≥ α/stages        stages: ever more samples for ever fewer candidates
+//! ```
+//!
+//! A true explanation is struck off with probability α at most, however many candidates there are: each is tested by itself, and
+//! its level is shared by the stages. What stays is a list of all explanations that the data cannot tell apart.
+
+use super::gap::{Fit, compare};
+use super::picture::{Pictures, Slot};
+use super::regions::Region;
+
+/// Who can render candidates.
+pub trait Simulate {
+    /// All candidates.
+    fn names(&self) -> Vec<String>;
+    /// The pictures of one of them with so many samples per pixel; nothing if it was interrupted.
+    fn pictures(&self, name: &str, spp: u32) -> Option<Pictures>;
+}
+
+/// A candidate after its last test.
+#[derive(Clone, Debug)]
+pub struct Tried {
+    /// Its name.
+    pub name: String,
+    /// Its last test.
+    pub fit: Fit,
+    /// Samples per pixel of that test.
+    pub spp: u32,
+    /// Whether it was struck off.
+    pub rejected: bool,
+}
+
+/// How much work elimination may do. Counted in paths and not in seconds, so that equal commands have equal results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Samples per pixel of the first stage; each stage takes four times as many.
+    pub first: u32,
+    /// Paths that one stage may take, all candidates together.
+    pub paths: u64,
+    /// Stages.
+    pub stages: u32,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Self { first: 16, paths: 6_000_000, stages: 4 }
+    }
+}
+
+/// Strikes off candidates; the best fit first, those that stayed before those that did not.
+pub fn eliminate(
+    suspect: &Pictures,
+    candidates: &dyn Simulate,
+    regions: &[Region],
+    alpha: f64,
+    effort: Effort,
+    mut begin: impl FnMut(u32, usize),
+    mut done: impl FnMut(),
+) -> Vec<Tried> {
+    // a tail is what each renderer takes for it: its length depends on where paths end
+    let suspect = suspect.only(|s| s != Slot::Tail);
+    let pixels = (suspect.size[0] * suspect.size[1]) as u64;
+    let level = alpha / f64::from(effort.stages);
+    let (mut alive, mut tried) = (candidates.names(), Vec::<Tried>::new());
+    for stage in 0..effort.stages {
+        let spp = effort.first * 4u32.pow(stage);
+        if alive.is_empty() || (stage > 0 && pixels * u64::from(spp) * alive.len() as u64 > effort.paths) {
+            break;
+        }
+        begin(spp, alive.len());
+        tried.retain(|t| t.rejected);
+        for name in std::mem::take(&mut alive) {
+            let Some(predicted) = candidates.pictures(&name, spp) else { continue };
+            let fit = compare(&suspect, &predicted, regions);
+            let rejected = fit.p < level;
+            if !rejected {
+                alive.push(name.clone());
+            }
+            tried.push(Tried { name, fit, spp, rejected });
+            done();
+        }
+    }
+    tried.sort_by(|a, b| a.rejected.cmp(&b.rejected).then(a.fit.misfit.total_cmp(&b.fit.misfit)));
+    tried
+}

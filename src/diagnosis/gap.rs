@@ -1,0 +1,204 @@
+//! Two sets of pictures, one comparison: is the difference more than noise, and where?
+//!
+//! ```text
+//! d = mean over a region of S − P        t = d / se(d)        p adjusted by Holm over slots × regions × channels
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | S, P | the suspect, and what an explanation predicts | arguments of [`compare`] |
+//! | se(d) | from the `_se` layers of both; else from how S − P scatters inside blocks of 8 × 8 pixels | [`spread`] |
+//! | r | ratio of means, with its error by the same rule for S − r P | [`ratio`] |
+//! | n_eff | (Σ v)²/Σ v² of the pixel variances: how many pixels carry the noise | [`Gap::p`] |
+//!
+//! The local scatter holds the noise of both sides and, where the explanation is wrong in shape, that misfit too: it is too
+//! large rather than too small, so a noisy difference is not taken for a bias. Where fewer than ten pixels carry the noise the
+//! t-test is not to be trusted, and nothing is rejected. Pixels are taken as independent. Welch (1947); Holm (1979).
+
+use super::picture::{Layer, Pictures, Slot};
+use super::regions::Region;
+use crate::stats::{Measured, holm, two_sided_p};
+
+/// Fewer pixels than this carry the noise: no decision.
+const FEW: f64 = 10.0;
+/// Side of the blocks in which the noise is measured.
+const BLOCK: usize = 8;
+
+/// One comparison: a slot, a region, a channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Gap {
+    /// Of which picture.
+    pub slot: Slot,
+    /// Index of the region.
+    pub region: usize,
+    /// 0, 1, 2: red, green, blue.
+    pub channel: usize,
+    /// Mean of the suspect.
+    pub suspect: f64,
+    /// Mean of the prediction.
+    pub predicted: f64,
+    /// Standard error of their difference.
+    pub std_error: f64,
+    /// p-value of no difference, not adjusted; 1 where it is rounding or nothing can be decided.
+    pub p: f64,
+}
+
+/// All comparisons of two sets of pictures.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// Every comparison.
+    pub gaps: Vec<Gap>,
+    /// The smallest p-value, adjusted for their number.
+    pub p: f64,
+    /// Index of the comparison that has it.
+    pub worst: usize,
+    /// Mean of ((S − P)/se)² over the comparisons: about 1 if P explains S.
+    pub misfit: f64,
+}
+
+impl Fit {
+    /// The comparison in which S and P are furthest apart; nothing if there was nothing to compare.
+    pub fn worst(&self) -> Option<&Gap> {
+        self.gaps.get(self.worst)
+    }
+}
+
+/// One channel of a difference a − f·b over some pixels: mean, error, and the pixels that carry it.
+pub(super) fn difference(
+    (a, b, factor): (&Layer, &Layer, f64),
+    width: usize,
+    pixels: &[usize],
+    channel: usize,
+    known: bool,
+) -> (Measured, f64) {
+    let n = pixels.len() as f64;
+    let d = |p: usize| f64::from(a.mean[p][channel]) - factor * f64::from(b.mean[p][channel]);
+    let mean = pixels.iter().map(|&p| d(p)).sum::<f64>() / n;
+    let (variance, carried, dof) = match (&a.std_error, &b.std_error) {
+        (Some(s), Some(t)) if known => {
+            let v = |p: usize| f64::from(s[p][channel]).powi(2) + (factor * f64::from(t[p][channel])).powi(2);
+            let (one, two) = pixels.iter().fold((0.0, 0.0), |acc, &p| (acc.0 + v(p), acc.1 + v(p) * v(p)));
+            // errors of pixels come from few replicates each, but many pixels are added
+            (one / (n * n), if two > 0.0 { one * one / two } else { n }, (n - 1.0).max(1.0))
+        }
+        _ => spread(&d, width, pixels),
+    };
+    (Measured { mean, std_error: variance.sqrt(), dof }, carried)
+}
+
+/// Variance of the mean of `d` over some pixels from its scatter inside blocks, the number of pixels that carry it, and the
+/// degrees of freedom.
+fn spread(d: &dyn Fn(usize) -> f64, width: usize, pixels: &[usize]) -> (f64, f64, f64) {
+    let mut blocks: std::collections::BTreeMap<usize, Vec<f64>> = std::collections::BTreeMap::new();
+    for &p in pixels {
+        blocks.entry(p / width / BLOCK * width + p % width / BLOCK).or_default().push(d(p));
+    }
+    let n = pixels.len() as f64;
+    let (mut variance, mut second, mut fourth, mut dof) = (0.0, 0.0, 0.0, 0.0);
+    for block in blocks.values() {
+        let m = block.len() as f64;
+        let mean = block.iter().sum::<f64>() / m;
+        let squares: Vec<f64> = block.iter().map(|x| (x - mean) * (x - mean)).collect();
+        let sum: f64 = squares.iter().sum();
+        // a block of one pixel has no scatter: the others stand for it
+        variance += if m > 1.0 { m * sum / (m - 1.0) } else { 0.0 };
+        dof += m - 1.0;
+        second += sum;
+        fourth += squares.iter().map(|s| s * s).sum::<f64>();
+    }
+    // of a normal variable (Σ x²)²/Σ x⁴ is n/3
+    let carried = if fourth > 0.0 { 3.0 * second * second / fourth } else { n };
+    (variance / (n * n), carried, dof.max(1.0))
+}
+
+/// Compares every slot that both have in every region.
+pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> Fit {
+    let rounding = suspect.code.rounding().max(predicted.code.rounding());
+    let mut gaps = vec![];
+    for a in &suspect.layers {
+        let Some(b) = predicted.layer(a.slot) else { continue };
+        for (r, region) in regions.iter().enumerate() {
+            for channel in 0..3 {
+                let (m, carried) = difference((a, b, 1.0), suspect.size[0], &region.pixels, channel, true);
+                let n = region.pixels.len() as f64;
+                let predicted = region.pixels.iter().map(|&p| f64::from(b.mean[p][channel])).sum::<f64>() / n;
+                let equal = m.mean.abs() <= rounding * predicted.abs();
+                let p = if equal || carried < FEW { 1.0 } else { two_sided_p(m.mean / m.std_error, m.dof) };
+                // what is not a number differs from every number
+                let p = if m.mean.is_nan() { 0.0 } else { p };
+                let suspect = m.mean + predicted;
+                gaps.push(Gap { slot: a.slot, region: r, channel, suspect, predicted, std_error: m.std_error, p });
+            }
+        }
+    }
+    let adjusted = holm(&gaps.iter().map(|g| if g.p.is_nan() { 1.0 } else { g.p }).collect::<Vec<_>>());
+    let p = adjusted.iter().copied().fold(1.0, f64::min);
+    let z = |g: &Gap| if g.p == 1.0 { 0.0 } else { ((g.suspect - g.predicted) / g.std_error).abs().min(1e6) };
+    let by = |a: &usize, b: &usize| gaps[*a].p.total_cmp(&gaps[*b].p).then(z(&gaps[*b]).total_cmp(&z(&gaps[*a])));
+    let worst = (0..gaps.len()).min_by(by).unwrap_or(0);
+    let misfit = gaps.iter().map(|g| z(g) * z(g)).sum::<f64>() / gaps.len().max(1) as f64;
+    Fit { gaps, p, worst, misfit }
+}
+
+/// Ratio of the means of two layers over some pixels, channels averaged, with its standard error: of S/P from the scatter of
+/// S − r P. NaN where P is zero.
+pub fn ratio(suspect: &Layer, predicted: &Layer, width: usize, pixels: &[usize]) -> Measured {
+    let grey = |layer: &Layer| Layer {
+        slot: layer.slot,
+        mean: layer.mean.iter().map(|v| [(v[0] + v[1] + v[2]) / 3.0; 3]).collect(),
+        // channels of one path share their noise: at worst all of it
+        std_error: layer.std_error.as_ref().map(|s| s.iter().map(|v| [(v[0] + v[1] + v[2]) / 3.0; 3]).collect()),
+    };
+    let (a, b) = (grey(suspect), grey(predicted));
+    let mean = |l: &Layer| pixels.iter().map(|&p| f64::from(l.mean[p][0])).sum::<f64>() / pixels.len() as f64;
+    let (below, above) = (mean(&b), mean(&a));
+    let r = above / below;
+    let (m, _) = difference((&a, &b, r), width, pixels, 0, true);
+    Measured { mean: r, std_error: m.std_error / below.abs(), dof: m.dof }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::picture::Code;
+    use crate::diagnosis::regions::grid;
+    use crate::math::{Key, Purpose, Rng};
+
+    fn noisy(seed: u64, level: f32, errors: bool) -> Pictures {
+        let key = Key::new(seed, "noise");
+        let mean = (0..1024).map(|p| [level + 0.1 * (Rng::at(key, p, 0, 0, Purpose::Start).one() - 0.5); 3]);
+        let layer = Layer {
+            slot: Slot::Whole,
+            mean: mean.collect(),
+            std_error: errors.then(|| vec![[0.1 / 12.0f32.sqrt(); 3]; 1024]),
+        };
+        Pictures { size: [32, 32], layers: vec![layer], code: Code::Float }
+    }
+
+    #[test]
+    fn known_and_estimated_errors_agree_and_find_a_shift() {
+        let regions = grid([32, 32]);
+        for errors in [true, false] {
+            let (a, b) = (noisy(1, 1.0, errors), noisy(2, 1.0, errors));
+            let fit = compare(&a, &b, &regions);
+            assert!(fit.p > 1e-3, "{}", fit.p);
+            let expected = 0.1 / 12.0f64.sqrt() * (2.0f64 / 1024.0).sqrt();
+            assert!((fit.gaps[0].std_error / expected - 1.0).abs() < 0.1);
+            let shifted = compare(&noisy(3, 1.02, errors), &b, &regions);
+            assert!(shifted.p < 1e-6);
+            assert!(shifted.worst().is_some_and(|g| g.region == 0 && g.suspect > g.predicted));
+            let r = ratio(&noisy(3, 2.0, errors).layers[0], &b.layers[0], 32, &regions[0].pixels);
+            assert!((r.mean - 2.0).abs() < 5.0 * r.std_error && r.std_error < 0.01);
+        }
+    }
+
+    #[test]
+    fn one_bright_pixel_decides_nothing_and_nan_decides_all() {
+        let regions = grid([32, 32]);
+        let (mut a, b) = (noisy(1, 1.0, false), noisy(2, 1.0, false));
+        a.layers[0].mean[77] = [1e6; 3];
+        assert_eq!(compare(&a, &b, &regions[..1]).p, 1.0);
+        a.layers[0].mean[77] = [f32::NAN; 3];
+        assert_eq!(compare(&a, &b, &regions[..1]).p, 0.0);
+    }
+}
