@@ -8,6 +8,7 @@
 pub mod args;
 mod chapter;
 mod compare;
+mod diagnose;
 mod facts;
 mod guard;
 mod info;
@@ -80,6 +81,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Render(run)) => solve::render(run),
         Some(Command::Radiosity(run)) => solve::radiosity(run),
         Some(Command::Compare(args)) => compare::run(args),
+        Some(Command::Diagnose(args)) => diagnose::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
         Some(Command::Info(args)) => info::run(args),
         Some(Command::Chapter(args)) => chapter::run(args),

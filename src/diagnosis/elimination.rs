@@ -7,7 +7,7 @@
 //! A true explanation is struck off with probability α at most, however many candidates there are: each is tested by itself, and
 //! its level is shared by the stages. What stays is a list of all explanations that the data cannot tell apart.
 
-use super::gap::{Fit, compare};
+use super::gap::{Fit, compare, ratio};
 use super::picture::{Pictures, Slot};
 use super::regions::Region;
 
@@ -41,12 +41,21 @@ pub struct Effort {
     pub paths: u64,
     /// Stages.
     pub stages: u32,
+    /// Whether the exposure of the suspect is unknown: then every candidate is brought to its brightness first.
+    pub any_gain: bool,
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { first: 16, paths: 6_000_000, stages: 4 }
+        Self { first: 16, paths: 6_000_000, stages: 4, any_gain: false }
     }
+}
+
+/// The prediction at the brightness of the suspect, by the mean of its whole image, or of its first picture.
+pub(super) fn same_brightness(suspect: &Pictures, predicted: Pictures, regions: &[Region]) -> Pictures {
+    let pair = suspect.layers.iter().rev().find_map(|a| Some((a, predicted.layer(a.slot)?)));
+    let gain = pair.map_or(1.0, |(a, b)| ratio(a, b, suspect.size[0], &regions[0].pixels).mean);
+    if gain.is_finite() && gain > 0.0 { predicted.times(gain) } else { predicted }
 }
 
 /// Strikes off candidates; the best fit first, those that stayed before those that did not.
@@ -73,6 +82,7 @@ pub fn eliminate(
         tried.retain(|t| t.rejected);
         for name in std::mem::take(&mut alive) {
             let Some(predicted) = candidates.pictures(&name, spp) else { continue };
+            let predicted = if effort.any_gain { same_brightness(&suspect, predicted, regions) } else { predicted };
             let fit = compare(&suspect, &predicted, regions);
             let rejected = fit.p < level;
             if !rejected {

@@ -10,13 +10,14 @@
 //! | comparison | means of regions, t-tests adjusted by Holm | [`gap`], [`regions`] |
 //! | evidence | ratios, flatness in space, counts, noise | [`evidence`], [`series`] |
 //! | patterns | rules for r_k with one fitted number | [`pattern`] |
-//! | simulations | every member of the zoo on the same scene | [`elimination`] |
+//! | simulations | every member of the zoo on the same scene | [`elimination`], [`candidates`] |
 //! | decision | an ordered list of small rules, then the short list | [`rules`], [`diagnose`] |
 //!
 //! *Correct* means: not told apart from the reference, and a uniform bias above a stated size would have been. Ratios per bounce
 //! as a diagnostic follow the practice of rendering the terms one by one (Arvo and Kirk 1990 for the roulette rows; Veach 1997
 //! for the measures).
 
+pub mod candidates;
 pub mod elimination;
 pub mod evidence;
 pub mod gap;
@@ -96,6 +97,8 @@ pub struct Case<'a> {
     pub seen: &'a [Region],
     /// What was counted in the original pictures.
     pub counts: Counts,
+    /// Pixels that tell nothing, by index; empty if all do.
+    pub mask: &'a [bool],
     /// The same render with fewer samples, the suspect itself included.
     pub by_samples: &'a [(u32, Pictures)],
     /// The same scene scaled by a factor, rendered by the suspect.
@@ -106,6 +109,17 @@ pub struct Case<'a> {
     pub alpha: f64,
     /// How much may be simulated.
     pub effort: Effort,
+}
+
+impl Case<'_> {
+    /// A prediction at the brightness of the suspect where its exposure is unknown.
+    fn brightened(&self, predicted: Pictures, regions: &[Region]) -> Pictures {
+        if self.effort.any_gain {
+            elimination::same_brightness(self.suspect, predicted, regions)
+        } else {
+            predicted
+        }
+    }
 }
 
 /// Who watches a diagnosis: a stage with so many candidates begins; one is done.
@@ -125,9 +139,10 @@ impl Watch for Unwatched {
 
 /// Finds out what is wrong, if anything.
 pub fn diagnose(case: &Case, watch: &dyn Watch) -> Diagnosis {
-    let size = case.suspect.size;
-    let grid = regions::grid(size);
-    let all: Vec<Region> = grid.iter().chain(case.seen).cloned().collect();
+    let grid = regions::without(regions::grid(case.suspect.size), case.mask);
+    let all = regions::without(grid.iter().chain(case.seen).cloned().collect(), case.mask);
+    let reference = case.brightened(case.reference.clone(), &grid);
+    let case = &Case { reference: &reference, ..*case };
     let fit = compare(case.suspect, case.reference, &all);
     let evidence = evidence::collect(case.suspect, case.reference, &all, case.counts);
     let samples = series::by_samples(case.by_samples, case.reference, &grid[0]).filter(|s| s.means.len() > 1);
@@ -153,7 +168,7 @@ pub fn diagnose(case: &Case, watch: &dyn Watch) -> Diagnosis {
         }
         _ => vec![],
     };
-    let suspects = short_list(named, &tried, broken || alone);
+    let suspects = short_list(named, &tried, &evidence, broken || alone);
     let wrong = rejected || !suspects.is_empty();
     let candidates = tried.iter().map(|t| Candidate {
         name: t.name.clone(),
@@ -181,6 +196,9 @@ fn patterns(case: &Case, grid: &[Region], all: &[Region]) -> Vec<(Pattern, Optio
     let last = case.reference.last_term().unwrap_or(0);
     let mut found = vec![];
     for pattern in Pattern::all(last) {
+        if case.effort.any_gain && pattern == Pattern::Everything {
+            continue;
+        }
         let constant = if pattern.has_constant() {
             match pattern.fit(&suspect, case.reference, grid) {
                 Some(c) => Some(c),
@@ -190,6 +208,7 @@ fn patterns(case: &Case, grid: &[Region], all: &[Region]) -> Vec<(Pattern, Optio
             None
         };
         let predicted = pattern.predict(case.reference, &slots, constant.map_or(1.0, |c| c.value));
+        let predicted = case.brightened(predicted, grid);
         let fit = compare(&suspect, &predicted, all);
         // a shift has nothing to show for the last slot; all others must explain everything
         let compared = predicted.layers.len() + usize::from(matches!(pattern, Pattern::Shift(_)));
@@ -202,7 +221,7 @@ fn patterns(case: &Case, grid: &[Region], all: &[Region]) -> Vec<(Pattern, Optio
 }
 
 /// Simulations that stayed, then patterns; pieces of evidence only where neither explains it.
-fn short_list(named: Vec<Suspicion>, tried: &[Tried], certain: bool) -> Vec<Suspicion> {
+fn short_list(named: Vec<Suspicion>, tried: &[Tried], evidence: &Evidence, certain: bool) -> Vec<Suspicion> {
     if certain {
         return named.into_iter().filter(|s| s.basis == Basis::Points).take(1).collect();
     }
@@ -216,6 +235,7 @@ fn short_list(named: Vec<Suspicion>, tried: &[Tried], certain: bool) -> Vec<Susp
             next: hint.map_or(String::new(), |s| s.next.clone()),
             p: t.fit.p,
             misfit: t.fit.misfit,
+            curve: curve(&t.fit, evidence),
         });
     }
     let patterns: Vec<Suspicion> = named.iter().filter(|s| s.basis == Basis::Pattern).cloned().collect();
@@ -228,6 +248,17 @@ fn short_list(named: Vec<Suspicion>, tried: &[Tried], certain: bool) -> Vec<Susp
         list = named.into_iter().filter(|s| s.basis == Basis::Points).collect();
     }
     list
+}
+
+/// The r_k that a simulation predicts.
+fn curve(fit: &gap::Fit, evidence: &Evidence) -> Vec<[f64; 2]> {
+    let term = |r: &evidence::Ratio| {
+        let Slot::Term(k) = r.slot else { return None };
+        let image = fit.gaps.iter().filter(|g| g.slot == r.slot && g.region == 0);
+        let predicted = image.map(|g| g.predicted).sum::<f64>() / 3.0;
+        Some([k as f64, predicted / r.means[1]]).filter(|p| p[1].is_finite())
+    };
+    evidence.ratios.iter().filter_map(term).collect()
 }
 
 /// The comparison that says most, in words.

@@ -38,6 +38,21 @@ pub fn grid([w, h]: [usize; 2]) -> Vec<Region> {
     regions
 }
 
+/// The regions without the pixels of a mask (empty: none); the first one stays whatever is left of it.
+pub fn without(regions: Vec<Region>, mask: &[bool]) -> Vec<Region> {
+    let left = |r: Region| Region {
+        pixels: r.pixels.into_iter().filter(|&p| !mask.get(p).copied().unwrap_or(false)).collect(),
+        ..r
+    };
+    let mut all: Vec<Region> = regions.into_iter().map(left).collect();
+    let mut at = 0;
+    all.retain(|r| {
+        at += 1;
+        at == 1 || r.pixels.len() >= FEWEST
+    });
+    all
+}
+
 /// What the camera of a scene sees, as sets of pixels; those with too few pixels are left out.
 pub fn seen(scene: &Scene) -> Vec<Region> {
     let [w, h] = scene.camera.size.map(|s| s as usize);

@@ -49,6 +49,8 @@ pub struct Suspicion {
     pub p: f64,
     /// Mean squared deviation in standard errors.
     pub misfit: f64,
+    /// k and the r_k that it predicts, where it predicts any.
+    pub curve: Vec<[f64; 2]>,
 }
 
 /// What a rule may look at.
@@ -81,7 +83,7 @@ pub const RULES: [fn(&Facts) -> Vec<Suspicion>; 10] = [
 
 fn points(name: &str, why: String, next: &str) -> Vec<Suspicion> {
     let (why, next) = (why, next.to_owned());
-    vec![Suspicion { name: name.into(), basis: Basis::Points, why, next, p: f64::NAN, misfit: f64::NAN }]
+    vec![Suspicion { name: name.into(), basis: Basis::Points, why, next, p: f64::NAN, misfit: f64::NAN, curve: vec![] }]
 }
 
 fn not_a_number(f: &Facts) -> Vec<Suspicion> {
@@ -154,7 +156,14 @@ fn no_sum_of_its_terms(f: &Facts) -> Vec<Suspicion> {
 }
 
 fn patterns(f: &Facts) -> Vec<Suspicion> {
-    f.patterns.iter().flat_map(|&(pattern, c, p, misfit)| named(pattern, c, p, misfit)).collect()
+    let curve = |pattern: Pattern, c: Option<Constant>| -> Vec<[f64; 2]> {
+        let terms = f.evidence.ratios.iter().filter_map(|r| if let Slot::Term(k) = r.slot { Some(k) } else { None });
+        let shifted = matches!(pattern, Pattern::Shift(_));
+        let known = terms.filter(|_| !shifted);
+        known.map(|k| [k as f64, pattern.factor(k, c.map_or(1.0, |c| c.value))]).collect()
+    };
+    let all = f.patterns.iter().map(|&(pattern, c, p, misfit)| (named(pattern, c, p, misfit), curve(pattern, c)));
+    all.flat_map(|(list, curve)| list.into_iter().map(move |s| Suspicion { curve: curve.clone(), ..s })).collect()
 }
 
 /// What a pattern with its constant is called; several where it does not tell.
@@ -172,6 +181,7 @@ fn named(pattern: Pattern, c: Option<Constant>, p: f64, misfit: f64) -> Vec<Susp
         next: next.into(),
         p,
         misfit,
+        curve: vec![],
     };
     let apart = "render it with connections only, and with hits only: which of the two is wrong?";
     match pattern {

@@ -9,6 +9,7 @@
 //! | `T00.png`, `terms.png`, `partial_00.png` | [`picture`], [`sheet`] |
 //! | z maps of `compare` | [`zmap`] |
 //! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
+//! | `diagnosis.svg` | [`diagnosis`] |
 //! | `summary.json` | [`summary`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
@@ -17,6 +18,7 @@ mod axis;
 mod base64;
 mod canvas;
 pub mod decay;
+pub mod diagnosis;
 mod error;
 pub mod exr;
 mod files;
