@@ -61,6 +61,8 @@ pub struct Evidence {
     pub brightest: f64,
     /// Scatter of neighbouring pixels over the variance that the `_se` layers claim; NaN without them.
     pub noise: f64,
+    /// Samples per pixel with which the reference would be as noisy; NaN if not known.
+    pub samples: f64,
     /// Where the errors come from.
     pub errors: &'static str,
     /// Names of the regions.
@@ -77,7 +79,14 @@ impl Evidence {
 }
 
 /// Collects the evidence; `counts` come from the pictures before anything was averaged.
-pub fn collect(suspect: &Pictures, reference: &Pictures, regions: &[Region], counts: Counts) -> Evidence {
+/// `reference_spp` is NaN where it is not known.
+pub fn collect(
+    suspect: &Pictures,
+    reference: &Pictures,
+    regions: &[Region],
+    counts: Counts,
+    reference_spp: f64,
+) -> Evidence {
     let width = suspect.size[0];
     let one = |l: &Layer| -> Option<Ratio> {
         let right = reference.layer(l.slot)?;
@@ -102,6 +111,7 @@ pub fn collect(suspect: &Pictures, reference: &Pictures, regions: &[Region], cou
         sum: sum(suspect, &regions[0]),
         brightest: brightest(suspect, reference),
         noise: noise(suspect, reference, &regions[0]),
+        samples: reference_spp * samples(suspect, reference, &regions[0]),
         errors: if known { "the _se layers" } else { "the scatter of neighbouring pixels about the reference" },
         regions: regions.iter().map(|r| r.name.clone()).collect(),
         likeness: likeness(suspect, reference),
@@ -164,6 +174,23 @@ fn noise(suspect: &Pictures, reference: &Pictures, image: &Region) -> f64 {
     };
     let all = suspect.layers.iter().filter(|l| matches!(l.slot, Slot::Term(k) if k > 0)).filter_map(one);
     all.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(f64::NAN, |a| a.1)
+}
+
+/// Samples of the suspect over those of the reference, by their noise: in the noisiest slot of reflected light, else in the whole.
+fn samples(suspect: &Pictures, reference: &Pictures, image: &Region) -> f64 {
+    let one = |l: &Layer| {
+        let right = reference.layer(l.slot)?;
+        right.std_error.as_ref()?;
+        let width = suspect.size[0];
+        let r = ratio(l, right, width, &image.pixels).mean;
+        let found = difference((l, right, r), width, &image.pixels, 1, false).0.std_error.powi(2);
+        let nothing = Layer { std_error: Some(vec![[0.0; 3]; right.mean.len()]), ..right.clone() };
+        let own = difference((&nothing, right, r), width, &image.pixels, 1, true).0.std_error.powi(2);
+        (own > 0.0 && found > own).then(|| (own, own / (found - own)))
+    };
+    let reflected = suspect.layers.iter().filter(|l| matches!(l.slot, Slot::Term(k) if k > 0)).filter_map(one);
+    let best = reflected.max_by(|a, b| a.0.total_cmp(&b.0));
+    best.or_else(|| one(suspect.layer(Slot::Whole)?)).map_or(f64::NAN, |a| a.1)
 }
 
 /// Correlation of log luminance with the reference as it stands, mirrored left to right, upside down.

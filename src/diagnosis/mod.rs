@@ -93,6 +93,8 @@ pub struct Case<'a> {
     pub suspect: &'a Pictures,
     /// The right terms, of the same size.
     pub reference: &'a Pictures,
+    /// Samples per pixel of the reference; NaN if not known.
+    pub reference_spp: f64,
     /// What the camera sees, in addition to the regions of the image.
     pub seen: &'a [Region],
     /// What was counted in the original pictures.
@@ -144,9 +146,9 @@ pub fn diagnose(case: &Case, watch: &dyn Watch) -> Diagnosis {
     let reference = case.brightened(case.reference.clone(), &grid);
     let case = &Case { reference: &reference, ..*case };
     let fit = compare(case.suspect, case.reference, &all);
-    let evidence = evidence::collect(case.suspect, case.reference, &all, case.counts);
+    let evidence = evidence::collect(case.suspect, case.reference, &all, case.counts, case.reference_spp);
     let samples = series::by_samples(case.by_samples, case.reference, &grid[0]).filter(|s| s.means.len() > 1);
-    let scaled = case.scaled.map(|(s, p)| (s, evidence::collect(p, case.reference, &all, Counts::default())));
+    let scaled = case.scaled.map(|(s, p)| (s, evidence::collect(p, case.reference, &all, Counts::default(), f64::NAN)));
     let broken = case.counts.non_finite > 0;
     let rejected = fit.p < case.alpha;
 

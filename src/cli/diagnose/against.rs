@@ -21,7 +21,7 @@ pub struct Source {
     /// Hash of the scene.
     pub hash: String,
     description: Option<Description>,
-    run: Option<(String, Pictures)>,
+    run: Option<(String, Pictures, f64)>,
 }
 
 /// The reference for one size and one K.
@@ -30,6 +30,8 @@ pub struct Right {
     pub pictures: Pictures,
     /// By which factor.
     pub factor: usize,
+    /// Its samples per pixel of the averaged picture; NaN if not known.
+    pub spp: f64,
     /// What the camera sees.
     pub seen: Vec<Region>,
     /// The scene at that size, for the candidates.
@@ -87,7 +89,7 @@ fn finished(path: &Path) -> Result<Source, Failure> {
         super::super::note("note: the scene of that run cannot be loaded again; no candidates are simulated");
     }
     let label = format!("{}: {}, {} spp", path.display(), record.command, record.spp);
-    Ok(Source { name: record.scene, hash: record.scene_hash, description, run: Some((label, pictures)) })
+    Ok(Source { name: record.scene, hash: record.scene_hash, description, run: Some((label, pictures, record.spp as f64)) })
 }
 
 /// The scene that a command of this program renders.
@@ -135,7 +137,7 @@ impl Source {
             )));
         }
         match &self.run {
-            Some((_, pictures)) if pictures.size != size => Err(super::size_mismatch(name, size, pictures.size)),
+            Some((_, pictures, _)) if pictures.size != size => Err(super::size_mismatch(name, size, pictures.size)),
             // a picture with a caption, a crop: the camera of the scene makes no such picture
             None => match self.description.as_ref().map(|d| d.camera.size.map(|s| s as usize)) {
                 Some([w, h]) if size[0] * h != size[1] * w => Err(Failure::Input(format!(
@@ -159,9 +161,10 @@ impl Source {
             Scene::new(&d)
         });
         let seen = scene.as_ref().map_or(vec![], regions::seen);
-        if let Some((label, pictures)) = &self.run {
+        if let Some((label, pictures, samples)) = &self.run {
             let pictures = pictures.shrunk(factor);
-            return Ok(Right { pictures, factor, seen, scene, label: label.clone(), luck: None });
+            let spp = *samples * (factor * factor) as f64;
+            return Ok(Right { pictures, factor, spp, seen, scene, label: label.clone(), luck: None });
         }
         let scene = scene.ok_or_else(|| Failure::Input("error: no scene\nhelp: give one to --against".into()))?;
         let pixels = u64::from(small[0]) * u64::from(small[1]);
@@ -179,7 +182,8 @@ impl Source {
         }
         let luck = result.series.by_luck.first().cloned();
         let label = format!("{}, {}, k ≤ {max_bounces}, {spp} spp at {}×{}", self.name, result.series.label, small[0], small[1]);
-        Ok(Right { pictures: Pictures::of(&result, small), factor, seen, scene: Some(scene), label, luck })
+        let spp = f64::from(result.spp);
+        Ok(Right { pictures: Pictures::of(&result, small), factor, spp, seen, scene: Some(scene), label, luck })
     }
 }
 

@@ -108,6 +108,10 @@ pub struct Found {
     pub any_gain: bool,
     /// Layers that were not understood.
     pub ignored: Vec<String>,
+    /// Samples per pixel as the file tells them.
+    pub told: Option<f64>,
+    /// Factor by which pictures were averaged down.
+    pub factor: usize,
     /// The rest.
     pub diagnosis: Diagnosis,
 }
@@ -178,7 +182,7 @@ fn size_mismatch(name: &str, [a, b]: [usize; 2], [w, h]: [usize; 2]) -> Failure 
 
 /// K of the reference: that of the suspect.
 fn last_term(args: &Diagnose, file: &File) -> usize {
-    let told = || file.attributes.get("max_bounces").and_then(|k| k.parse().ok());
+    let told = || file.attribute("max_bounces").and_then(|k| k.parse().ok());
     let asked = args.max_bounces.map(usize::from);
     file.pictures.last_term().or(asked).or_else(told).unwrap_or(8)
 }
@@ -261,6 +265,7 @@ fn one(
     let case = Case {
         suspect: &pictures,
         reference: &right.pictures,
+        reference_spp: right.spp,
         seen: &right.seen,
         counts: evidence::count(&file.pictures, &right.pictures, file.clipped),
         mask: &mask,
@@ -272,7 +277,9 @@ fn one(
     };
     let diagnosis = diagnosis::diagnose(&case, watch);
     let terms = pictures.last_term().is_some();
-    Found { name: suspect.name.clone(), terms, any_gain, ignored: file.ignored.clone(), diagnosis }
+    let told = file.attribute("spp").and_then(|n| n.parse().ok());
+    let (name, ignored) = (suspect.name.clone(), file.ignored.clone());
+    Found { name, terms, any_gain, ignored, told, factor: right.factor, diagnosis }
 }
 
 /// A pixel of the small picture is masked if any of its own or of its neighbours' pixels is: noise decides which of them

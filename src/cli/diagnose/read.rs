@@ -27,6 +27,14 @@ pub struct File {
     pub ignored: Vec<String>,
 }
 
+impl File {
+    /// What the file says of itself under a name, ours or anybody's.
+    pub fn attribute(&self, name: &str) -> Option<&str> {
+        let ours = format!("fredholm.{name}");
+        self.attributes.get(&ours).or_else(|| self.attributes.get(name)).map(String::as_str)
+    }
+}
+
 /// Reads an EXR, PNG, JPEG or HDR file.
 pub fn file(path: &Path) -> Result<File, Failure> {
     let bytes = std::fs::read(path).map_err(|e| wrong(path, &e.to_string(), "check the name, or render it first"))?;

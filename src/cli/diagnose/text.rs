@@ -144,6 +144,14 @@ fn evidence(f: &Found) -> String {
         out += &format!("{:<6} {a:>10} {b:>10} {value:>8}  {half:>8}   {flat}\n", r.slot.to_string());
     }
     let mut facts = vec![format!("errors of the suspect: from {}", e.errors)];
+    let samples = e.samples / (f.factor * f.factor) as f64;
+    if samples.is_finite() && d.verdict == Verdict::Correct {
+        let mut line = format!("its noise is that of about {} samples per pixel of the reference", significant(samples, 2));
+        if let Some(told) = f.told.filter(|told| *told > 2.5 * samples) {
+            line += &format!("; the file says {told}: a noisier way of sampling, or the same random numbers again. Two files with different samples per pixel would tell");
+        }
+        facts.push(line);
+    }
     if f.any_gain {
         facts.push("exposure unknown: brought to the brightness of the reference, so a uniform factor cannot be seen".into());
     }
