@@ -25,7 +25,7 @@
 //! Data flows one way, and so do imports:
 //!
 //! ```text
-//! math → scene → terms → operator → estimator | solver → stats → worlds → report
+//! math → scene → terms → operator → estimator | solver → stats → worlds → zoo → report
 //! ```
 //!
 //! One scene, solved two ways, in a few lines:
@@ -55,3 +55,4 @@ pub mod solver;
 pub mod stats;
 pub mod terms;
 pub mod worlds;
+pub mod zoo;

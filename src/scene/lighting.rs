@@ -16,15 +16,15 @@ use super::{ESCAPED, LIGHT, Scene, Vertex, connection, solid_angle};
 use glam::Vec3;
 
 /// What next-event estimation chose.
-pub(crate) struct LightSample {
+pub struct LightSample {
     /// On the light, leaving towards the receiver.
-    pub(crate) state: Vertex,
+    pub state: Vertex,
     /// Unit direction from the receiver.
-    pub(crate) to: Vec3,
+    pub to: Vec3,
     /// Density in solid angle; r² P for a point and P for a direction, so that f cos θ/pdf is the weight in every case.
-    pub(crate) pdf: f32,
+    pub pdf: f32,
     /// Whether it has an area, so that a ray can hit it.
-    pub(crate) can_be_hit: bool,
+    pub can_be_hit: bool,
 }
 
 impl Scene {
@@ -32,10 +32,17 @@ impl Scene {
     /// hidden; nothing where the receiver is the light and cannot see itself.
     #[inline(always)]
     pub(crate) fn sample_light(&self, at: &Vertex, u: [f32; 4]) -> Option<LightSample> {
+        // a density that is not positive: the light's front looks away; infinite: it is seen from exactly beside it
+        self.propose_light(at, u).filter(|sample| sample.pdf > 0.0 && sample.pdf < f32::INFINITY)
+    }
+
+    /// The same before anybody looks at its density, which is negative where the light's front looks away.
+    #[inline(always)]
+    pub(crate) fn propose_light(&self, at: &Vertex, u: [f32; 4]) -> Option<LightSample> {
         let x = at.p;
         let light = self.lights.choose(u[0]);
         let probability = self.lights.probability(light);
-        let sample = match self.lights.lights[light as usize] {
+        Some(match self.lights.lights[light as usize] {
             // rounding must not let a convex light shine on itself
             Light::Ball { prim, .. } if prim == at.side / 2 => return None,
             Light::Point { position, .. } => {
@@ -69,9 +76,7 @@ impl Scene {
                 None => self.by_area(x, prim, [u[2], u[3]]),
             },
             Light::Surface { .. } => self.by_area(x, self.lights.primitive(light, u[1])?, [u[2], u[3]]),
-        };
-        // a density that is not positive: the light's front looks away; infinite: it is seen from exactly beside it
-        (sample.pdf > 0.0 && sample.pdf < f32::INFINITY).then_some(sample)
+        })
     }
 
     /// A point of a primitive, uniformly by area. The density is not positive where the front looks away.

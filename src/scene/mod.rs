@@ -28,6 +28,7 @@ pub mod vertex;
 
 pub use description::Description;
 pub use error::SceneError;
+pub use lighting::LightSample;
 pub use primitive::Primitive;
 pub use sensor::{Camera, SurfaceSensor};
 pub use vertex::{ESCAPED, LIGHT, Side, Vertex, VertexWave};

@@ -133,14 +133,14 @@ fn spread(points: Points) -> &'static str {
 }
 
 /// Paths that no roulette ends are cut at K: says so, and that nothing is known about what is longer.
-fn cut(series: &mut Series, settings: &Settings) {
+pub(crate) fn cut(series: &mut Series, settings: &Settings) {
     series.label += &format!(", k ≤ {} only", settings.max_bounces);
     series.functionals.iter_mut().for_each(|f| f.tail = Estimate::NONE);
 }
 
 /// Any estimator through any sensor.
 #[allow(clippy::too_many_arguments)] // the list of what a render is; a struct would only rename it
-pub(super) fn sample<T: Transport>(
+pub(crate) fn sample<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
     estimator: &impl TermEstimator<T>,

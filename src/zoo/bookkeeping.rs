@@ -1,0 +1,199 @@
+//! Right light, wrong books: terms lost or misnumbered, numbers cut, encoded, repeated or undefined.
+//!
+//! ```text
+//! L = Σ_k T^k E      mean of N independent samples: variance σ²/N      E[g(X)] ≠ g(E[X]) for a bent g
+//! ```
+//!
+//! In a furnace, E = 1: truncated after n it is `(1 − ρ^(n+1))/(1 − ρ)`, without direct emission `ρ/(1 − ρ)`, one bounce short `(1 − ρ^K)/(1 − ρ)`.
+
+use super::signature::unknown;
+use super::{Bug, Ends, Mistake, Stage};
+use crate::estimator::Technique;
+use crate::math::Rgb;
+
+/// The last term of `truncated`.
+const DEEPEST: usize = 3;
+/// Where `clamped` cuts.
+const CEILING: f32 = 0.5;
+/// What `gamma-before-mean` encodes with.
+const GAMMA: f32 = 2.2;
+/// How many different samples a pixel of `same-numbers` has.
+pub const DIFFERENT: u32 = 16;
+
+/// The members.
+pub static BUGS: [Bug; 8] = [
+    Bug {
+        name: "truncated",
+        what: "paths stop after three bounces, and the result is called the whole",
+        place: "loop: Σ_{k≤3} T^k E instead of Σ_k T^k E",
+        expected: "in a furnace (1 − ρ⁴)/(1 − ρ)",
+        signature: "1 up to k = 3, then 0",
+        ratio: |k| Some(if k <= DEEPEST { 1.0 } else { 0.0 }),
+        technique: Technique::Mis,
+        ends: Ends::AsSet,
+        exposed_by: Stage::CORNELL,
+        blind: Some(Stage::BLACK_ROOM),
+        spp: 64,
+        mistake: &Truncated,
+    },
+    Bug {
+        name: "one-bounce-short",
+        what: "K bounces are asked for, and the loop ends one early",
+        place: "loop: k < K instead of k ≤ K, and nothing beyond",
+        expected: "in a furnace (1 − ρ^K)/(1 − ρ)",
+        signature: "1 up to k = K − 1, then 0",
+        ratio: unknown,
+        technique: Technique::Mis,
+        ends: Ends::AsSet,
+        exposed_by: Stage::CORNELL,
+        blind: Some(Stage::BLACK_ROOM),
+        spp: 64,
+        mistake: &OneBounceShort,
+    },
+    Bug {
+        name: "off-by-one",
+        what: "terms are numbered from 1: direct emission is written as k = 1",
+        place: "numbering: T^k E in slot k + 1",
+        expected: "T^(k−1) E in place of T^k E; the whole is right",
+        signature: "0 at k = 0, then the inverse of the decay of the terms: a shifted copy",
+        ratio: unknown,
+        technique: Technique::Mis,
+        ends: Ends::AsSet,
+        exposed_by: Stage::CORNELL,
+        blind: None,
+        spp: 16,
+        mistake: &OffByOne,
+    },
+    Bug {
+        name: "emission-missing",
+        what: "the emission of what the eye sees directly is dropped",
+        place: "start: X_0 = 0 instead of E(x_0)",
+        expected: "in a furnace ρ/(1 − ρ) instead of 1/(1 − ρ)",
+        signature: "0 at k = 0, then 1",
+        ratio: |k| Some(if k == 0 { 0.0 } else { 1.0 }),
+        technique: Technique::Mis,
+        ends: Ends::AsSet,
+        exposed_by: Stage::CORNELL,
+        blind: Some(Stage::SKY_BOWL),
+        spp: 16,
+        mistake: &EmissionMissing,
+    },
+    Bug {
+        name: "clamped",
+        what: "samples are cut at 0.5 against fireflies, each term and the sum of all",
+        place: "sample: min(X, c) instead of X, c = 0.5",
+        expected: "in a furnace min(ρ^k, c) for each term, min(1/(1 − ρ), c) in all",
+        signature: "below 1 where light is bright or found by luck, nearer to 1 with k; the same at any number of samples",
+        ratio: unknown,
+        technique: Technique::Connect,
+        ends: Ends::AsSet,
+        exposed_by: Stage::CORNELL,
+        blind: Some(Stage::DIM_FURNACE),
+        spp: 16,
+        mistake: &Clamped,
+    },
+    Bug {
+        name: "gamma-before-mean",
+        what: "samples are encoded for display before they are averaged, and written as if linear",
+        place: "sample: X^(1/2.2) instead of X, each term and the sum of all",
+        expected: "in a furnace ρ^(k/2.2) for each term, (1 − ρ)^(−1/2.2) in all",
+        signature: "above 1 where samples are below 1, and growing with k; the terms do not sum to the whole",
+        ratio: unknown,
+        technique: Technique::Connect,
+        ends: Ends::AsSet,
+        exposed_by: Stage::CORNELL,
+        blind: Some(Stage::GLASS_BALL),
+        spp: 16,
+        mistake: &GammaBeforeMean,
+    },
+    Bug {
+        name: "same-numbers",
+        what: "the generator starts again every 16 samples: the same ones are drawn over and over",
+        place: "random numbers: sample i mod 16 instead of i",
+        expected: "means are right; the variance stays that of 16 samples instead of falling like 1/N",
+        signature: "1 at every k, but more samples change nothing: slope 0 instead of −1",
+        ratio: |_| Some(1.0),
+        technique: Technique::Mis,
+        ends: Ends::AsSet,
+        exposed_by: Stage::CORNELL,
+        blind: Some(Stage::FURNACE),
+        spp: 64,
+        mistake: &SameNumbers,
+    },
+    Bug {
+        name: "not-a-number",
+        what: "a light that looks away has density 0, and its 0/0 is added to the image",
+        place: "connection: f cos θ_x E/p_ω with E = 0 and p_ω = 0, instead of no sample",
+        expected: "pixels that are no number",
+        signature: "not a number wherever the front of the lamp cannot be seen",
+        ratio: unknown,
+        technique: Technique::Connect,
+        ends: Ends::AsSet,
+        exposed_by: Stage::CORNELL,
+        blind: Some(Stage::SPHERE),
+        spp: 16,
+        mistake: &NotANumber,
+    },
+];
+
+struct Truncated;
+impl Mistake for Truncated {
+    fn slot(&self, k: usize, max_bounces: usize) -> Option<usize> {
+        (k <= DEEPEST).then_some(k.min(max_bounces + 1))
+    }
+}
+
+struct OneBounceShort;
+impl Mistake for OneBounceShort {
+    fn slot(&self, k: usize, max_bounces: usize) -> Option<usize> {
+        (k < max_bounces).then_some(k)
+    }
+}
+
+struct OffByOne;
+impl Mistake for OffByOne {
+    fn slot(&self, k: usize, max_bounces: usize) -> Option<usize> {
+        Some((k + 1).min(max_bounces + 1))
+    }
+}
+
+struct EmissionMissing;
+impl Mistake for EmissionMissing {
+    fn slot(&self, k: usize, max_bounces: usize) -> Option<usize> {
+        (k > 0).then_some(k.min(max_bounces + 1))
+    }
+}
+
+struct Clamped;
+impl Mistake for Clamped {
+    fn finish(&self, value: Rgb) -> Rgb {
+        value.min(Rgb::splat(CEILING))
+    }
+    fn finishes(&self) -> bool {
+        true
+    }
+}
+
+struct GammaBeforeMean;
+impl Mistake for GammaBeforeMean {
+    fn finish(&self, value: Rgb) -> Rgb {
+        value.powf(1.0 / GAMMA)
+    }
+    fn finishes(&self) -> bool {
+        true
+    }
+}
+
+struct SameNumbers;
+impl Mistake for SameNumbers {
+    fn address(&self, pixel: u32, sample: u32) -> (u32, u32) {
+        (pixel, sample % DIFFERENT)
+    }
+}
+
+struct NotANumber;
+impl Mistake for NotANumber {
+    fn averted(&self) -> Rgb {
+        Rgb::ZERO / 0.0
+    }
+}

@@ -1,0 +1,108 @@
+//! Directions that do not have the density they are believed to have.
+//!
+//! ```text
+//! believed p = cos θ/π, weight ρ       drawn: uniform, or on a disk with radius u instead of √u, or with θ uniform
+//! ```
+//!
+//! In a furnace it does not matter where rays go, so it sees none of the members but `cosine-as-uniform`, whose weight 2ρ cos θ has the mean
+//! 4ρ/3. Under a disk of radius R at height h, d² = h² + R²: R²/d² becomes `1 − h/d`, `R/d` and `(2/π) atan(R/h)`.
+
+use super::signature::unknown;
+use super::{Bug, Ends, Mistake, Stage};
+use crate::estimator::Technique;
+use crate::math::direction::{about, cos_sin_turn, cosine_hemisphere, uniform_hemisphere};
+use crate::scene::bsdf::Sampling;
+use glam::Vec3;
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, TAU};
+
+/// The members.
+pub static BUGS: [Bug; 4] = [
+    Bug {
+        name: "uniform-as-cosine",
+        what: "directions are uniform, but weighted as if they followed the cosine",
+        place: "direction: p = 1/2π, believed cos θ/π",
+        expected: "under a disk of radius R at height h: 1 − h/d instead of R²/d², d² = h² + R²",
+        signature: "depends on the place at every k: dark where light comes from above, bright where it grazes",
+        ratio: unknown,
+        technique: Technique::Scatter,
+        ends: Ends::AsSet,
+        exposed_by: Stage::CORNELL,
+        blind: Some(Stage::FURNACE),
+        spp: 128,
+        mistake: &UniformAsCosine,
+    },
+    Bug {
+        name: "cosine-as-uniform",
+        what: "directions follow the cosine, but are weighted as if they were uniform",
+        place: "direction: p = cos θ/π, believed 1/2π",
+        expected: "in a furnace (4ρ/3)^k: 1/(1 − 4ρ/3) in all",
+        signature: "grows with k, about (4/3)^k",
+        ratio: unknown,
+        technique: Technique::Scatter,
+        ends: Ends::AtK,
+        exposed_by: Stage::CORNELL,
+        blind: Some(Stage::GLASS_BALL),
+        spp: 128,
+        mistake: &CosineAsUniform,
+    },
+    Bug {
+        name: "malley-without-root",
+        what: "the disk that is lifted to the hemisphere is sampled with radius u instead of √u",
+        place: "direction: sin θ = u instead of √u, believed p = cos θ/π",
+        expected: "under a disk of radius R at height h: R/d instead of R²/d², d² = h² + R²",
+        signature: "depends on the place at every k: bright where light comes along the normal",
+        ratio: unknown,
+        technique: Technique::Scatter,
+        ends: Ends::AsSet,
+        exposed_by: Stage::CORNELL,
+        blind: Some(Stage::FURNACE),
+        spp: 128,
+        mistake: &MalleyWithoutRoot,
+    },
+    Bug {
+        name: "uniform-theta",
+        what: "the polar angle is uniform, but weighted as if directions followed the cosine",
+        place: "direction: θ = (π/2) u instead of asin √u, believed p = cos θ/π",
+        expected: "under a disk of radius R at height h: (2/π) atan(R/h) instead of R²/d², d² = h² + R²",
+        signature: "depends on the place at every k: bright along the normal and at grazing light, dark between",
+        ratio: unknown,
+        technique: Technique::Scatter,
+        ends: Ends::AsSet,
+        exposed_by: Stage::CORNELL,
+        blind: Some(Stage::FURNACE),
+        spp: 128,
+        mistake: &UniformTheta,
+    },
+];
+
+struct UniformAsCosine;
+impl Mistake for UniformAsCosine {
+    fn direction(&self, n: Vec3, _: Sampling, u: [f32; 2]) -> (Vec3, f32) {
+        let (d, cosine) = uniform_hemisphere(n, u);
+        (d, cosine * FRAC_1_PI)
+    }
+}
+
+struct CosineAsUniform;
+impl Mistake for CosineAsUniform {
+    fn direction(&self, n: Vec3, _: Sampling, u: [f32; 2]) -> (Vec3, f32) {
+        (cosine_hemisphere(n, u).0, 1.0 / TAU)
+    }
+}
+
+struct MalleyWithoutRoot;
+impl Mistake for MalleyWithoutRoot {
+    fn direction(&self, n: Vec3, _: Sampling, u: [f32; 2]) -> (Vec3, f32) {
+        let ((cos, sin), r) = (cos_sin_turn(u[1]), u[0]);
+        let z = (1.0 - r * r).sqrt();
+        (about(n, r * cos, r * sin, z), z * FRAC_1_PI)
+    }
+}
+
+struct UniformTheta;
+impl Mistake for UniformTheta {
+    fn direction(&self, n: Vec3, _: Sampling, u: [f32; 2]) -> (Vec3, f32) {
+        let ((cos, sin), (r, z)) = (cos_sin_turn(u[1]), (FRAC_PI_2 * u[0]).sin_cos());
+        (about(n, r * cos, r * sin, z), z * FRAC_1_PI)
+    }
+}

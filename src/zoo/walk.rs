@@ -1,0 +1,247 @@
+//! The terms by one path at a time, as the lecture writes it, with a hook in every place that can go wrong.
+//!
+//! ```text
+//! α ← 1, x ← what the eye sees;                       X_0 ← E(x)
+//! for k = 1, 2, …
+//!     y ← a light point, ω its direction:             X_k ← X_k + α w_c f(ω) cos θ_x E(y) V/p_ω
+//!     a random number below q: stop;                  α ← α/(1 − q)
+//!     ω ← a direction:                                α ← α f(ω) cos θ/p,    x ← ray(x, ω)
+//!                                                     X_k ← X_k + α w_s E(x)
+//! ```
+//!
+//! Independent code on purpose, for surfaces and lights alike; it reads the addresses of random numbers that
+//! [`Prefix`](crate::estimator::Prefix) reads, so that without a [`Mistake`] the two give the same terms path by path, to
+//! rounding (`tests/zoo.rs`). Reference: Kajiya, *The Rendering Equation* (1986).
+
+use super::mistake::{Connection, Mistake};
+use crate::estimator::{Batch, Paths, Plan, TermEstimator, TermSink};
+use crate::math::direction::Frame;
+use crate::math::{Columns, Key, Purpose, Rgb, Rng};
+use crate::operator::{SceneTransport, Sensor, Transport};
+use crate::scene::bsdf::{Bsdf, Carried, diffuse::Diffuse};
+use crate::scene::{LightSample, Vertex, VertexWave, connection};
+use glam::Vec3;
+
+/// The walk with a mistake in it.
+pub struct Walk<'a> {
+    /// How far terms are kept, how light is found, how paths end.
+    pub plan: Plan,
+    /// What is wrong.
+    pub mistake: &'a dyn Mistake,
+}
+
+/// The same walk, of which only the finished sum is kept: one slot.
+pub struct Whole<'a>(pub Walk<'a>);
+
+/// A direction that was drawn, or looked at: f cos θ/p or f, its density, the normal on its side.
+struct Scattered {
+    to: Vec3,
+    normal: Vec3,
+    value: Rgb,
+    pdf: f32,
+    delta: bool,
+}
+
+impl Walk<'_> {
+    /// The terms of one path that starts at `start`, into `slots` (K + 2 of them), and the rays of each.
+    pub fn terms(
+        &self,
+        t: &SceneTransport,
+        start: Vertex,
+        key: Key,
+        (pixel, sample): (u32, u32),
+        slots: &mut [Rgb],
+        rays: &mut [u64],
+    ) {
+        let Self { plan: Plan { max_bounces, technique, roulette }, mistake } = self;
+        let (pixel, sample) = mistake.address(pixel, sample);
+        let numbers = |vertex: usize, purpose: Purpose| Rng::at(key, pixel, sample, vertex, purpose);
+        let hits = technique.hits(t);
+        let mut score = |k: usize, value: Rgb| {
+            if let Some(slot) = mistake.slot(k, *max_bounces) {
+                slots[slot] += value;
+            }
+        };
+
+        score(0, t.emission(&start));
+        let (mut alpha, mut x) = (Rgb::ONE, start);
+        for k in 1.. {
+            let (v, slot) = (k - 1, k.min(max_bounces + 1));
+            if k > *max_bounces && !roulette.ends() {
+                break;
+            }
+            // roulette: q is the probability of termination
+            let q = roulette.termination(v, alpha, t.albedo(&x));
+            let dies = || q > 0.0 && numbers(v, Purpose::Roulette).one() < q;
+            if mistake.roulette_before_light() && dies() {
+                break;
+            }
+
+            // the light is sampled
+            if technique.connects() {
+                rays[slot] += 1;
+                if let Some(value) = self.connect(t, &x, numbers(v, Purpose::Connect).four()) {
+                    score(k, alpha * value);
+                }
+            }
+            if k == *max_bounces && !hits && !roulette.ends() {
+                break;
+            }
+            if !mistake.roulette_before_light() && dies() {
+                break;
+            }
+            if q > 0.0 {
+                alpha *= mistake.survivor(1.0 - q);
+            }
+
+            // the next vertex, whose emission counts if hits do
+            rays[slot] += 1;
+            let Some(s) = self.scatter(t, &x, numbers(v, Purpose::Scatter).four()) else { break };
+            let Some(next) = t.scene.look(t.scene.lift(x.p, s.normal), s.to) else { break };
+            alpha *= s.value;
+            if hits {
+                let other = if s.delta { 0.0 } else { t.scene.light_pdf(x.p, &next) };
+                score(k, alpha * mistake.hit_share(*technique, s.pdf, other) * t.emission(&next));
+            }
+            x = next;
+        }
+    }
+
+    /// `w_c f cos θ_x E(y) V/p_ω` for the light point that four numbers choose.
+    fn connect(&self, t: &SceneTransport, at: &Vertex, u: [f32; 4]) -> Option<Rgb> {
+        let (scene, mistake) = (t.scene, self.mistake);
+        if scene.lights.is_empty() || !at.on_surface() {
+            return None;
+        }
+        let LightSample { state, to, pdf, can_be_hit } = mistake.light(scene, at, mistake.light_numbers(scene, u))?;
+
+        // geometry; of a point drawn by area, the density in solid angle is p_A r²/cos θ_y
+        let (_, r2, _, towards) = connection(at.p, at.n, state.p, state.n);
+        let by_area = state.on_surface() && scene.cone_pdf(at.p, &state).is_none();
+        let per_area = by_area.then(|| scene.light_density(state.side));
+        let cos_y = if state.on_surface() { mistake.facing(towards) } else { 1.0 };
+        let per_angle = per_area.map_or(pdf, |p| p * r2 / cos_y);
+        if !(cos_y > 0.0 && per_angle > 0.0 && per_angle < f32::INFINITY) {
+            return Some(mistake.averted());
+        }
+
+        let s = self.towards(t, at, to)?;
+        let c = Connection { light: state, r2, cos_x: s.normal.dot(to), cos_y, per_area, per_angle };
+        let side = if towards < 0.0 { -state.n } else { state.n };
+        if !mistake.visible(scene, at.p, s.normal, state.p, side) {
+            return None;
+        }
+        let share = mistake.connection_share(self.plan.technique, &c, if can_be_hit { s.pdf } else { 0.0 });
+        let weight = s.value * (mistake.receiver_cosine(c.cos_x) / mistake.density(&c));
+        Some(mistake.connection(weight * t.emission(&state) * share))
+    }
+
+    /// f towards a direction, and the density with which scattering would have drawn it.
+    fn towards(&self, t: &SceneTransport, at: &Vertex, to: Vec3) -> Option<Scattered> {
+        let cosine = at.n.dot(to);
+        let (value, pdf) = match t.scene.bsdf(at) {
+            Bsdf::Diffuse(Diffuse { reflectance }) => {
+                let f = if cosine > 0.0 { self.mistake.lambert(reflectance) } else { Rgb::ZERO };
+                (f, t.sampling.pdf(cosine))
+            }
+            bsdf => {
+                let frame = Frame::new(at.n);
+                let (wo, wi) = (frame.local(at.omega), frame.local(to));
+                (bsdf.eval(wo, wi, Carried::Radiance), bsdf.pdf(wo, wi, t.sampling))
+            }
+        };
+        let normal = if cosine > 0.0 { at.n } else { -at.n };
+        (value != Rgb::ZERO).then_some(Scattered { to, normal, value, pdf, delta: false })
+    }
+
+    /// A direction with the weight f cos θ/p.
+    fn scatter(&self, t: &SceneTransport, at: &Vertex, u: [f32; 4]) -> Option<Scattered> {
+        let frame = Frame::new(at.n);
+        let s = match t.scene.bsdf(at) {
+            Bsdf::Diffuse(Diffuse { reflectance }) => {
+                let (to, pdf) = self.mistake.direction(at.n, t.sampling, [u[0], u[1]]);
+                let value = self.mistake.bounce(self.mistake.lambert(reflectance), at.n.dot(to), pdf);
+                return (value != Rgb::ZERO).then_some(Scattered { to, normal: at.n, value, pdf, delta: false });
+            }
+            Bsdf::Dielectric(glass) => self.mistake.glass(&glass, frame.local(at.omega), u[2])?,
+            bsdf => bsdf.sample(frame.local(at.omega), t.sampling, Carried::Radiance, [u[0], u[1], u[2]])?,
+        };
+        let normal = if s.wi.z > 0.0 { at.n } else { -at.n };
+        Some(Scattered { to: frame.world(s.wi), normal, value: s.weight, pdf: s.pdf, delta: s.delta })
+    }
+
+    /// The finished terms of every path of a batch that sees something, and the rays of each slot.
+    fn each<'s>(
+        &self,
+        t: &SceneTransport<'s>,
+        sensor: &impl Sensor<SceneTransport<'s>>,
+        batch: &Batch,
+        mut keep: impl FnMut(u32, u32, &[Rgb]),
+    ) -> Vec<u64> {
+        let n = self.plan.max_bounces + 2;
+        let (mut slots, mut rays) = (vec![Rgb::ZERO; n], vec![0; n]);
+        for sample in batch.samples.clone() {
+            for pixel in batch.pixels.clone() {
+                let (p, s) = self.mistake.address(pixel, sample);
+                rays[0] += 1;
+                if let Some(start) = sensor.start(t, pixel, &mut Rng::at(batch.key, p, s, 0, Purpose::Start)) {
+                    slots.fill(Rgb::ZERO);
+                    self.terms(t, start, batch.key, (pixel, sample), &mut slots, &mut rays);
+                    keep(pixel, sample, &slots);
+                }
+            }
+        }
+        rays
+    }
+}
+
+/// Adds one number to the sink.
+fn add(sink: &mut impl TermSink, slot: usize, pixel: u32, sample: u32, value: Rgb) {
+    if value != Rgb::ZERO {
+        let mut column = Columns::new(1);
+        column.set(0, value);
+        sink.add(slot, &[pixel], &[sample], &column);
+    }
+}
+
+impl<'s> TermEstimator<SceneTransport<'s>> for Walk<'_> {
+    fn slots(&self) -> usize {
+        self.plan.max_bounces + 2
+    }
+
+    fn sample(
+        &self,
+        t: &SceneTransport<'s>,
+        sensor: &impl Sensor<SceneTransport<'s>>,
+        batch: &Batch,
+        _: &mut Paths<VertexWave>,
+        sink: &mut impl TermSink,
+    ) {
+        let rays = self.each(t, sensor, batch, |pixel, sample, slots| {
+            for (slot, &value) in slots.iter().enumerate() {
+                add(sink, slot, pixel, sample, self.mistake.finish(value));
+            }
+        });
+        rays.iter().enumerate().for_each(|(slot, &n)| sink.rays(slot, n as usize));
+    }
+}
+
+impl<'s> TermEstimator<SceneTransport<'s>> for Whole<'_> {
+    fn slots(&self) -> usize {
+        1
+    }
+
+    fn sample(
+        &self,
+        t: &SceneTransport<'s>,
+        sensor: &impl Sensor<SceneTransport<'s>>,
+        batch: &Batch,
+        _: &mut Paths<VertexWave>,
+        sink: &mut impl TermSink,
+    ) {
+        let rays = self.0.each(t, sensor, batch, |pixel, sample, slots| {
+            add(sink, 0, pixel, sample, self.0.mistake.finish(slots.iter().sum()));
+        });
+        sink.rays(0, rays.iter().sum::<u64>() as usize);
+    }
+}
