@@ -4,8 +4,7 @@
 
 use fredholm::diagnosis::candidates::{Members, own_seed};
 use fredholm::diagnosis::{
-    Basis, Case, Diagnosis, Effort, Pictures, Region, Simulate, Slot, Unwatched, Verdict, diagnose, evidence,
-    regions,
+    Basis, Case, Diagnosis, Effort, Pictures, Region, Simulate, Slot, Unwatched, Verdict, diagnose, evidence, regions,
 };
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::scene::Scene;
@@ -53,7 +52,7 @@ impl Bench {
             scaled: None,
             candidates,
             alpha,
-            effort: Effort { paths: 2_000_000, ..Effort::default() },
+            effort: Effort { paths: 4_000_000, ..Effort::default() },
         };
         diagnose(&case, &Unwatched)
     }
@@ -76,7 +75,12 @@ fn hand_in(members: &[&'static Bug], terms: bool, errors: bool, more: u32) -> Ve
     let mut stages: Vec<Stage> = members.iter().map(|b| b.exposed_by).collect();
     stages.dedup();
     let mut seen: Vec<Stage> = vec![];
-    stages.retain(|s| !seen.contains(s) && { seen.push(*s); true });
+    stages.retain(|s| {
+        !seen.contains(s) && {
+            seen.push(*s);
+            true
+        }
+    });
     let mut answers = vec![];
     for stage in stages {
         let bench = Bench::new(stage, 2048);
@@ -99,7 +103,8 @@ fn hand_in(members: &[&'static Bug], terms: bool, errors: bool, more: u32) -> Ve
             } else {
                 d.verdict == Verdict::Wrong && names.contains(&bug.name) && names.len() <= 3
             };
-            let mut line = format!("{} {:<26} {:<16} {:?}", if right { ' ' } else { '!' }, bug.name, stage.label, names);
+            let mut line =
+                format!("{} {:<26} {:<16} {:?}", if right { ' ' } else { '!' }, bug.name, stage.label, names);
             if points {
                 line += " (points)";
             }
@@ -154,9 +159,18 @@ fn right_renderers(scene: &Scene, seed: u64) -> Vec<(String, Pictures)> {
     let with = |technique, sampling| Settings { technique, sampling, ..base.clone() };
     let terms = |e, s: &Settings| Pictures::of(&sampled::terms(scene, e, s, &Unobserved, &NEVER), SIZE);
     let mut all = vec![];
-    for e in [Estimator::Prefix, Estimator::Single, Estimator::Light, Estimator::Bidirectional, Estimator::Branching { children: 2 }]
-    {
-        let s = if e == (Estimator::Branching { children: 2 }) { Settings { spp: 8, ..base.clone() } } else { base.clone() };
+    for e in [
+        Estimator::Prefix,
+        Estimator::Single,
+        Estimator::Light,
+        Estimator::Bidirectional,
+        Estimator::Branching { children: 2 },
+    ] {
+        let s = if e == (Estimator::Branching { children: 2 }) {
+            Settings { spp: 8, ..base.clone() }
+        } else {
+            base.clone()
+        };
         all.push((e.to_string(), terms(e, &s)));
     }
     for t in [Technique::Scatter, Technique::Connect, Technique::Power] {
@@ -233,7 +247,11 @@ fn an_unknown_mistake_has_no_name() {
     // a gradient of brightness from left to right: a vignette, say
     for layer in &mut suspect.layers {
         let width = SIZE[0] as usize;
-        layer.mean.iter_mut().enumerate().for_each(|(p, v)| *v = v.map(|x| x * (0.5 + (p % width) as f32 / width as f32)));
+        layer
+            .mean
+            .iter_mut()
+            .enumerate()
+            .for_each(|(p, v)| *v = v.map(|x| x * (0.5 + (p % width) as f32 / width as f32)));
     }
     let candidates = Members::new(&bench.scene, K, 0, &NEVER);
     let d = bench.judge(&suspect, Some(&candidates), 1e-3);
@@ -298,4 +316,151 @@ fn members_are_named_from_their_image_alone() {
     let members: Vec<&Bug> = names.iter().map(|n| zoo::find(n).unwrap()).collect();
     let answers = hand_in(&members, false, false, 4);
     assert!(answers.iter().all(|a| a.right), "\n{}", table(&answers));
+}
+
+// The command line.
+
+struct Said {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+fn run(desk: &tempfile::TempDir, line: &str) -> Said {
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
+    let output = command.args(line.split_whitespace()).current_dir(desk.path()).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let said = Said { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) };
+    assert!(!said.err.contains("panicked"), "{line}: {}", said.err);
+    assert!(!said.out.contains("\n\n\n"), "{line}: two blank lines in a row\n{}", said.out);
+    for l in said.out.lines().filter(|l| !l.starts_with("fredholm ") && !l.trim_start().starts_with('"')) {
+        assert!(l.chars().count() <= 100, "{l}");
+    }
+    said
+}
+
+/// Writes layers as an EXR.
+fn write_exr(desk: &tempfile::TempDir, name: &str, [w, h]: [usize; 2], layers: &[(&str, &[[f32; 3]])]) {
+    use fredholm::report::exr;
+    let layers: Vec<exr::Layer> = layers.iter().map(|&(name, pixels)| exr::Layer { name, pixels }).collect();
+    exr::write(&desk.path().join(name), w, h, &layers, &[]).unwrap();
+}
+
+const QUICK: &str = "--spp 256 --paths 400000 -q";
+
+#[test]
+fn the_command_says_correct_or_names_the_mistake() {
+    let desk = tempfile::TempDir::new().unwrap();
+    let scene = Scene::new(&Stage::CORNELL.load([16, 16]).unwrap());
+    let s = Settings { spp: 256, seed: 9, max_bounces: 3, ..Settings::default() };
+    let s = Settings { roulette: Roulette::Albedo { from: 2 }.after(3), ..s };
+    let good = sampled::terms(&scene, Estimator::Prefix, &s, &Unobserved, &NEVER);
+    let bad = zoo::render(zoo::find("missing-pi-connection").unwrap(), &scene, &s, &Unobserved, &NEVER);
+    for (file, render) in [("good.exr", &good), ("bad.exr", &bad)] {
+        let names: Vec<String> = (0..4).map(|k| format!("T{k:02}")).collect();
+        let mut layers: Vec<(&str, &[[f32; 3]])> = vec![("", &render.total.mean)];
+        layers.extend(names.iter().zip(&render.terms).map(|(n, t)| (n.as_str(), t.mean.as_slice())));
+        write_exr(&desk, file, [16, 16], &layers);
+    }
+    let said = run(&desk, &format!("diagnose good.exr --against cornell -o a {QUICK}"));
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert!(said.out.starts_with("good.exr: correct, as far as this data can tell"), "{}", said.out);
+    assert!(said.out.contains("A uniform bias above"), "{}", said.out);
+
+    let said = run(&desk, &format!("diagnose bad.exr --against cornell -o b {QUICK}"));
+    assert_eq!(said.code, 1, "{}{}", said.out, said.err);
+    assert!(said.out.starts_with("bad.exr: wrong: missing-pi-connection"), "{}", said.out);
+    for file in ["diagnosis.png", "diagnosis.svg", "diagnosis.json", "summary.json"] {
+        assert!(desk.path().join("b").join(file).is_file(), "{file}");
+    }
+    let svg = std::fs::read_to_string(desk.path().join("b/diagnosis.svg")).unwrap();
+    assert!(svg.contains("missing-pi-connection") && svg.contains("scene cornell"));
+
+    // several files: a table, and the same numbers for any number of threads
+    let line = format!("diagnose good.exr bad.exr --against cornell {QUICK}");
+    let said = run(&desk, &format!("{line} -o c -t 1"));
+    assert_eq!(said.code, 1);
+    assert!(said.out.contains("1 of 2 are wrong"), "{}", said.out);
+    let json = run(&desk, &format!("{line} --json -o c -t 2"));
+    let json: serde_json::Value = serde_json::from_str(&json.out).unwrap();
+    assert_eq!(json[1]["diagnosis"]["suspects"][0]["name"], "missing-pi-connection");
+    assert_eq!(json[0]["diagnosis"]["verdict"], "correct");
+    let stored = std::fs::read_to_string(desk.path().join("c/diagnosis.json")).unwrap();
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&stored).unwrap(), json);
+
+    // terms in files of their own, and 8 bits of unknown exposure
+    for (k, t) in good.terms.iter().enumerate() {
+        write_exr(&desk, &format!("T{k:02}.exr"), [16, 16], &[("", t.mean.as_slice())]);
+    }
+    let said = run(&desk, &format!("diagnose T00.exr T01.exr T02.exr T03.exr --against cornell -o d {QUICK}"));
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert!(said.out.contains("the terms of one render"), "{}", said.out);
+    let developed = fredholm::report::picture::develop(16, 16, &good.total.mean, 2.0);
+    developed.picture.write(&desk.path().join("good.png")).unwrap();
+    let said = run(&desk, &format!("diagnose good.png --against cornell -o e {QUICK}"));
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert!(said.out.contains("exposure unknown") && said.out.contains("end of 8 bits"), "{}", said.out);
+}
+
+#[test]
+fn growing_samples_show_what_one_picture_cannot() {
+    let desk = tempfile::TempDir::new().unwrap();
+    let scene = Scene::new(&Stage::CORNELL.load([16, 16]).unwrap());
+    for (name, bug) in [("same", Some("same-numbers")), ("gamma", Some("gamma-before-mean")), ("right", None)] {
+        for spp in [16, 64, 256] {
+            let s = settings(spp, 40 + u64::from(spp) * u64::from(bug != Some("same-numbers")));
+            let render = match bug {
+                Some(bug) => zoo::render(zoo::find(bug).unwrap(), &scene, &s, &Unobserved, &NEVER),
+                None => sampled::path(&scene, &s, &Unobserved, &NEVER),
+            };
+            write_exr(&desk, &format!("{name}_{spp}.exr"), [16, 16], &[("", render.total.mean.as_slice())]);
+        }
+        let files = [16, 64, 256].map(|n| format!("{name}_{n}.exr")).join(" ");
+        let said = run(&desk, &format!("diagnose {files} --against cornell -o {name} {QUICK}"));
+        assert!(said.out.contains("growing samples per pixel"), "{}", said.out);
+        match bug {
+            Some(bug) => {
+                assert_eq!(said.code, 1, "{}", said.out);
+                assert!(said.out.lines().next().unwrap().contains(bug), "{}", said.out);
+            }
+            None => assert_eq!(said.code, 0, "{}", said.out),
+        }
+    }
+}
+
+#[test]
+fn bad_input_is_refused_in_words() {
+    let desk = tempfile::TempDir::new().unwrap();
+    let grey = vec![[0.5f32; 3]; 64];
+    write_exr(&desk, "small.exr", [8, 8], &[("", &grey)]);
+    write_exr(&desk, "wide.exr", [16, 4], &[("", &grey)]);
+    write_exr(&desk, "tiny.exr", [2, 2], &[("", &grey[..4])]);
+    write_exr(&desk, "albedo.exr", [8, 8], &[("albedo", &grey), ("normal", &grey)]);
+    std::fs::write(desk.path().join("text.png"), "not an image").unwrap();
+    std::fs::write(desk.path().join("cut.exr"), [0x76, 0x2f, 0x31, 0x01, 2, 0]).unwrap();
+    std::fs::create_dir(desk.path().join("empty")).unwrap();
+    for (line, code, said) in [
+        ("diagnose --against cornell", 2, "required arguments were not provided"),
+        ("diagnose small.exr", 2, "--against"),
+        ("diagnose small.exr --against cornell --alpha 2", 2, "`2` is not between 0 and 1"),
+        ("diagnose small.exr --against cornell --gain -1", 2, "unexpected argument '-1'"),
+        ("diagnose small.exr --against cornell --gain=-1", 2, "`-1` is not a number from 0 on"),
+        ("diagnose small.exr --against cornell --scale 10", 2, "`10` is not SCALE=FILE"),
+        ("diagnose small.exr wide.exr --as bounces --against cornell", 2, "do not end in numbers"),
+        ("diagnose nowhere.exr --against cornell", 3, "check the name, or render it first"),
+        ("diagnose text.png --against cornell", 3, "not a readable image"),
+        ("diagnose cut.exr --against cornell", 3, "not a readable OpenEXR file"),
+        ("diagnose albedo.exr --against cornell", 3, "no layer is a term or a whole image: albedo, normal"),
+        ("diagnose tiny.exr --against cornell", 3, "too few to tell a bias from noise"),
+        ("diagnose wide.exr --against cornell", 3, "has not the shape of the scene's"),
+        ("diagnose small.exr --scale 10=wide.exr --against cornell", 3, "different sizes, 16×4 and 8×8"),
+        ("diagnose small.exr --against corneII", 3, "corneII"),
+        ("diagnose small.exr --against empty", 3, "summary.json"),
+    ] {
+        let answer = run(&desk, line);
+        assert_eq!(answer.code, code, "{line}: {}", answer.err);
+        assert!(answer.err.contains(said), "{line}: {}", answer.err);
+        assert!(answer.out.is_empty() && !desk.path().join("fredholm-out").exists(), "{line}");
+        assert!(code == 2 || answer.err.contains("help: "), "{line}: {}", answer.err);
+    }
 }

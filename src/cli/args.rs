@@ -83,7 +83,8 @@ Example:
     )]
     Compare(Compare),
     /// Somebody else's pictures: correct, or what is wrong with them
-    #[command(after_help = "The pictures are compared with the right terms, region by region. If they differ, every known mistake
+    #[command(
+        after_help = "The pictures are compared with the right terms, region by region. If they differ, every known mistake
 is rendered in the same scene, and those that the pictures contradict are struck off. What stays is
 the answer: a name, or a short list that this data cannot tell apart.
 
@@ -97,7 +98,8 @@ Examples:
   fredholm diagnose r_4.exr r_16.exr r_64.exr --against cornell         growing samples per pixel
   fredholm diagnose mine.exr --scale 10=large.exr --against cornell     the scene ten times larger
   fredholm diagnose mine.png --gain 2 --against fredholm-out/cornell
-  fredholm diagnose zoo-out/*.exr --against cornell")]
+  fredholm diagnose zoo-out/*.exr --against cornell"
+    )]
     Diagnose(super::diagnose::Diagnose),
     /// The terms for every value of one setting: cost beside gain
     #[command(after_help = "Examples:

@@ -6,6 +6,7 @@ use super::elimination::Simulate;
 use super::picture::Pictures;
 use crate::math::fnv1a;
 use crate::scene::Scene;
+use crate::worlds::sampled::Sampled;
 use crate::worlds::{Settings, Unobserved};
 use crate::zoo;
 use std::collections::BTreeMap;
@@ -18,7 +19,11 @@ pub struct Members<'a> {
     settings: Settings,
     stop: &'a AtomicBool,
     made: Mutex<BTreeMap<(String, u32), Pictures>>,
+    shown: Mutex<Option<Vec<String>>>,
 }
+
+/// Samples per pixel with which a member is held against what is right.
+const TRIAL: u32 = 8;
 
 /// A seed for what a suspect is compared with: far from any that people type.
 pub fn own_seed(seed: u64) -> u64 {
@@ -31,13 +36,28 @@ impl<'a> Members<'a> {
         let settings = Settings::default();
         let after = settings.path_roulette.clone().after(max_bounces);
         let settings = Settings { max_bounces, roulette: after, seed: own_seed(seed), ..settings };
-        Self { scene, settings, stop, made: Mutex::new(BTreeMap::new()) }
+        Self { scene, settings, stop, made: Mutex::new(BTreeMap::new()), shown: Mutex::new(None) }
+    }
+}
+
+impl Members<'_> {
+    /// Whether a member differs from the right renderer of the same plan in any pixel of the same samples.
+    fn shows(&self, bug: &zoo::Bug) -> bool {
+        let settings = Settings { spp: TRIAL, ..self.settings.clone() };
+        let plan = bug.plan(&settings);
+        let render = |mistake| zoo::of(&plan, mistake, "trial", self.scene, &settings, &Unobserved, self.stop);
+        let (wrong, right) = (render(bug.mistake), render(&zoo::Right));
+        let means = |s: &Sampled| s.terms.iter().chain([&s.tail, &s.total]).map(|i| i.mean.clone()).collect::<Vec<_>>();
+        means(&wrong) != means(&right)
     }
 }
 
 impl Simulate for Members<'_> {
+    /// Those that this scene can show: with the same random numbers they differ from what is right.
     fn names(&self) -> Vec<String> {
-        zoo::all().iter().map(|bug| bug.name.to_owned()).collect()
+        let mut shown = self.shown.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let all = || zoo::all().into_iter().filter(|bug| self.shows(bug)).map(|bug| bug.name.to_owned()).collect();
+        shown.get_or_insert_with(all).clone()
     }
 
     fn pictures(&self, name: &str, spp: u32) -> Option<Pictures> {

@@ -1,11 +1,11 @@
 //! Explanations by simulation: every candidate renders the same scene, and those that the suspect contradicts are struck off.
 //!
 //! ```text
-//! candidate c stays while  p(S, P_c) ≥ α/stages        stages: ever more samples for ever fewer candidates
+//! candidate c stays while  p(S, P_c) ≥ α_i        Σ α_i = α        stages i: ever more samples for ever fewer candidates
 //! ```
 //!
 //! A true explanation is struck off with probability α at most, however many candidates there are: each is tested by itself, and
-//! its level is shared by the stages. What stays is a list of all explanations that the data cannot tell apart.
+//! its level is shared by the stages, of which the first, where samples are few and no t-test is quite right, gets a thousandth. What stays is a list of all explanations that the data cannot tell apart.
 
 use super::gap::{Fit, compare, ratio};
 use super::picture::{Pictures, Slot};
@@ -51,6 +51,9 @@ impl Default for Effort {
     }
 }
 
+/// Share of the level that the first stage has.
+const FIRST: f64 = 1e-3;
+
 /// The prediction at the brightness of the suspect, by the mean of its whole image, or of its first picture.
 pub(super) fn same_brightness(suspect: &Pictures, predicted: Pictures, regions: &[Region]) -> Pictures {
     let pair = suspect.layers.iter().rev().find_map(|a| Some((a, predicted.layer(a.slot)?)));
@@ -71,7 +74,8 @@ pub fn eliminate(
     // a tail is what each renderer takes for it: its length depends on where paths end
     let suspect = suspect.only(|s| s != Slot::Tail);
     let pixels = (suspect.size[0] * suspect.size[1]) as u64;
-    let level = alpha / f64::from(effort.stages);
+    let later = f64::from(effort.stages.max(2) - 1);
+    let level = |stage: u32| alpha * if stage == 0 { FIRST } else { (1.0 - FIRST) / later };
     let (mut alive, mut tried) = (candidates.names(), Vec::<Tried>::new());
     for stage in 0..effort.stages {
         let spp = effort.first * 4u32.pow(stage);
@@ -84,7 +88,7 @@ pub fn eliminate(
             let Some(predicted) = candidates.pictures(&name, spp) else { continue };
             let predicted = if effort.any_gain { same_brightness(&suspect, predicted, regions) } else { predicted };
             let fit = compare(&suspect, &predicted, regions);
-            let rejected = fit.p < level;
+            let rejected = fit.p < level(stage);
             if !rejected {
                 alive.push(name.clone());
             }

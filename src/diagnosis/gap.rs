@@ -9,13 +9,15 @@
 //! | S, P | the suspect, and what an explanation predicts | arguments of [`compare`] |
 //! | se(d) | from the `_se` layers of both; else from how S − P scatters inside blocks of 8 × 8 pixels | [`spread`] |
 //! | r | ratio of means, with its error by the same rule for S − r P | [`ratio`] |
+//! | κ | variance over mean of the whole image, per pixel: the least that is believed of any region | [`compare`] |
 //! | n_eff | (Σ v)²/Σ v² of the pixel variances: how many pixels carry the noise | [`Gap::p`] |
 //!
 //! The local scatter holds the noise of both sides and, where the explanation is wrong in shape, that misfit too: it is too
-//! large rather than too small, so a noisy difference is not taken for a bias. Where fewer than ten pixels carry the noise the
+//! large rather than too small, so a noisy difference is not taken for a bias. Noise of rare hits is as their number: a region
+//! that by chance had none looks dark and certain, and κ times its mean mends that. Where fewer than ten pixels carry the noise the
 //! t-test is not to be trusted, and nothing is rejected. Pixels are taken as independent. Welch (1947); Holm (1979).
 
-use super::picture::{Layer, Pictures, Slot};
+use super::picture::{Code, Layer, Pictures, Slot};
 use super::regions::Region;
 use crate::stats::{Measured, holm, two_sided_p};
 
@@ -61,6 +63,22 @@ impl Fit {
     pub fn worst(&self) -> Option<&Gap> {
         self.gaps.get(self.worst)
     }
+}
+
+/// Whether the two differ where neither has noise: at least four pixels whose difference is that of their neighbours to the
+/// right and below, and more than rounding. Noise does not repeat itself to the last digit.
+fn differs_without_noise(a: &Layer, b: &Layer, width: usize, pixels: &[usize], channel: usize, rounding: f64) -> bool {
+    let value = |l: &Layer, p: usize| f64::from(l.mean[p][channel]);
+    let certain = |&p: &usize| {
+        if (p + 1) % width == 0 || p + width >= a.mean.len() {
+            return false;
+        }
+        let d = value(a, p) - value(b, p);
+        let size = value(a, p).abs().max(value(b, p).abs());
+        let same = |q: usize| (value(a, q) - value(b, q) - d).abs() <= 1e-6 * size;
+        d.abs() > rounding * size && same(p + 1) && same(p + width)
+    };
+    pixels.iter().filter(|p| certain(p)).count() >= 4
 }
 
 /// One channel of a difference a − f·b over some pixels: mean, error, and the pixels that carry it.
@@ -114,20 +132,34 @@ fn spread(d: &dyn Fn(usize) -> f64, width: usize, pixels: &[usize]) -> (f64, f64
 /// Compares every slot that both have in every region.
 pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> Fit {
     let rounding = suspect.code.rounding().max(predicted.code.rounding());
+    let (width, exact) = (suspect.size[0], suspect.code != Code::EightBit);
     let mut gaps = vec![];
     for a in &suspect.layers {
         let Some(b) = predicted.layer(a.slot) else { continue };
-        for (r, region) in regions.iter().enumerate() {
-            for channel in 0..3 {
-                let (m, carried) = difference((a, b, 1.0), suspect.size[0], &region.pixels, channel, true);
+        for channel in 0..3 {
+            let mut kappa = 0.0;
+            for (r, region) in regions.iter().enumerate() {
+                let (m, carried) = difference((a, b, 1.0), width, &region.pixels, channel, true);
                 let n = region.pixels.len() as f64;
                 let predicted = region.pixels.iter().map(|&p| f64::from(b.mean[p][channel])).sum::<f64>() / n;
-                let equal = m.mean.abs() <= rounding * predicted.abs();
-                let p = if equal || carried < FEW { 1.0 } else { two_sided_p(m.mean / m.std_error, m.dof) };
-                // what is not a number differs from every number
-                let p = if m.mean.is_nan() { 0.0 } else { p };
                 let suspect = m.mean + predicted;
-                gaps.push(Gap { slot: a.slot, region: r, channel, suspect, predicted, std_error: m.std_error, p });
+                let level = suspect.max(predicted).max(0.0);
+                if r == 0 {
+                    kappa = if level > 0.0 { m.std_error * m.std_error * n / level } else { 0.0 };
+                }
+                let std_error = m.std_error.max((kappa * level / n).sqrt());
+                let equal = m.mean.abs() <= rounding * predicted.abs();
+                let p = if exact && differs_without_noise(a, b, width, &region.pixels, channel, rounding)
+                    || m.mean.is_nan()
+                {
+                    // what is not a number differs from every number
+                    0.0
+                } else if equal || carried < FEW {
+                    1.0
+                } else {
+                    two_sided_p(m.mean / std_error, m.dof)
+                };
+                gaps.push(Gap { slot: a.slot, region: r, channel, suspect, predicted, std_error, p });
             }
         }
     }

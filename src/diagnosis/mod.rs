@@ -116,11 +116,7 @@ pub struct Case<'a> {
 impl Case<'_> {
     /// A prediction at the brightness of the suspect where its exposure is unknown.
     fn brightened(&self, predicted: Pictures, regions: &[Region]) -> Pictures {
-        if self.effort.any_gain {
-            elimination::same_brightness(self.suspect, predicted, regions)
-        } else {
-            predicted
-        }
+        if self.effort.any_gain { elimination::same_brightness(self.suspect, predicted, regions) } else { predicted }
     }
 }
 
@@ -159,6 +155,7 @@ pub fn diagnose(case: &Case, watch: &dyn Watch) -> Diagnosis {
         samples: samples.as_ref(),
         scaled: scaled.as_ref().map(|(s, e)| (*s, e)),
         rejected,
+        beyond_scatter: rejected && beyond_scatter(case, &all),
     };
     let named: Vec<Suspicion> = rules::RULES.iter().flat_map(|rule| rule(&facts)).collect();
     let alone = named.iter().any(|s| s.name == "same-numbers" && s.basis == Basis::Points);
@@ -189,6 +186,13 @@ pub fn diagnose(case: &Case, watch: &dyn Watch) -> Diagnosis {
         samples,
         evidence,
     }
+}
+
+/// Whether the means differ by more than neighbouring pixels scatter.
+fn beyond_scatter(case: &Case, regions: &[Region]) -> bool {
+    let mut plain = case.suspect.clone();
+    plain.layers.iter_mut().for_each(|l| l.std_error = None);
+    compare(&plain, case.reference, regions).p < case.alpha
 }
 
 /// The patterns that describe the suspect within its noise: those without a constant first, then the best fit first.
@@ -247,7 +251,10 @@ fn short_list(named: Vec<Suspicion>, tried: &[Tried], evidence: &Evidence, certa
         }
     }
     if list.is_empty() {
-        list = named.into_iter().filter(|s| s.basis == Basis::Points).collect();
+        // what was simulated without success is not suggested again, but where the simulation had a number of its own
+        let has_a_number = |name: &str| ["clamped", "gamma-before-mean"].contains(&name);
+        let struck = |s: &Suspicion| tried.iter().any(|t| t.rejected && t.name == s.name) && !has_a_number(&s.name);
+        list = named.into_iter().filter(|s| s.basis == Basis::Points && !struck(s)).collect();
     }
     list
 }

@@ -65,6 +65,8 @@ pub struct Facts<'a> {
     pub scaled: Option<(f64, &'a Evidence)>,
     /// Whether it is certain that something is wrong.
     pub rejected: bool,
+    /// Whether that is still so if errors are those that neighbouring pixels show, and not those that are claimed.
+    pub beyond_scatter: bool,
 }
 
 /// The rules in their order.
@@ -110,7 +112,9 @@ fn turned(f: &Facts) -> Vec<Suspicion> {
 
 fn same_numbers(f: &Facts) -> Vec<Suspicion> {
     let v = f.evidence.noise;
-    if v.is_nan() || (0.4..2.5).contains(&v) {
+    // a wrong shape scatters, too: too much of it counts only where the means agree but for the errors that are claimed
+    let repeats = v >= 2.5 && !f.beyond_scatter;
+    if !(v < 0.4 || repeats) {
         return vec![];
     }
     let why = if v < 1.0 {

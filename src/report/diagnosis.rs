@@ -65,7 +65,13 @@ fn ratios(page: &Page, d: &Diagnosis) -> Drawn {
         Axis::linear("r_k, suspect over right", (lo - air).max(0.0), hi + air, 6)
     };
     let last = seen.iter().map(|p| p.x).fold(1.0, f64::max);
-    let panel = Panel::draw(page, "Ratio by bounce", [84.0, 72.0, 400.0, 320.0], Axis::counts("bounce k", last as usize, 10), y)?;
+    let panel = Panel::draw(
+        page,
+        "Ratio by bounce",
+        [84.0, 72.0, 400.0, 320.0],
+        Axis::counts("bounce k", last as usize, 10),
+        y,
+    )?;
     panel.line((-0.5, 1.0), (last + 0.5, 1.0), RIGHT)?;
     let mut entries = vec![Entry::new(Sample::Line(RIGHT), "right")];
     for (i, s) in suspects.iter().enumerate() {
@@ -101,7 +107,11 @@ fn map(page: &Page, d: &Diagnosis, left: f64) -> Drawn {
         let dark = !value.is_nan() && value.max(1e-6).log2().abs() > 0.55;
         let color = if dark { RGBColor(255, 255, 255) } else { BLACK };
         let words = if value.is_nan() { "–".into() } else { significant(value, 3) };
-        page.text(&words, (x + cell / 2.0, y + cell / 2.0), Words { color, align: HPos::Center, size: 14.0, ..Words::default() })?;
+        page.text(
+            &words,
+            (x + cell / 2.0, y + cell / 2.0),
+            Words { color, align: HPos::Center, size: 14.0, ..Words::default() },
+        )?;
     }
     for i in 0..=SIDE {
         let at = i as f64 * cell;

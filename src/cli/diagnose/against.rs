@@ -89,7 +89,12 @@ fn finished(path: &Path) -> Result<Source, Failure> {
         super::super::note("note: the scene of that run cannot be loaded again; no candidates are simulated");
     }
     let label = format!("{}: {}, {} spp", path.display(), record.command, record.spp);
-    Ok(Source { name: record.scene, hash: record.scene_hash, description, run: Some((label, pictures, record.spp as f64)) })
+    Ok(Source {
+        name: record.scene,
+        hash: record.scene_hash,
+        description,
+        run: Some((label, pictures, record.spp as f64)),
+    })
 }
 
 /// The scene that a command of this program renders.
@@ -152,7 +157,13 @@ impl Source {
     }
 
     /// The reference at a size, with terms up to K.
-    pub fn right(&self, args: &Diagnose, size: [usize; 2], max_bounces: usize, progress: &Progress) -> Result<Right, Failure> {
+    pub fn right(
+        &self,
+        args: &Diagnose,
+        size: [usize; 2],
+        max_bounces: usize,
+        progress: &Progress,
+    ) -> Result<Right, Failure> {
         let factor = shrink_factor(size, WIDEST);
         let small = size.map(|s| (s / factor) as u32);
         let scene = self.description.as_ref().map(|d| {
@@ -181,7 +192,10 @@ impl Source {
             super::super::note(&format!("note: not supported by the reference, {missing}"));
         }
         let luck = result.series.by_luck.first().cloned();
-        let label = format!("{}, {}, k ≤ {max_bounces}, {spp} spp at {}×{}", self.name, result.series.label, small[0], small[1]);
+        let label = format!(
+            "{}, {}, k ≤ {max_bounces}, {spp} spp at {}×{}",
+            self.name, result.series.label, small[0], small[1]
+        );
         let spp = f64::from(result.spp);
         Ok(Right { pictures: Pictures::of(&result, small), factor, spp, seen, scene: Some(scene), label, luck })
     }

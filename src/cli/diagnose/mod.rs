@@ -147,6 +147,11 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
         let right = source.right(args, *size, *max_bounces, &progress)?;
         luck = luck.or(right.luck.clone());
         label.clone_from(&right.label);
+        if scaled.is_some() && right.scene.as_ref().is_some_and(|s| s.lights.any_delta()) {
+            return Err(Failure::Usage(
+                "error: the light of a point or a direction changes with the scale of the scene\nhelp: leave --scale out".into(),
+            ));
+        }
         let candidates = right.scene.as_ref().map(|s| Members::new(s, *max_bounces, args.seed, stop_flag()));
         for (i, suspect) in members {
             if stop_flag().load(Ordering::SeqCst) {
@@ -215,8 +220,7 @@ fn suspects(args: &Diagnose) -> Result<(Vec<Suspect>, Grouping), Failure> {
             let mut by: Vec<(u32, File)> = numbers.into_iter().zip(files).collect();
             by.sort_by_key(|b| b.0);
             let by_samples = by.iter().map(|(n, f)| (*n, f.pictures.clone())).collect();
-            let (most, file) =
-                by.pop().ok_or_else(|| Failure::Usage("error: no file\nhelp: name one".into()))?;
+            let (most, file) = by.pop().ok_or_else(|| Failure::Usage("error: no file\nhelp: name one".into()))?;
             vec![Suspect { name: format!("{} … {most} spp", shown(&args.renders[0])), file, by_samples }]
         }
         _ => {
@@ -290,7 +294,8 @@ fn shrink_mask(mask: &[bool], width: usize, factor: usize) -> Vec<bool> {
     let at = |i: usize| {
         let (x, y) = (i % w, i / w);
         let columns = x.saturating_sub(1) * factor..((x + 2) * factor).min(width);
-        (y.saturating_sub(1) * factor..((y + 2) * factor).min(height)).any(|y| columns.clone().any(|x| mask[y * width + x]))
+        (y.saturating_sub(1) * factor..((y + 2) * factor).min(height))
+            .any(|y| columns.clone().any(|x| mask[y * width + x]))
     };
     (0..w * h).map(at).collect()
 }
@@ -304,7 +309,8 @@ fn write(page: &text::Page, found: &[Found], source: &against::Source) -> Result
         let stem = if found.len() == 1 {
             "diagnosis".to_owned()
         } else {
-            let name = Path::new(&f.name).file_stem().map_or_else(|| i.to_string(), |s| s.to_string_lossy().into_owned());
+            let name =
+                Path::new(&f.name).file_stem().map_or_else(|| i.to_string(), |s| s.to_string_lossy().into_owned());
             let name = if used.insert(name.clone()) { name } else { format!("{name}-{i}") };
             format!("diagnosis-{name}")
         };

@@ -71,7 +71,8 @@ fn layered(path: &Path) -> Result<File, Failure> {
     }
     // the whole image may stand in the file a second time, under a name that has an error
     if let Some(whole) = means.get(&Slot::Whole) {
-        let twin = image.layers.iter().find(|(n, p)| !n.is_empty() && p == whole && image.layer(&format!("{n}_se")).is_some());
+        let twin =
+            image.layers.iter().find(|(n, p)| !n.is_empty() && p == whole && image.layer(&format!("{n}_se")).is_some());
         match twin.and_then(|(n, _)| image.layer(&format!("{n}_se"))) {
             Some(error) => {
                 errors.insert(Slot::Whole, (String::new(), error.to_vec()));

@@ -71,11 +71,7 @@ impl Page<'_> {
             _ => "",
         };
         let head = format!("against {}", self.label);
-        let mut blocks: Vec<String> = if let [one] = found {
-            vec![self.one(one)]
-        } else {
-            vec![table(found)]
-        };
+        let mut blocks: Vec<String> = if let [one] = found { vec![self.one(one)] } else { vec![table(found)] };
         blocks.insert(1.min(blocks.len()), wrapped(&head, "") + if how.is_empty() { "" } else { "\n" } + how);
         if let (Some(luck), true) = (self.luck, found.iter().any(|f| f.diagnosis.verdict == Verdict::Wrong)) {
             blocks.push(wrapped(
@@ -83,13 +79,17 @@ impl Page<'_> {
                 "",
             ));
         }
-        blocks.push(format!("written to {}: {} files, the numbers in diagnosis.json", self.folder.display(), files.len()));
+        blocks.push(format!(
+            "written to {}: {} files, the numbers in diagnosis.json",
+            self.folder.display(),
+            files.len()
+        ));
         super::super::paragraphs(&blocks)
     }
 
     fn one(&self, f: &Found) -> String {
         let d = &f.diagnosis;
-        let mut out = format!("{}: {}\n", short(&f.name), headline(d));
+        let mut out = wrapped(&format!("{}: {}", short(&f.name), headline(d)), "") + "\n";
         out += &match d.verdict {
             Verdict::Correct => wrapped(
                 &format!(
@@ -101,7 +101,9 @@ impl Page<'_> {
                 "",
             ),
             Verdict::Wrong if d.worst.is_empty() => String::new(),
-            Verdict::Wrong => wrapped(&format!("Furthest off: {} (adjusted p = {}).", d.worst, significant(d.p, 2)), ""),
+            Verdict::Wrong => {
+                wrapped(&format!("Furthest off: {} (adjusted p = {}).", d.worst, significant(d.p, 2)), "")
+            }
         };
         let mut blocks = vec![out, evidence(f)];
         if !d.suspects.is_empty() {
@@ -110,8 +112,13 @@ impl Page<'_> {
         if d.verdict == Verdict::Wrong && d.suspects.is_empty() {
             let n = d.candidates.len();
             let best = d.candidates.first();
-            let nearest = best.map_or(String::new(), |c| format!(" The nearest is {}, off by {:.1} standard errors in the mean square.", c.name, c.misfit.sqrt()));
-            blocks.push(wrapped(&format!("None of {n} simulated mistakes and no simple rule for r_k looks like this.{nearest}"), ""));
+            let nearest = best.map_or(String::new(), |c| {
+                format!(" The nearest is {}, off by {:.1} standard errors in the mean square.", c.name, c.misfit.sqrt())
+            });
+            blocks.push(wrapped(
+                &format!("None of {n} simulated mistakes and no simple rule for r_k looks like this.{nearest} Are scene, materials and camera the same?"),
+                "",
+            ));
         }
         if self.args.verbose && !d.candidates.is_empty() {
             blocks.push(candidates(d));
@@ -146,14 +153,19 @@ fn evidence(f: &Found) -> String {
     let mut facts = vec![format!("errors of the suspect: from {}", e.errors)];
     let samples = e.samples / (f.factor * f.factor) as f64;
     if samples.is_finite() && d.verdict == Verdict::Correct {
-        let mut line = format!("its noise is that of about {} samples per pixel of the reference", significant(samples, 2));
+        let mut line =
+            format!("its noise is that of about {} samples per pixel of the reference", significant(samples, 2));
         if let Some(told) = f.told.filter(|told| *told > 2.5 * samples) {
-            line += &format!("; the file says {told}: a noisier way of sampling, or the same random numbers again. Two files with different samples per pixel would tell");
+            line += &format!(
+                "; the file says {told}: a noisier way of sampling, or the same random numbers again. Two files with different samples per pixel would tell"
+            );
         }
         facts.push(line);
     }
     if f.any_gain {
-        facts.push("exposure unknown: brought to the brightness of the reference, so a uniform factor cannot be seen".into());
+        facts.push(
+            "exposure unknown: brought to the brightness of the reference, so a uniform factor cannot be seen".into(),
+        );
     }
     if !f.terms {
         facts.push("no terms in the file: only the whole image could be compared".into());
@@ -166,10 +178,16 @@ fn evidence(f: &Found) -> String {
         facts.push(format!("{} values are not finite, {} are negative", c.non_finite, c.negative));
     }
     if c.black > 0.01 {
-        facts.push(format!("up to {} of the pixels of a picture are black where the reference is not", percent(c.black)));
+        facts.push(format!(
+            "up to {} of the pixels of a picture are black where the reference is not",
+            percent(c.black)
+        ));
     }
     if c.clipped > 0.0 {
-        facts.push(format!("{} of the pixels are at the end of 8 bits; they and their neighbours are left out", percent(c.clipped)));
+        facts.push(format!(
+            "{} of the pixels are at the end of 8 bits; they and their neighbours are left out",
+            percent(c.clipped)
+        ));
     }
     if let Some(s) = &d.samples {
         let means: Vec<String> = s.means.iter().map(|m| format!("{:.4} at {}", m[1], m[0])).collect();
@@ -188,8 +206,12 @@ fn suspects(list: &[Suspicion]) -> String {
         let bug = zoo::find(&s.name);
         let what = bug.map_or(String::new(), |b| format!(": {}", b.what));
         let basis = match s.basis {
-            Basis::Simulated => format!("simulated on this scene it cannot be told from the suspect (p = {})", significant(s.p, 2)),
-            Basis::Pattern => format!("a rule for r_k that fits every picture and region (p = {})", significant(s.p, 2)),
+            Basis::Simulated => {
+                format!("simulated on this scene it cannot be told from the suspect (p = {})", significant(s.p, 2))
+            }
+            Basis::Pattern => {
+                format!("a rule for r_k that fits every picture and region (p = {})", significant(s.p, 2))
+            }
             Basis::Points => "single pieces of evidence, not an explanation of all".into(),
         };
         let mut lines = vec![wrapped(&format!("{}. {}{what}", i + 1, s.name), ""), wrapped(&basis, "   ")];
@@ -198,7 +220,12 @@ fn suspects(list: &[Suspicion]) -> String {
         }
         let next = match bug {
             _ if list.len() == 1 && !s.next.is_empty() => s.next.clone(),
-            Some(b) => format!("{}fredholm zoo {} shows it; a scene that shows it well: {}", if s.next.is_empty() { String::new() } else { format!("{}; ", s.next) }, s.name, b.exposed_by.label),
+            Some(b) => format!(
+                "{}fredholm zoo {} shows it; a scene that shows it well: {}",
+                if s.next.is_empty() { String::new() } else { format!("{}; ", s.next) },
+                s.name,
+                b.exposed_by.label
+            ),
             None => s.next.clone(),
         };
         lines.push(wrapped(&format!("next: {next}"), "   "));
@@ -206,13 +233,15 @@ fn suspects(list: &[Suspicion]) -> String {
     };
     let head = if list.len() == 1 { "suspect" } else { "suspects: this data cannot tell them apart" };
     let shown: Vec<String> = list.iter().take(6).enumerate().map(one).collect();
-    let more = if list.len() > 6 { format!("\n… and {} more in diagnosis.json", list.len() - 6) } else { String::new() };
+    let more =
+        if list.len() > 6 { format!("\n… and {} more in diagnosis.json", list.len() - 6) } else { String::new() };
     format!("{head}\n{}{more}", shown.join("\n"))
 }
 
 /// Who was simulated.
 fn candidates(d: &Diagnosis) -> String {
-    let mut out = format!("{:<28} {:>6} {:>12} {:>14}\n{}\n", "candidate", "spp", "p, adjusted", "rms deviation", "─".repeat(63));
+    let mut out =
+        format!("{:<28} {:>6} {:>12} {:>14}\n{}\n", "candidate", "spp", "p, adjusted", "rms deviation", "─".repeat(63));
     for c in &d.candidates {
         let p = if c.rejected { format!("{} ✗", significant(c.p, 2)) } else { significant(c.p, 2) };
         out += &format!("{:<28} {:>6} {p:>12} {:>11.1} se\n", c.name, c.spp, c.misfit.sqrt());
