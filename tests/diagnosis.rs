@@ -83,7 +83,7 @@ fn hand_in(members: &[&'static Bug], terms: bool, errors: bool, more: u32) -> Ve
     });
     let mut answers = vec![];
     for stage in stages {
-        let bench = Bench::new(stage, 2048);
+        let bench = Bench::new(stage, 4096);
         let candidates = Members::new(&bench.scene, K, 0, &NEVER);
         for bug in members.iter().filter(|b| b.exposed_by == stage) {
             let render = zoo::render(bug, &bench.scene, &settings(more * bug.spp.max(64), 77), &Unobserved, &NEVER);
@@ -123,7 +123,7 @@ fn table(answers: &[Answer]) -> String {
 #[test]
 #[ignore = "nightly"]
 fn every_member_is_named_from_its_terms() {
-    let answers = hand_in(&zoo::all(), true, true, 4);
+    let answers = hand_in(&zoo::all(), true, true, 8);
     println!("{}", table(&answers));
     assert!(answers.iter().all(|a| a.right), "\n{}", table(&answers));
 }
@@ -131,7 +131,7 @@ fn every_member_is_named_from_its_terms() {
 #[test]
 #[ignore = "nightly"]
 fn every_member_is_named_from_plain_terms() {
-    let answers = hand_in(&zoo::all(), true, false, 4);
+    let answers = hand_in(&zoo::all(), true, false, 8);
     println!("{}", table(&answers));
     assert!(answers.iter().all(|a| a.right), "\n{}", table(&answers));
 }

@@ -65,20 +65,20 @@ impl Fit {
     }
 }
 
-/// Whether the two differ where neither has noise: at least four pixels whose difference is that of their neighbours to the
-/// right and below, and more than rounding. Noise does not repeat itself to the last digit.
-fn differs_without_noise(a: &Layer, b: &Layer, width: usize, pixels: &[usize], channel: usize, rounding: f64) -> bool {
-    let value = |l: &Layer, p: usize| f64::from(l.mean[p][channel]);
-    let certain = |&p: &usize| {
-        if (p + 1) % width == 0 || p + width >= a.mean.len() {
-            return false;
-        }
-        let d = value(a, p) - value(b, p);
-        let size = value(a, p).abs().max(value(b, p).abs());
-        let same = |q: usize| (value(a, q) - value(b, q) - d).abs() <= 1e-6 * size;
-        d.abs() > rounding * size && same(p + 1) && same(p + width)
-    };
-    pixels.iter().filter(|p| certain(p)).count() >= 4
+/// Whether the two differ where the prediction has no noise at all: S/P is one number other than 1 in every pixel of the region
+/// in which P is positive and its error zero, and there are at least four. A suspect with noise would not repeat itself.
+fn differs_without_noise(a: &Layer, b: &Layer, pixels: &[usize], channel: usize, rounding: f64) -> bool {
+    let Some(errors) = &b.std_error else { return false };
+    let known = pixels.iter().filter(|&&p| errors[p][channel] == 0.0 && b.mean[p][channel] > 0.0);
+    let mut ratios = known.map(|&p| f64::from(a.mean[p][channel]) / f64::from(b.mean[p][channel]));
+    let Some(first) = ratios.next() else { return false };
+    let mut count = 1;
+    (first - 1.0).abs() > rounding
+        && ratios.all(|r| {
+            count += 1;
+            (r - first).abs() <= 1e-6 * first.abs()
+        })
+        && count >= 4
 }
 
 /// One channel of a difference a − f·b over some pixels: mean, error, and the pixels that carry it.
@@ -149,9 +149,7 @@ pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> 
                 }
                 let std_error = m.std_error.max((kappa * level / n).sqrt());
                 let equal = m.mean.abs() <= rounding * predicted.abs();
-                let p = if exact && differs_without_noise(a, b, width, &region.pixels, channel, rounding)
-                    || m.mean.is_nan()
-                {
+                let p = if exact && differs_without_noise(a, b, &region.pixels, channel, rounding) || m.mean.is_nan() {
                     // what is not a number differs from every number
                     0.0
                 } else if equal || carried < FEW {
@@ -222,6 +220,21 @@ mod tests {
             let r = ratio(&noisy(3, 2.0, errors).layers[0], &b.layers[0], 32, &regions[0].pixels);
             assert!((r.mean - 2.0).abs() < 5.0 * r.std_error && r.std_error < 0.01);
         }
+    }
+
+    #[test]
+    fn what_has_no_noise_needs_few_pixels() {
+        let regions = grid([32, 32]);
+        let dark = |value: f32, error: f32| {
+            let lamp = |p: usize| p == 500 || p == 501 || p == 532 || p == 533;
+            let of = |v: f32| (0..1024).map(|p| if lamp(p) { [v; 3] } else { [0.0; 3] }).collect::<Vec<_>>();
+            let layer = Layer { slot: Slot::Term(0), mean: of(value), std_error: Some(of(error)) };
+            Pictures { size: [32, 32], layers: vec![layer], code: Code::Float }
+        };
+        assert_eq!(compare(&dark(0.0, 0.0), &dark(17.0, 0.0), &regions).p, 0.0);
+        assert_eq!(compare(&dark(17.0, 0.0), &dark(17.0, 0.0), &regions).p, 1.0);
+        // four pixels that are noisy decide nothing
+        assert_eq!(compare(&dark(0.0, 0.0), &dark(17.0, 1.0), &regions).p, 1.0);
     }
 
     #[test]

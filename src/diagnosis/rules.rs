@@ -113,7 +113,7 @@ fn turned(f: &Facts) -> Vec<Suspicion> {
 fn same_numbers(f: &Facts) -> Vec<Suspicion> {
     let v = f.evidence.noise;
     // a wrong shape scatters, too: too much of it counts only where the means agree but for the errors that are claimed
-    let repeats = v >= 2.5 && !f.beyond_scatter;
+    let repeats = v >= 2.5 && f.rejected && !f.beyond_scatter;
     if !(v < 0.4 || repeats) {
         return vec![];
     }
