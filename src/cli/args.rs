@@ -110,6 +110,18 @@ Examples:
 Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged
 over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for the same error.")]
     Sweep(Sweep),
+    /// Estimators that are wrong on purpose, each beside the right one
+    #[command(after_help = "Examples:
+  fredholm zoo                     all members: NAME.exr in zoo-out, and r_k of each
+  fredholm zoo --list              who lives there, and what is wrong with them
+  fredholm zoo double-emission     one beside the right estimator: table, picture, plot
+  fredholm zoo mixed-measures --scene cornell
+  fredholm zoo --quiz --seed 3     predict, then reveal
+
+r_k = T_k wrong / T_k right. Flat in k: the connection to the light is wrong; c^(k-1): the bounce or
+the roulette; c^k: the BSDF. Written: zoo-out/NAME.exr for what cornell shows, zoo-out/SCENE/NAME.exr
+for what it does not, correct.exr as the control. Layers: the image, T00, T01, …, T00_se, ….")]
+    Zoo(super::zoo::Zoo),
     /// Scenes, materials, lights, bounds on the norm of T
     #[command(after_help = "Examples:
   fredholm info            the built-in scenes
@@ -368,7 +380,7 @@ pub struct Chapter {
     pub out: Option<PathBuf>,
 }
 
-fn size(s: &str) -> Result<[u32; 2], String> {
+pub fn size(s: &str) -> Result<[u32; 2], String> {
     let wrong = || format!("`{s}` is not a size such as 128x128 (each side 1 to 32768)");
     let (w, h) = s.split_once('x').ok_or_else(wrong)?;
     let side = |s: &str| s.parse().ok().filter(|n| (1..=32768).contains(n)).ok_or_else(wrong);

@@ -14,10 +14,12 @@ mod guard;
 mod info;
 mod output;
 mod progress;
+mod quiz;
 mod solve;
 mod strategies;
 mod sweep;
 mod write;
+mod zoo;
 
 use args::{Cli, Command};
 use std::process::ExitCode;
@@ -83,6 +85,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Diagnose(args)) => diagnose::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
+        Some(Command::Zoo(args)) => zoo::run(args),
         Some(Command::Info(args)) => info::run(args),
         Some(Command::Chapter(args)) => chapter::run(args),
     };

@@ -10,6 +10,7 @@
 //! | z maps of `compare` | [`zmap`] |
 //! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
 //! | `diagnosis.svg` | [`diagnosis`] |
+//! | `NAME-ratios.svg` of the zoo and its PNG | [`signature`] |
 //! | `summary.json` | [`summary`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
@@ -32,6 +33,7 @@ pub mod plot;
 pub mod pyramid;
 mod rate;
 pub mod sheet;
+pub mod signature;
 pub mod summary;
 pub mod sweep;
 pub mod table;

@@ -76,6 +76,32 @@ pub fn single(
 /// # Errors
 /// If there is no cell, the pixels do not match the size, or the text cannot be drawn.
 pub fn grid(title: &str, width: usize, height: usize, cells: &[Cell], caption: &Caption) -> Result<Sheet, ReportError> {
+    laid_out(None, title, width, height, cells, caption)
+}
+
+/// The same with so many cells in a row.
+///
+/// # Errors
+/// As for [`grid`].
+pub fn grid_of(
+    columns: usize,
+    title: &str,
+    width: usize,
+    height: usize,
+    cells: &[Cell],
+    caption: &Caption,
+) -> Result<Sheet, ReportError> {
+    laid_out(Some(columns), title, width, height, cells, caption)
+}
+
+fn laid_out(
+    columns: Option<usize>,
+    title: &str,
+    width: usize,
+    height: usize,
+    cells: &[Cell],
+    caption: &Caption,
+) -> Result<Sheet, ReportError> {
     if cells.is_empty() {
         return Err(ReportError::new("(contact sheet)", "there is no image to show", "render at least one term"));
     }
@@ -101,8 +127,8 @@ pub fn grid(title: &str, width: usize, height: usize, cells: &[Cell], caption: &
     let cell_w = widest_text.fold(image_w, f64::max).ceil();
     let fit = (((SHEET - GAP) / (cell_w + GAP)).floor() as usize).clamp(1, cells.len());
     let fit = if cells.len() > 4 { fit.min((cells.len() as f64 * 1.8).sqrt().ceil() as usize) } else { fit };
-    let rows = cells.len().div_ceil(fit);
-    let columns = cells.len().div_ceil(rows);
+    let columns = columns.unwrap_or_else(|| cells.len().div_ceil(cells.len().div_ceil(fit)));
+    let rows = cells.len().div_ceil(columns);
 
     let natural = columns as f64 * (cell_w + GAP) + GAP;
     let sheet_w = natural.max(text_width(title, SANS, TITLE) + 2.0 * GAP).max(400.0).ceil();

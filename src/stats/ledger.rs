@@ -136,6 +136,11 @@ pub const ENTRIES: &[Entry] = &[
     entry("means_do_not_depend_on_the_axes", 600, 1e-8),
     entry("no_material_gains_energy", 480, 1e-8),
     entry("two_patches_may_change_places", 180, 1e-8),
+    // tests/zoo.rs
+    entry("members_have_their_closed_form", 200, 1e-8),
+    entry("members_have_their_signature", 400, 1e-8),
+    entry("every_member_is_rejected_and_the_right_walk_is_not", 100, 1e-8),
+    entry("members_are_rejected_in_199_of_200_runs", 1, 1e-8),
     // tests/bsdf.rs
     entry("directions_have_the_density_they_claim", 1_000, 1e-8),
     entry("a_million_directions_have_the_density_they_claim", 1_000, 1e-8),

@@ -13,8 +13,6 @@ use crate::math::Rgb;
 
 /// The last term of `truncated`.
 const DEEPEST: usize = 3;
-/// Where `clamped` cuts.
-const CEILING: f32 = 0.5;
 /// What `gamma-before-mean` encodes with.
 const GAMMA: f32 = 2.2;
 /// How many different samples a pixel of `same-numbers` has.
@@ -34,7 +32,7 @@ pub static BUGS: [Bug; 8] = [
         exposed_by: Stage::CORNELL,
         blind: Some(Stage::BLACK_ROOM),
         spp: 64,
-        mistake: &Truncated,
+        mistake: &Truncated(DEEPEST),
     },
     Bug {
         name: "one-bounce-short",
@@ -90,7 +88,7 @@ pub static BUGS: [Bug; 8] = [
         exposed_by: Stage::CORNELL,
         blind: Some(Stage::DIM_FURNACE),
         spp: 16,
-        mistake: &Clamped,
+        mistake: &Clamped(0.5),
     },
     Bug {
         name: "gamma-before-mean",
@@ -116,8 +114,8 @@ pub static BUGS: [Bug; 8] = [
         technique: Technique::Mis,
         ends: Ends::AsSet,
         exposed_by: Stage::CORNELL,
-        blind: Some(Stage::FURNACE),
-        spp: 64,
+        blind: Some(Stage::BLACK_ROOM),
+        spp: 256,
         mistake: &SameNumbers,
     },
     Bug {
@@ -136,10 +134,11 @@ pub static BUGS: [Bug; 8] = [
     },
 ];
 
-struct Truncated;
+/// Paths stop after so many bounces.
+pub struct Truncated(pub usize);
 impl Mistake for Truncated {
     fn slot(&self, k: usize, max_bounces: usize) -> Option<usize> {
-        (k <= DEEPEST).then_some(k.min(max_bounces + 1))
+        (k <= self.0).then_some(k.min(max_bounces + 1))
     }
 }
 
@@ -164,10 +163,11 @@ impl Mistake for EmissionMissing {
     }
 }
 
-struct Clamped;
+/// Samples are cut there.
+pub struct Clamped(pub f32);
 impl Mistake for Clamped {
     fn finish(&self, value: Rgb) -> Rgb {
-        value.min(Rgb::splat(CEILING))
+        value.min(Rgb::splat(self.0))
     }
     fn finishes(&self) -> bool {
         true

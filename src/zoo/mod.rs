@@ -9,6 +9,7 @@
 //! | X_k | one sample of a term, by a walk with hooks | [`walk`] |
 //! | – | what may go wrong, and what is right | [`Mistake`] |
 //! | r_k | signature of a mistake | [`Bug::ratio`], [`signature`] |
+//! | p | is a render the right one? | [`judge`] |
 //! | – | scene that shows it, and scene that cannot | [`Bug::exposed_by`], [`Bug::blind`] |
 //!
 //! | family | place |
@@ -29,6 +30,7 @@
 pub mod bookkeeping;
 pub mod constants;
 pub mod directions;
+pub mod judge;
 pub mod lights;
 pub mod measures;
 pub mod mistake;

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! The test at vertex v comes after v has been scored, so that under connections term k has passed k − 1 tests. In a furnace under scatter
-//! it has passed k: `Σ (ρ s)^k` without a weight, `Σ (ρ s/q)^k` divided by q, `s/(1 − ρ)` tested before the light.
+//! it has passed k: `Σ (ρ s)^k` without a weight, `Σ (ρ s/q)^k` divided by q.
 
 use super::signature::{flat, per_bounce};
 use super::{Bug, Ends, Mistake, Stage};
@@ -59,7 +59,7 @@ pub static BUGS: [Bug; 4] = [
         name: "roulette-before-light",
         what: "roulette is tested before the light is sampled, its weight applied after",
         place: "order: test, score, weight instead of score, test, weight; here q = 0.3 at every vertex",
-        expected: "s T^k E for k ≥ 1; in a furnace under scatter s/(1 − ρ)",
+        expected: "s T^k E for k ≥ 1; inside a glowing sphere 1 + s ρ/(1 − ρ)",
         signature: "flat: s = 0.7 at every k ≥ 1",
         ratio: |k| flat(0.7, k),
         technique: Technique::Connect,

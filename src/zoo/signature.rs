@@ -8,6 +8,8 @@
 //!
 //! r_0 = 1 in all three: what the eye sees directly goes through neither.
 
+use crate::terms::{Estimate, Functional};
+
 /// c for k ≥ 1.
 pub fn flat(c: f64, k: usize) -> Option<f64> {
     Some(if k == 0 { 1.0 } else { c })
@@ -26,4 +28,52 @@ pub fn per_reflection(c: f64, k: usize) -> Option<f64> {
 /// r_k that depends on the scene.
 pub fn unknown(_: usize) -> Option<f64> {
     None
+}
+
+/// A measured r_k.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ratio {
+    /// T_k^wrong / T_k^right, means over the channels.
+    pub value: f64,
+    /// Its standard error: an upper bound where the channels are not perfectly correlated.
+    pub std_error: f64,
+    /// Replicates behind it.
+    pub replicates: u64,
+}
+
+impl Ratio {
+    /// Of two independent estimates, by the delta method; not a number where the right one is zero.
+    pub fn of(wrong: &Estimate, right: &Estimate) -> Self {
+        let average = |e: &Estimate| (e.mean.element_sum() / 3.0, e.std_error.element_sum() / 3.0);
+        let ((a, sa), (b, sb)) = (average(wrong), average(right));
+        let value = a / b;
+        let std_error = ((sa / b).powi(2) + (value * sb / b).powi(2)).sqrt();
+        Self { value, std_error, replicates: wrong.replicates.min(right.replicates) }
+    }
+}
+
+/// r_0, …, r_K.
+pub fn measured(wrong: &Functional, right: &Functional) -> Vec<Ratio> {
+    wrong.terms.iter().zip(&right.terms).map(|(w, r)| Ratio::of(w, r)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn ratios_have_the_error_of_both() {
+        let of = |m: f64, s: f64| Estimate { mean: DVec3::splat(m), std_error: DVec3::splat(s), replicates: 16 };
+        let r = Ratio::of(&of(6.0, 0.3), &of(3.0, 0.2));
+        assert!((r.value - 2.0).abs() < 1e-12 && (r.std_error - (0.01f64 + 4.0 / 9.0 * 0.04).sqrt()).abs() < 1e-12);
+        assert!(Ratio::of(&of(0.0, 0.0), &of(0.0, 0.0)).value.is_nan());
+    }
+
+    #[test]
+    fn the_three_patterns() {
+        assert_eq!([0, 1, 2, 3].map(|k| flat(2.0, k)), [1.0, 2.0, 2.0, 2.0].map(Some));
+        assert_eq!([0, 1, 2, 3].map(|k| per_bounce(2.0, k)), [1.0, 1.0, 2.0, 4.0].map(Some));
+        assert_eq!([0, 1, 2, 3].map(|k| per_reflection(2.0, k)), [1.0, 2.0, 4.0, 8.0].map(Some));
+    }
 }
