@@ -157,8 +157,12 @@ fn members_are_named() {
 fn right_renderers(scene: &Scene, seed: u64) -> Vec<(String, Pictures)> {
     let base = settings(64, seed);
     let with = |technique, sampling| Settings { technique, sampling, ..base.clone() };
-    let terms = |e, s: &Settings| Pictures::of(&sampled::terms(scene, e, s, &Unobserved, &NEVER), SIZE);
-    let mut all = vec![];
+    // whoever does not see all light says so, and is no right renderer of the scene
+    let terms = |e, s: &Settings| {
+        let render = sampled::terms(scene, e, s, &Unobserved, &NEVER);
+        render.series.unseen.is_empty().then(|| Pictures::of(&render, SIZE))
+    };
+    let mut all: Vec<(String, Option<Pictures>)> = vec![];
     for e in [
         Estimator::Prefix,
         Estimator::Single,
@@ -179,8 +183,9 @@ fn right_renderers(scene: &Scene, seed: u64) -> Vec<(String, Pictures)> {
     all.push(("uniform directions".into(), terms(Estimator::Prefix, &with(Technique::Mis, Sampling::Uniform))));
     let albedo = Settings { roulette: Roulette::Albedo { from: 2 }, ..base.clone() };
     all.push(("roulette".into(), terms(Estimator::Prefix, &albedo)));
-    all.push(("path tracer".into(), Pictures::of(&sampled::path(scene, &base, &Unobserved, &NEVER), SIZE)));
-    all
+    let path = sampled::path(scene, &base, &Unobserved, &NEVER);
+    all.push(("path tracer".into(), Some(Pictures::of(&path, SIZE))));
+    all.into_iter().filter_map(|(name, p)| Some((name, p?))).collect()
 }
 
 #[test]
@@ -365,7 +370,7 @@ fn the_command_says_correct_or_names_the_mistake() {
     let said = run(&desk, &format!("diagnose good.exr --against cornell -o a {QUICK}"));
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
     assert!(said.out.starts_with("good.exr: correct, as far as this data can tell"), "{}", said.out);
-    assert!(said.out.contains("A uniform bias above"), "{}", said.out);
+    assert!(said.out.contains("A uniform bias"), "{}", said.out);
 
     let said = run(&desk, &format!("diagnose bad.exr --against cornell -o b {QUICK}"));
     assert_eq!(said.code, 1, "{}{}", said.out, said.err);
@@ -405,7 +410,7 @@ fn the_command_says_correct_or_names_the_mistake() {
 #[test]
 fn growing_samples_show_what_one_picture_cannot() {
     let desk = tempfile::TempDir::new().unwrap();
-    let scene = Scene::new(&Stage::CORNELL.load([16, 16]).unwrap());
+    let scene = Scene::new(&Stage::CORNELL.load(SIZE).unwrap());
     for (name, bug) in [("same", Some("same-numbers")), ("gamma", Some("gamma-before-mean")), ("right", None)] {
         for spp in [16, 64, 256] {
             let s = settings(spp, 40 + u64::from(spp) * u64::from(bug != Some("same-numbers")));
@@ -413,7 +418,7 @@ fn growing_samples_show_what_one_picture_cannot() {
                 Some(bug) => zoo::render(zoo::find(bug).unwrap(), &scene, &s, &Unobserved, &NEVER),
                 None => sampled::path(&scene, &s, &Unobserved, &NEVER),
             };
-            write_exr(&desk, &format!("{name}_{spp}.exr"), [16, 16], &[("", render.total.mean.as_slice())]);
+            write_exr(&desk, &format!("{name}_{spp}.exr"), [24, 24], &[("", render.total.mean.as_slice())]);
         }
         let files = [16, 64, 256].map(|n| format!("{name}_{n}.exr")).join(" ");
         let said = run(&desk, &format!("diagnose {files} --against cornell -o {name} {QUICK}"));

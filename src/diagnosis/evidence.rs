@@ -55,8 +55,9 @@ pub struct Evidence {
     pub ratios: Vec<Ratio>,
     /// Counts.
     pub counts: Counts,
-    /// Whole image over the sum of its own terms, with half its 95 % interval; nothing if a part is missing.
-    pub sum: Option<[f64; 2]>,
+    /// Whole image over the sum of its own terms and tail, half the 95 % interval of that, and what it would be in the
+    /// reference: 1 with a tail; nothing if a part is missing.
+    pub sum: Option<[f64; 3]>,
     /// Largest value of the whole image over that of the reference.
     pub brightest: f64,
     /// Scatter of neighbouring pixels over the variance that the `_se` layers claim; NaN without them.
@@ -108,7 +109,7 @@ pub fn collect(
     Evidence {
         ratios: suspect.layers.iter().filter_map(one).collect(),
         counts,
-        sum: sum(suspect, &regions[0]),
+        sum: sum(suspect, reference, &regions[0]),
         brightest: brightest(suspect, reference),
         noise: noise(suspect, reference, &regions[0]),
         samples: reference_spp * samples(suspect, reference, &regions[0]),
@@ -135,21 +136,25 @@ pub fn flat(regions: &[Measured]) -> f64 {
     ChiSquared::new((known.len() - 1) as f64).map_or(f64::NAN, |d| d.sf(chi2))
 }
 
-/// Whole over the sum of the terms and the tail.
-fn sum(suspect: &Pictures, image: &Region) -> Option<[f64; 2]> {
-    let whole = suspect.layer(Slot::Whole)?;
+/// Whole over the sum of the terms and the tail, and the same of the reference.
+fn sum(suspect: &Pictures, reference: &Pictures, image: &Region) -> Option<[f64; 3]> {
     suspect.last_term()?;
-    let parts: Vec<&Layer> = suspect.layers.iter().filter(|l| l.slot != Slot::Whole).collect();
-    let add = |pixels: &dyn Fn(&Layer) -> Option<[f32; 3]>| -> [f32; 3] {
-        parts.iter().filter_map(|l| pixels(l)).fold([0.0; 3], |a, v| std::array::from_fn(|c| a[c] + v[c]))
+    let slots: Vec<Slot> = suspect.layers.iter().map(|l| l.slot).filter(|s| *s != Slot::Whole).collect();
+    let of = |pictures: &Pictures| {
+        let whole = pictures.layer(Slot::Whole)?;
+        let parts = slots.iter().map(|s| pictures.layer(*s)).collect::<Option<Vec<&Layer>>>()?;
+        let add = |pixel: &dyn Fn(&Layer) -> Option<[f32; 3]>| -> [f32; 3] {
+            parts.iter().filter_map(|l| pixel(l)).fold([0.0; 3], |a, v| std::array::from_fn(|c| a[c] + v[c]))
+        };
+        let mean = (0..whole.mean.len()).map(|p| add(&|l| Some(l.mean[p]))).collect();
+        let errors = whole.std_error.is_some() && parts.iter().all(|l| l.std_error.is_some());
+        let std_error =
+            errors.then(|| (0..whole.mean.len()).map(|p| add(&|l| l.std_error.as_ref().map(|s| s[p]))).collect());
+        let total = Layer { slot: Slot::Whole, mean, std_error };
+        Some(ratio(whole, &total, pictures.size[0], &image.pixels))
     };
-    let mean = (0..whole.mean.len()).map(|p| add(&|l| Some(l.mean[p]))).collect();
-    let errors = parts.iter().all(|l| l.std_error.is_some());
-    let std_error =
-        errors.then(|| (0..whole.mean.len()).map(|p| add(&|l| l.std_error.as_ref().map(|s| s[p]))).collect());
-    let total = Layer { slot: Slot::Whole, mean, std_error };
-    let r = ratio(whole, &total, suspect.size[0], &image.pixels);
-    Some([r.mean, critical(0.05, r.dof) * r.std_error])
+    let (own, right) = (of(suspect)?, of(reference)?);
+    Some([own.mean, critical(0.05, own.dof) * own.std_error.hypot(right.std_error), right.mean])
 }
 
 fn brightest(suspect: &Pictures, reference: &Pictures) -> f64 {

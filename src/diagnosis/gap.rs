@@ -1,7 +1,7 @@
 //! Two sets of pictures, one comparison: is the difference more than noise, and where?
 //!
 //! ```text
-//! d = mean over a region of S − P        t = d / se(d)        p adjusted by Holm over slots × regions × channels
+//! d = mean over a region of S − P        t = d / se(d)        p adjusted by Holm over slots × channels, and over these × regions: half the level each
 //! ```
 //!
 //! | symbol | meaning | place |
@@ -9,7 +9,7 @@
 //! | S, P | the suspect, and what an explanation predicts | arguments of [`compare`] |
 //! | se(d) | from the `_se` layers of both; else from how S − P scatters inside blocks of 8 × 8 pixels | [`spread`] |
 //! | r | ratio of means, with its error by the same rule for S − r P | [`ratio`] |
-//! | κ | variance over mean of the whole image, per pixel: the least that is believed of any region | [`compare`] |
+//! | κ | variance over mean, per pixel, the median of the regions: the least that is believed of any of them | [`compare`] |
 //! | n_eff | (Σ v)²/Σ v² of the pixel variances: how many pixels carry the noise | [`Gap::p`] |
 //!
 //! The local scatter holds the noise of both sides and, where the explanation is wrong in shape, that misfit too: it is too
@@ -43,6 +43,8 @@ pub struct Gap {
     pub std_error: f64,
     /// p-value of no difference, not adjusted; 1 where it is rounding or nothing can be decided.
     pub p: f64,
+    /// The same adjusted for the number of comparisons.
+    pub adjusted: f64,
 }
 
 /// All comparisons of two sets of pictures.
@@ -129,6 +131,12 @@ fn spread(d: &dyn Fn(usize) -> f64, width: usize, pixels: &[usize]) -> (f64, f64
     (variance / (n * n), carried, dof.max(1.0))
 }
 
+/// The middle one; 0 of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
 /// Compares every slot that both have in every region.
 pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> Fit {
     let rounding = suspect.code.rounding().max(predicted.code.rounding());
@@ -137,34 +145,53 @@ pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> 
     for a in &suspect.layers {
         let Some(b) = predicted.layer(a.slot) else { continue };
         for channel in 0..3 {
-            let mut kappa = 0.0;
+            let measured: Vec<(Measured, f64, f64)> = regions
+                .iter()
+                .map(|r| {
+                    let (m, carried) = difference((a, b, 1.0), width, &r.pixels, channel, true);
+                    let n = r.pixels.len() as f64;
+                    (m, r.pixels.iter().map(|&p| f64::from(b.mean[p][channel])).sum::<f64>() / n, carried)
+                })
+                .collect();
+            let level = |r: usize| (measured[r].0.mean + measured[r].1).max(measured[r].1).max(0.0);
+            let size = |r: usize| regions[r].pixels.len() as f64;
+            let usual = |r: usize| measured[r].0.std_error.powi(2) * size(r) / level(r);
+            let kappa = median((1..regions.len()).map(usual).filter(|k| *k > 0.0 && k.is_finite()).collect());
             for (r, region) in regions.iter().enumerate() {
-                let (m, carried) = difference((a, b, 1.0), width, &region.pixels, channel, true);
-                let n = region.pixels.len() as f64;
-                let predicted = region.pixels.iter().map(|&p| f64::from(b.mean[p][channel])).sum::<f64>() / n;
-                let suspect = m.mean + predicted;
-                let level = suspect.max(predicted).max(0.0);
-                if r == 0 {
-                    kappa = if level > 0.0 { m.std_error * m.std_error * n / level } else { 0.0 };
-                }
-                let std_error = m.std_error.max((kappa * level / n).sqrt());
-                let equal = m.mean.abs() <= rounding * predicted.abs();
-                let p = if exact && differs_without_noise(a, b, &region.pixels, channel, rounding) || m.mean.is_nan() {
-                    // what is not a number differs from every number
-                    0.0
-                } else if equal || carried < FEW {
-                    1.0
-                } else {
-                    two_sided_p(m.mean / std_error, m.dof)
-                };
-                gaps.push(Gap { slot: a.slot, region: r, channel, suspect, predicted, std_error, p });
+                let (Measured { mean: difference, std_error: own, dof }, predicted, carried) = measured[r];
+                let suspect = difference + predicted;
+                let floor = if r == 0 { 0.0 } else { (kappa * level(r) / size(r)).sqrt() };
+                let std_error = own.max(floor);
+                let equal = difference.abs() <= rounding * predicted.abs();
+                let p =
+                    if exact && differs_without_noise(a, b, &region.pixels, channel, rounding) || difference.is_nan() {
+                        // what is not a number differs from every number
+                        0.0
+                    } else if equal || carried < FEW {
+                        1.0
+                    } else {
+                        two_sided_p(difference / std_error, dof)
+                    };
+                gaps.push(Gap { slot: a.slot, region: r, channel, suspect, predicted, std_error, p, adjusted: 1.0 });
             }
         }
     }
-    let adjusted = holm(&gaps.iter().map(|g| if g.p.is_nan() { 1.0 } else { g.p }).collect::<Vec<_>>());
-    let p = adjusted.iter().copied().fold(1.0, f64::min);
+    // half of the level is for the few comparisons of image means, which see what is small and everywhere
+    let adjust = |gaps: &[Gap], image: bool| {
+        let at: Vec<usize> = (0..gaps.len()).filter(|&i| (gaps[i].region == 0) == image).collect();
+        let p: Vec<f64> = at.iter().map(|&i| if gaps[i].p.is_nan() { 1.0 } else { gaps[i].p }).collect();
+        at.into_iter().zip(holm(&p)).map(|(i, p)| (i, (2.0 * p).min(1.0))).collect::<Vec<_>>()
+    };
+    for image in [true, false] {
+        for (i, p) in adjust(&gaps, image) {
+            gaps[i].adjusted = p;
+        }
+    }
+    let p = gaps.iter().map(|g| g.adjusted).fold(1.0, f64::min);
     let z = |g: &Gap| if g.p == 1.0 { 0.0 } else { ((g.suspect - g.predicted) / g.std_error).abs().min(1e6) };
-    let by = |a: &usize, b: &usize| gaps[*a].p.total_cmp(&gaps[*b].p).then(z(&gaps[*b]).total_cmp(&z(&gaps[*a])));
+    let by = |a: &usize, b: &usize| {
+        gaps[*a].adjusted.total_cmp(&gaps[*b].adjusted).then(z(&gaps[*b]).total_cmp(&z(&gaps[*a])))
+    };
     let worst = (0..gaps.len()).min_by(by).unwrap_or(0);
     let misfit = gaps.iter().map(|g| z(g) * z(g)).sum::<f64>() / gaps.len().max(1) as f64;
     Fit { gaps, p, worst, misfit }

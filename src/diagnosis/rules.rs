@@ -142,19 +142,23 @@ fn changes_with_samples(f: &Facts) -> Vec<Suspicion> {
         );
     }
     if s.slope.is_finite() && s.slope > -0.5 && !f.rejected {
-        let why = format!("the squared error falls as samples^{:.2} instead of samples^-1", s.slope);
+        let why = format!(
+            "the squared error falls as samples^{:.2} instead of samples^-1: samples repeat, or a bias too small for the means",
+            s.slope
+        );
         return points("same-numbers", why, "give every sample numbers of its own");
     }
     vec![]
 }
 
 fn no_sum_of_its_terms(f: &Facts) -> Vec<Suspicion> {
-    let Some([sum, half]) = f.evidence.sum else { return vec![] };
-    if (sum - 1.0).abs() <= (2.5 * half).max(5e-3) {
+    let Some([sum, half, right]) = f.evidence.sum else { return vec![] };
+    if !((sum / right - 1.0).abs() > (2.5 * half).max(5e-3)) {
         return vec![];
     }
-    let why = format!("the whole image is {sum:.4} ± {half:.4} of the sum of its own terms and tail");
-    let name = if sum < 1.0 { "gamma-before-mean" } else { "emission-missing" };
+    let why =
+        format!("the whole image is {sum:.4} ± {half:.4} of the sum of its own layers, where {right:.4} is right");
+    let name = if sum < right { "gamma-before-mean" } else { "emission-missing" };
     let next = "look for what is not linear (clamp, gamma, 8 bits), or for a term that the layers leave out";
     points(name, why, next)
 }

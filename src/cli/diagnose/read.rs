@@ -77,9 +77,11 @@ fn layered(path: &Path) -> Result<File, Failure> {
             Some(error) => {
                 errors.insert(Slot::Whole, (String::new(), error.to_vec()));
             }
-            None => {
+            // the error of another layer that also shows a whole image
+            None if errors.get(&Slot::Whole).is_some_and(|(name, _)| !ALONE.contains(&name.as_str())) => {
                 errors.remove(&Slot::Whole);
             }
+            None => {}
         }
     }
     if means.is_empty() {
@@ -136,10 +138,16 @@ enum Part {
     Variance,
 }
 
+/// Names of the error of the unnamed layer.
+const ALONE: [&str; 3] = ["se", "stderr", "std_error"];
+
 /// What a layer is, by its name.
 fn meaning(name: &str) -> Option<(Slot, Part)> {
     // `ViewLayer.Combined`: what counts is the last word
     let lower = name.rsplit('.').next()?.to_lowercase();
+    if ALONE.contains(&lower.as_str()) {
+        return Some((Slot::Whole, Part::Error));
+    }
     let suffixes = [("_se", Part::Error), ("_stderr", Part::Error), ("_err", Part::Error), ("_var", Part::Variance)];
     let (stem, part) =
         suffixes.iter().find_map(|(s, p)| Some((lower.strip_suffix(s)?, *p))).unwrap_or((&lower, Part::Mean));
@@ -226,6 +234,7 @@ mod tests {
             ("bounce_12", Slot::Term(12), Part::Mean),
             ("Depth0_var", Slot::Term(0), Part::Variance),
             ("tail_se", Slot::Tail, Part::Error),
+            ("se", Slot::Whole, Part::Error),
         ] {
             assert_eq!(meaning(name), Some((slot, part)), "{name}");
         }

@@ -170,8 +170,8 @@ fn evidence(f: &Found) -> String {
     if !f.terms {
         facts.push("no terms in the file: only the whole image could be compared".into());
     }
-    if let Some([sum, half]) = e.sum {
-        facts.push(format!("whole image over the sum of its own terms: {sum:.4} ± {half:.4}"));
+    if let Some([sum, half, right]) = e.sum {
+        facts.push(format!("whole image over the sum of its own layers: {sum:.4} ± {half:.4}, {right:.4} is right"));
     }
     let c = &e.counts;
     if c.non_finite + c.negative > 0 {
