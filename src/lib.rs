@@ -25,7 +25,7 @@
 //! Data flows one way, and so do imports:
 //!
 //! ```text
-//! math → scene → terms → operator → estimator | solver → stats → worlds → zoo → report
+//! math → scene → terms → operator → estimator | solver → stats → worlds → zoo → diagnosis → report
 //! ```
 //!
 //! One scene, solved two ways, in a few lines:
@@ -45,6 +45,7 @@
 //! # Ok::<(), fredholm::scene::SceneError>(())
 //! ```
 
+pub mod diagnosis;
 pub mod estimator;
 pub mod math;
 pub mod operator;

@@ -84,6 +84,25 @@ Example:
   fredholm compare a b"
     )]
     Compare(Compare),
+    /// Somebody else's pictures: correct, or what is wrong with them
+    #[command(
+        after_help = "The pictures are compared with the right terms, region by region. If they differ, every known mistake
+is rendered in the same scene, and those that the pictures contradict are struck off. What stays is
+the answer: a name, or a short list that this data cannot tell apart.
+
+A file with the terms in layers T00, T01, … says most; the whole image alone says less; 8 bits least.
+
+Exit code 0: correct, as far as the data can tell; 1: something is wrong.
+
+Examples:
+  fredholm diagnose mine.exr --against cornell
+  fredholm diagnose T00.exr T01.exr T02.exr T03.exr --against box.toml
+  fredholm diagnose r_4.exr r_16.exr r_64.exr --against cornell         growing samples per pixel
+  fredholm diagnose mine.exr --scale 10=large.exr --against cornell     the scene ten times larger
+  fredholm diagnose mine.png --gain 2 --against fredholm-out/cornell
+  fredholm diagnose zoo-out/*.exr --against cornell"
+    )]
+    Diagnose(super::diagnose::Diagnose),
     /// The terms for every value of one setting: cost beside gain
     #[command(after_help = "Examples:
   fredholm sweep furnace --over branching --sampling uniform --spp 64
@@ -437,7 +456,7 @@ fn fraction(s: &str) -> Result<f64, String> {
     s.parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite()).ok_or(format!("`{s}` is not a number from 0 on"))
 }
 
-fn probability(s: &str) -> Result<f64, String> {
+pub fn probability(s: &str) -> Result<f64, String> {
     s.parse().ok().filter(|p| *p > 0.0 && *p < 1.0).ok_or(format!("`{s}` is not between 0 and 1"))
 }
 

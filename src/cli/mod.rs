@@ -9,6 +9,7 @@ pub mod args;
 mod chapter;
 mod check;
 mod compare;
+mod diagnose;
 mod facts;
 mod figure;
 mod guard;
@@ -89,6 +90,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Render(run)) => solve::render(run),
         Some(Command::Radiosity(run)) => solve::radiosity(run),
         Some(Command::Compare(args)) => compare::run(args),
+        Some(Command::Diagnose(args)) => diagnose::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
         Some(Command::Walk(args)) => walk::run(args),
         Some(Command::Check(args)) => check::run(args),

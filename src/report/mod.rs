@@ -14,6 +14,7 @@
 //! | `covariance.svg`, `split.csv` | [`split`] |
 //! | sheets of one image as it grows | [`stages`] |
 //! | `roulette.csv`, `roulette.svg`, and its table | [`roulette`] |
+//! | `diagnosis.svg` | [`diagnosis`] |
 //! | `NAME-ratios.svg` of the zoo and its PNG | [`signature`] |
 //! | `summary.json` | [`summary`] |
 //! | `index.html` | [`html`] |
@@ -23,6 +24,7 @@ mod axis;
 mod base64;
 mod canvas;
 pub mod decay;
+pub mod diagnosis;
 pub mod equilibrium;
 mod error;
 pub mod exr;

@@ -175,6 +175,10 @@ pub const ENTRIES: &[Entry] = &[
     entry("wrong_densities_are_found", 25, 1e-8),
     entry("weights_average_to_the_albedo", 3_000, 1e-8),
     entry("a_million_weights_average_to_the_albedo", 3_000, 1e-8),
+    // tests/diagnosis.rs
+    entry("right_renderers_are_called_correct", 44, 1e-8),
+    entry("false_alarms_keep_their_level", 2, 1e-8),
+    entry("a_bias_of_the_size_that_is_promised_is_seen", 1, 1e-9),
 ];
 
 impl Entry {

@@ -1,0 +1,213 @@
+//! What a suspect is held against: terms rendered here, or those of an existing run.
+
+use super::super::progress::{Progress, stop_flag};
+use super::super::{Failure, args, solve};
+use super::Diagnose;
+use clap::Parser;
+use fredholm::diagnosis::candidates::own_seed;
+use fredholm::diagnosis::picture::{Code, Layer, Pictures, Slot, shrink_factor};
+use fredholm::diagnosis::{Region, WIDEST, regions};
+use fredholm::report::{exr, summary};
+use fredholm::scene::load::{self, Options};
+use fredholm::scene::{Description, Scene};
+use fredholm::worlds::sampled::{self, Estimator};
+use fredholm::worlds::{Settings, Unobserved};
+use std::path::Path;
+
+/// Where the reference comes from.
+pub struct Source {
+    /// Name of the scene.
+    pub name: String,
+    /// Hash of the scene.
+    pub hash: String,
+    description: Option<Description>,
+    run: Option<(String, Pictures, f64)>,
+}
+
+/// The reference for one size and one K.
+pub struct Right {
+    /// Its pictures, averaged down.
+    pub pictures: Pictures,
+    /// By which factor.
+    pub factor: usize,
+    /// Its samples per pixel of the averaged picture; NaN if not known.
+    pub spp: f64,
+    /// What the camera sees.
+    pub seen: Vec<Region>,
+    /// The scene at that size, for the candidates.
+    pub scene: Option<Scene>,
+    /// How it was made.
+    pub label: String,
+    /// What is found by rare and bright events only.
+    pub luck: Option<String>,
+}
+
+/// Loads what `--against` names.
+pub fn source(args: &Diagnose) -> Result<Source, Failure> {
+    let path = Path::new(&args.against);
+    if path.is_dir() || path.file_name().is_some_and(|n| n == "summary.json") {
+        if let Some(flag) = [("--set", !args.set.is_empty()), ("--emit", !args.emit.is_empty())].iter().find(|f| f.1) {
+            let what = format!("error: {} changes a scene, and {} is a finished run", flag.0, args.against);
+            return Err(Failure::Usage(format!("{what}\nhelp: give the scene itself to --against")));
+        }
+        return finished(path);
+    }
+    let loaded = load::scene(&args.against, &Options { set: args.set.clone(), emit: args.emit.clone() })?;
+    for warning in &loaded.warnings {
+        super::super::note(&format!("warning: {warning}"));
+    }
+    let hash = solve::scene_hash(&loaded.canonical);
+    Ok(Source { name: loaded.description.name.clone(), hash, description: Some(loaded.description), run: None })
+}
+
+/// A run of this program: its terms, and the scene that its command names.
+fn finished(path: &Path) -> Result<Source, Failure> {
+    let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new(".")) };
+    let record = summary::read(&folder.join("summary.json"))?;
+    let image = exr::read(&folder.join("terms.exr"))?;
+    let mut layers = vec![];
+    let mut add = |slot: Slot, name: &str| {
+        let pair = image.layer(name).zip(image.layer(&format!("{name}_se")));
+        if let Some((mean, error)) = pair {
+            layers.push(Layer { slot, mean: mean.to_vec(), std_error: Some(error.to_vec()) });
+        }
+    };
+    for k in 0..=record.max_bounces {
+        add(Slot::Term(k), &format!("T{k:02}"));
+    }
+    add(Slot::Tail, "tail");
+    add(Slot::Whole, if image.layer("Tall").is_some() { "Tall" } else { "path" });
+    if layers.is_empty() {
+        return Err(Failure::Input(format!(
+            "error: the run left neither terms nor a path tracer's image\n  --> {}\nhelp: give a run of `fredholm series`",
+            folder.join("terms.exr").display()
+        )));
+    }
+    let pictures = Pictures { size: [image.width, image.height], layers, code: Code::Float };
+    let description = scene_of(&record.command);
+    if description.is_none() {
+        super::super::note("note: the scene of that run cannot be loaded again; no candidates are simulated");
+    }
+    let label = format!("{}: {}, {} spp", path.display(), record.command, record.spp);
+    Ok(Source {
+        name: record.scene,
+        hash: record.scene_hash,
+        description,
+        run: Some((label, pictures, record.spp as f64)),
+    })
+}
+
+/// The scene that a command of this program renders.
+fn scene_of(command: &str) -> Option<Description> {
+    let cli = args::Cli::try_parse_from(words(command)).ok()?;
+    let run = match &cli.command {
+        None => &cli.tour,
+        Some(args::Command::Tour(run) | args::Command::Series(run) | args::Command::Render(run)) => run,
+        Some(_) => return None,
+    };
+    let options = Options { set: run.set.clone(), emit: run.emit.clone() };
+    Some(load::scene(&run.scene, &options).ok()?.description)
+}
+
+/// The words of a command line as this program writes them: only single quotes.
+fn words(command: &str) -> Vec<String> {
+    let (mut all, mut word, mut quoted, mut escaped) = (vec![], None::<String>, false, false);
+    for c in command.chars() {
+        match c {
+            _ if escaped => {
+                word.get_or_insert_default().push(c);
+                escaped = false;
+            }
+            '\\' if !quoted => escaped = true,
+            '\'' => {
+                quoted = !quoted;
+                word.get_or_insert_default();
+            }
+            ' ' if !quoted => all.extend(word.take()),
+            c => word.get_or_insert_default().push(c),
+        }
+    }
+    all.extend(word);
+    all
+}
+
+impl Source {
+    /// Refuses pictures that cannot show the same.
+    pub fn suits(&self, name: &str, size: [usize; 2]) -> Result<(), Failure> {
+        let fewest = regions::FEWEST;
+        if size[0] * size[1] < fewest {
+            return Err(Failure::Input(format!(
+                "error: {}×{} pixels are too few to tell a bias from noise\n  --> {name}\nhelp: render at least {fewest} pixels",
+                size[0], size[1]
+            )));
+        }
+        match &self.run {
+            Some((_, pictures, _)) if pictures.size != size => Err(super::size_mismatch(name, size, pictures.size)),
+            // a picture with a caption, a crop: the camera of the scene makes no such picture
+            None => match self.description.as_ref().map(|d| d.camera.size.map(|s| s as usize)) {
+                Some([w, h]) if size[0] * h != size[1] * w => Err(Failure::Input(format!(
+                    "error: a picture of {}×{} pixels has not the shape of the scene's {w}×{h}\n  --> {name}\n\
+                     help: crop nothing and caption nothing, or set the camera with --set camera.size=[{},{}]",
+                    size[0], size[1], size[0], size[1]
+                ))),
+                _ => Ok(()),
+            },
+            _ => Ok(()),
+        }
+    }
+
+    /// The reference at a size, with terms up to K.
+    pub fn right(
+        &self,
+        args: &Diagnose,
+        size: [usize; 2],
+        max_bounces: usize,
+        progress: &Progress,
+    ) -> Result<Right, Failure> {
+        let factor = shrink_factor(size, WIDEST);
+        let small = size.map(|s| (s / factor) as u32);
+        let scene = self.description.as_ref().map(|d| {
+            let mut d = d.clone();
+            d.camera.size = small;
+            Scene::new(&d)
+        });
+        let seen = scene.as_ref().map_or(vec![], regions::seen);
+        if let Some((label, pictures, samples)) = &self.run {
+            let pictures = pictures.shrunk(factor);
+            let spp = *samples * (factor * factor) as f64;
+            return Ok(Right { pictures, factor, spp, seen, scene, label: label.clone(), luck: None });
+        }
+        let scene = scene.ok_or_else(|| Failure::Input("error: no scene\nhelp: give one to --against".into()))?;
+        let pixels = u64::from(small[0]) * u64::from(small[1]);
+        let spp = args.spp.unwrap_or((8_000_000 / pixels).clamp(16, 4096) as u32);
+        let usual = Settings::default();
+        let roulette = usual.path_roulette.clone().after(max_bounces);
+        let settings = Settings { spp, seed: own_seed(args.seed), max_bounces, roulette, ..usual };
+        super::super::guard::fits_in_memory(&settings, small)?;
+        super::super::guard::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
+        let observer: &dyn fredholm::worlds::Observer = if args.quiet { &Unobserved } else { progress };
+        let result = sampled::terms(&scene, Estimator::Prefix, &settings, observer, stop_flag());
+        let missing = result.series.unseen.iter().map(|u| format!("from k = {} on: {}", u.from, u.what));
+        for missing in missing {
+            super::super::note(&format!("note: not supported by the reference, {missing}"));
+        }
+        let luck = result.series.by_luck.first().cloned();
+        let label = format!(
+            "{}, {}, k ≤ {max_bounces}, {spp} spp at {}×{}",
+            self.name, result.series.label, small[0], small[1]
+        );
+        let spp = f64::from(result.spp);
+        Ok(Right { pictures: Pictures::of(&result, small), factor, spp, seen, scene: Some(scene), label, luck })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::words;
+
+    #[test]
+    fn quoted_words_stay_together() {
+        assert_eq!(words("fredholm series a --set 'x=[1, 2]'"), ["fredholm", "series", "a", "--set", "x=[1, 2]"]);
+        assert_eq!(words(r"info 'it'\''s'"), ["info", "it's"]);
+    }
+}

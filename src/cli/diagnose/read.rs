@@ -1,0 +1,258 @@
+//! Somebody else's pictures: which layers are terms, which is the whole image, and which files belong together.
+//!
+//! | layer name | taken for |
+//! |---|---|
+//! | none, `beauty`, `Combined`, `color`, `RGBA`, `image`, `total`, `path` | the whole image |
+//! | `T00`, `bounce_1`, `depth3`, `k2`, `order4`, … | the term of that number |
+//! | `tail` | everything longer |
+//! | the same with `_se`, `_stderr`, `_err` or `_var` | its error |
+
+use super::super::Failure;
+use fredholm::diagnosis::picture::{Code, Layer, Pictures, Slot, is_half};
+use fredholm::report::exr;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What a file holds.
+pub struct File {
+    /// Its pictures.
+    pub pictures: Pictures,
+    /// Fraction of pixels at the upper end of 8 bits.
+    pub clipped: f64,
+    /// Pixels that tell nothing because 8 bits end there, or nothing.
+    pub mask: Option<Vec<bool>>,
+    /// Text attributes.
+    pub attributes: BTreeMap<String, String>,
+    /// Layers that were not understood.
+    pub ignored: Vec<String>,
+}
+
+impl File {
+    /// What the file says of itself under a name, ours or anybody's.
+    pub fn attribute(&self, name: &str) -> Option<&str> {
+        let ours = format!("fredholm.{name}");
+        self.attributes.get(&ours).or_else(|| self.attributes.get(name)).map(String::as_str)
+    }
+}
+
+/// Reads an EXR, PNG, JPEG or HDR file.
+pub fn file(path: &Path) -> Result<File, Failure> {
+    let bytes = std::fs::read(path).map_err(|e| wrong(path, &e.to_string(), "check the name, or render it first"))?;
+    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) { layered(path) } else { plain(path, &bytes) }
+}
+
+fn wrong(path: &Path, what: &str, help: &str) -> Failure {
+    Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", path.display()))
+}
+
+type Pixels = Vec<[f32; 3]>;
+
+fn layered(path: &Path) -> Result<File, Failure> {
+    let image = exr::read(path)?;
+    let (mut means, mut errors, mut ignored) = (BTreeMap::<Slot, Pixels>::new(), BTreeMap::new(), vec![]);
+    // the first layers of the list win: the unnamed one is what a viewer shows
+    let rank = |name: &str| usize::from(!name.is_empty());
+    let mut order: Vec<&(String, Pixels)> = image.layers.iter().collect();
+    order.sort_by_key(|l| rank(&l.0));
+    for (name, pixels) in order {
+        match meaning(name) {
+            Some((slot, Part::Mean)) if !means.contains_key(&slot) => {
+                means.insert(slot, pixels.clone());
+            }
+            Some((slot, Part::Error)) => {
+                errors.entry(slot).or_insert((name.clone(), pixels.clone()));
+            }
+            Some((slot, Part::Variance)) => {
+                let root = pixels.iter().map(|v| v.map(f32::sqrt)).collect();
+                errors.entry(slot).or_insert((name.clone(), root));
+            }
+            _ => ignored.push(name.clone()),
+        }
+    }
+    // the whole image may stand in the file a second time, under a name that has an error
+    if let Some(whole) = means.get(&Slot::Whole) {
+        let twin =
+            image.layers.iter().find(|(n, p)| !n.is_empty() && p == whole && image.layer(&format!("{n}_se")).is_some());
+        match twin.and_then(|(n, _)| image.layer(&format!("{n}_se"))) {
+            Some(error) => {
+                errors.insert(Slot::Whole, (String::new(), error.to_vec()));
+            }
+            // the error of another layer that also shows a whole image
+            None if errors.get(&Slot::Whole).is_some_and(|(name, _)| !ALONE.contains(&name.as_str())) => {
+                errors.remove(&Slot::Whole);
+            }
+            None => {}
+        }
+    }
+    if means.is_empty() {
+        let names: Vec<&str> = image.layers.iter().map(|l| l.0.as_str()).collect();
+        let what = format!("no layer is a term or a whole image: {}", names.join(", "));
+        return Err(wrong(path, &what, "name the terms T00, T01, …, and leave the whole image unnamed (R G B)"));
+    }
+    let half = means.values().all(|p| is_half(p) || p.iter().all(|v| *v == [0.0; 3]));
+    let layers = means
+        .into_iter()
+        .map(|(slot, mean)| Layer { slot, mean, std_error: errors.remove(&slot).map(|e: (String, Pixels)| e.1) })
+        .collect();
+    let code = if half { Code::Half } else { Code::Float };
+    Ok(File {
+        pictures: Pictures { size: [image.width, image.height], layers, code },
+        clipped: 0.0,
+        mask: None,
+        attributes: image.attributes.into_iter().collect(),
+        ignored,
+    })
+}
+
+/// 8-bit pictures by the inverse of the sRGB curve; `.hdr` as it is.
+fn plain(path: &Path, bytes: &[u8]) -> Result<File, Failure> {
+    let help = "give an .exr, .png, .jpg or .hdr file";
+    let image = image::load_from_memory(bytes).map_err(|e| wrong(path, &format!("not a readable image: {e}"), help))?;
+    let float = matches!(image.color(), image::ColorType::Rgb32F | image::ColorType::Rgba32F);
+    let size = [image.width() as usize, image.height() as usize];
+    let (mean, code): (Pixels, Code) = if float {
+        (image.to_rgb32f().pixels().map(|p| p.0).collect(), Code::Float)
+    } else {
+        let linear = |v: u16| {
+            let s = f32::from(v) / 65535.0;
+            if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) }
+        };
+        (image.to_rgb16().pixels().map(|p| p.0.map(linear)).collect(), Code::EightBit)
+    };
+    let clipped: Vec<bool> = mean.iter().map(|v| !float && v.iter().any(|x| *x >= 0.999)).collect();
+    let share = clipped.iter().filter(|c| **c).count() as f64 / clipped.len().max(1) as f64;
+    let layers = vec![Layer { slot: Slot::Whole, mean, std_error: None }];
+    Ok(File {
+        pictures: Pictures { size, layers, code },
+        clipped: share,
+        mask: (!float).then_some(clipped),
+        attributes: BTreeMap::new(),
+        ignored: vec![],
+    })
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Mean,
+    Error,
+    Variance,
+}
+
+/// Names of the error of the unnamed layer.
+const ALONE: [&str; 3] = ["se", "stderr", "std_error"];
+
+/// What a layer is, by its name.
+fn meaning(name: &str) -> Option<(Slot, Part)> {
+    // `ViewLayer.Combined`: what counts is the last word
+    let lower = name.rsplit('.').next()?.to_lowercase();
+    if ALONE.contains(&lower.as_str()) {
+        return Some((Slot::Whole, Part::Error));
+    }
+    let suffixes = [("_se", Part::Error), ("_stderr", Part::Error), ("_err", Part::Error), ("_var", Part::Variance)];
+    let (stem, part) =
+        suffixes.iter().find_map(|(s, p)| Some((lower.strip_suffix(s)?, *p))).unwrap_or((&lower, Part::Mean));
+    let slot = match stem {
+        "" | "beauty" | "combined" | "color" | "colour" | "rgb" | "rgba" | "image" | "final" | "total" | "whole"
+        | "path" => Slot::Whole,
+        "tail" => Slot::Tail,
+        _ => {
+            let digits = stem.len() - stem.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+            let (word, number) = stem.split_at(stem.len() - digits);
+            let word = word.trim_end_matches(['_', '-', ' ']);
+            let known = ["t", "term", "bounce", "bounces", "depth", "k", "b", "order", "vertex", "length", "indirect"];
+            Slot::Term(number.parse().ok().filter(|_| known.contains(&word))?)
+        }
+    };
+    Some((slot, part))
+}
+
+/// How several files belong together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Grouping {
+    /// By their names
+    Auto,
+    /// Each by itself
+    Separate,
+    /// Numbered terms of one render
+    Bounces,
+    /// One render at growing samples per pixel
+    Spp,
+}
+
+/// The common beginning of the names and the number each ends in.
+fn numbered(paths: &[PathBuf]) -> Option<(String, Vec<u32>)> {
+    let split = |p: &PathBuf| {
+        let stem = p.file_stem()?.to_string_lossy().into_owned();
+        let stem = stem.trim_end_matches("spp").trim_end_matches(['_', '-']).to_owned();
+        let word = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+        Some((word.to_owned(), stem[word.len()..].parse::<u32>().ok()?))
+    };
+    let all: Option<Vec<(String, u32)>> = paths.iter().map(split).collect();
+    let all = all?;
+    let word = all.first()?.0.clone();
+    all.iter().all(|a| a.0 == word).then(|| (word, all.iter().map(|a| a.1).collect()))
+}
+
+/// How the files belong together, and the number of each.
+pub fn grouping(asked: Grouping, paths: &[PathBuf]) -> Result<(Grouping, Vec<u32>), Failure> {
+    let found = numbered(paths);
+    let need = || {
+        let help = "name them like T00.exr, T01.exr, … or render_16.exr, render_64.exr, …";
+        Failure::Usage(format!("error: these files do not end in numbers after one common name\nhelp: {help}"))
+    };
+    match asked {
+        Grouping::Separate => Ok((Grouping::Separate, vec![])),
+        Grouping::Bounces | Grouping::Spp => Ok((asked, found.ok_or_else(need)?.1)),
+        Grouping::Auto => {
+            let Some((_, numbers)) = found.filter(|_| paths.len() > 1) else { return Ok((Grouping::Separate, vec![])) };
+            let mut sorted = numbers.clone();
+            sorted.sort_unstable();
+            let steps = |ok: &dyn Fn(u32, u32) -> bool| sorted.windows(2).all(|w| ok(w[0], w[1]));
+            if sorted[0] <= 1 && steps(&|a, b| b == a + 1) && (sorted[0] == 0 || sorted.len() > 2) {
+                Ok((Grouping::Bounces, numbers))
+            } else if sorted[0] > 0 && steps(&|a, b| 2 * b >= 3 * a) {
+                Ok((Grouping::Spp, numbers))
+            } else {
+                Ok((Grouping::Separate, vec![]))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn layers_are_known_by_many_names() {
+        for (name, slot, part) in [
+            ("", Slot::Whole, Part::Mean),
+            ("ViewLayer.Combined", Slot::Whole, Part::Mean),
+            ("T03", Slot::Term(3), Part::Mean),
+            ("T03_se", Slot::Term(3), Part::Error),
+            ("bounce_12", Slot::Term(12), Part::Mean),
+            ("Depth0_var", Slot::Term(0), Part::Variance),
+            ("tail_se", Slot::Tail, Part::Error),
+            ("se", Slot::Whole, Part::Error),
+        ] {
+            assert_eq!(meaning(name), Some((slot, part)), "{name}");
+        }
+        for name in ["R03", "Tsum", "albedo", "normal", "depth", "T03x"] {
+            assert_eq!(meaning(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn files_are_grouped_by_their_names() {
+        let of = |names: &[&str]| {
+            grouping(Grouping::Auto, &names.iter().map(PathBuf::from).collect::<Vec<_>>()).ok().unwrap().0
+        };
+        assert_eq!(of(&["a/T00.exr", "a/T01.exr"]), Grouping::Bounces);
+        assert_eq!(of(&["r_1.exr", "r_2.exr", "r_3.exr"]), Grouping::Bounces);
+        assert_eq!(of(&["r_16spp.png", "r_4spp.png", "r_64spp.png"]), Grouping::Spp);
+        assert_eq!(of(&["double-emission.exr", "clamped.exr"]), Grouping::Separate);
+        assert_eq!(of(&["T00.exr"]), Grouping::Separate);
+        assert_eq!(of(&["scene7.exr", "scene8.exr"]), Grouping::Separate);
+    }
+}

@@ -1,0 +1,78 @@
+//! The zoo as candidates: every member renders the scene of the suspect, once per number of samples.
+//!
+//! The seed is not the one that the zoo itself would use: two renders with equal numbers would agree for no good reason.
+
+use super::elimination::Simulate;
+use super::picture::Pictures;
+use crate::math::fnv1a;
+use crate::scene::Scene;
+use crate::worlds::sampled::Sampled;
+use crate::worlds::{Settings, Unobserved};
+use crate::zoo;
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The members of the zoo in one scene; pictures are kept, so that many suspects share them.
+pub struct Members<'a> {
+    scene: &'a Scene,
+    settings: Settings,
+    stop: &'a AtomicBool,
+    made: Mutex<BTreeMap<(String, u32), Pictures>>,
+    shown: Mutex<Option<Vec<String>>>,
+}
+
+/// Samples per pixel with which a member is held against what is right.
+const TRIAL: u32 = 8;
+
+/// A seed for what a suspect is compared with: far from any that people type.
+pub fn own_seed(seed: u64) -> u64 {
+    fnv1a(b"diagnosis".iter().copied().chain(seed.to_le_bytes()))
+}
+
+impl<'a> Members<'a> {
+    /// In this scene, with terms up to K as the suspect has them.
+    pub fn new(scene: &'a Scene, max_bounces: usize, seed: u64, stop: &'a AtomicBool) -> Self {
+        let settings = Settings::default();
+        let after = settings.path_roulette.clone().after(max_bounces);
+        let settings = Settings { max_bounces, roulette: after, seed: own_seed(seed), ..settings };
+        Self { scene, settings, stop, made: Mutex::new(BTreeMap::new()), shown: Mutex::new(None) }
+    }
+}
+
+impl Members<'_> {
+    /// Whether a member differs from the right renderer of the same plan in any pixel of the same samples.
+    fn shows(&self, bug: &zoo::Bug) -> bool {
+        let settings = Settings { spp: TRIAL, ..self.settings.clone() };
+        let plan = bug.plan(&settings);
+        let render = |mistake| zoo::of(&plan, mistake, "trial", self.scene, &settings, &Unobserved, self.stop);
+        let (wrong, right) = (render(bug.mistake), render(&zoo::Right));
+        let means = |s: &Sampled| s.terms.iter().chain([&s.tail, &s.total]).map(|i| i.mean.clone()).collect::<Vec<_>>();
+        means(&wrong) != means(&right)
+    }
+}
+
+impl Simulate for Members<'_> {
+    /// Those that this scene can show: with the same random numbers they differ from what is right.
+    fn names(&self) -> Vec<String> {
+        let mut shown = self.shown.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let all = || zoo::all().into_iter().filter(|bug| self.shows(bug)).map(|bug| bug.name.to_owned()).collect();
+        shown.get_or_insert_with(all).clone()
+    }
+
+    fn pictures(&self, name: &str, spp: u32) -> Option<Pictures> {
+        let key = (name.to_owned(), spp);
+        let mut made = self.made.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some(pictures) = made.get(&key) {
+            return Some(pictures.clone());
+        }
+        let settings = Settings { spp, ..self.settings.clone() };
+        let render = zoo::render(zoo::find(name)?, self.scene, &settings, &Unobserved, self.stop);
+        if self.stop.load(Ordering::SeqCst) {
+            return None;
+        }
+        let pictures = Pictures::of(&render, self.scene.camera.size);
+        made.insert(key, pictures.clone());
+        Some(pictures)
+    }
+}

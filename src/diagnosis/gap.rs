@@ -1,0 +1,276 @@
+//! Two sets of pictures, one comparison: is the difference more than noise, and where?
+//!
+//! ```text
+//! d = mean over a region of S − P        t = d / se(d)        p adjusted by Holm over slots × channels, and over these × regions: half the level each
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | S, P | the suspect, and what an explanation predicts | arguments of [`compare`] |
+//! | se(d) | from the `_se` layers of both; else from how S − P scatters inside blocks of 8 × 8 pixels | [`spread`] |
+//! | r | ratio of means, with its error by the same rule for S − r P | [`ratio`] |
+//! | κ | variance over mean, per pixel, the median of the regions: the least that is believed of any of them | [`compare`] |
+//! | n_eff | (Σ v)²/Σ v² of the pixel variances: how many pixels carry the noise | [`Gap::p`] |
+//!
+//! The local scatter holds the noise of both sides and, where the explanation is wrong in shape, that misfit too: it is too
+//! large rather than too small, so a noisy difference is not taken for a bias. Noise of rare hits is as their number: a region
+//! that by chance had none looks dark and certain, and κ times its mean mends that. Where fewer than ten pixels carry the noise the
+//! t-test is not to be trusted, and nothing is rejected. Pixels are taken as independent. Welch (1947); Holm (1979).
+
+use super::picture::{Code, Layer, Pictures, Slot};
+use super::regions::Region;
+use crate::stats::{Measured, holm, two_sided_p};
+
+/// Fewer pixels than this carry the noise: no decision.
+const FEW: f64 = 10.0;
+/// Side of the blocks in which the noise is measured.
+const BLOCK: usize = 8;
+
+/// One comparison: a slot, a region, a channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Gap {
+    /// Of which picture.
+    pub slot: Slot,
+    /// Index of the region.
+    pub region: usize,
+    /// 0, 1, 2: red, green, blue.
+    pub channel: usize,
+    /// Mean of the suspect.
+    pub suspect: f64,
+    /// Mean of the prediction.
+    pub predicted: f64,
+    /// Standard error of their difference.
+    pub std_error: f64,
+    /// p-value of no difference, not adjusted; 1 where it is rounding or nothing can be decided.
+    pub p: f64,
+    /// The same adjusted for the number of comparisons.
+    pub adjusted: f64,
+}
+
+/// All comparisons of two sets of pictures.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// Every comparison.
+    pub gaps: Vec<Gap>,
+    /// The smallest p-value, adjusted for their number.
+    pub p: f64,
+    /// Index of the comparison that has it.
+    pub worst: usize,
+    /// Mean of ((S − P)/se)² over the comparisons: about 1 if P explains S.
+    pub misfit: f64,
+}
+
+impl Fit {
+    /// The comparison in which S and P are furthest apart; nothing if there was nothing to compare.
+    pub fn worst(&self) -> Option<&Gap> {
+        self.gaps.get(self.worst)
+    }
+}
+
+/// Whether the two differ where the prediction has no noise at all: S/P is one number other than 1 in every pixel of the region
+/// in which P is positive and its error zero, and there are at least four. A suspect with noise would not repeat itself.
+fn differs_without_noise(a: &Layer, b: &Layer, pixels: &[usize], channel: usize, rounding: f64) -> bool {
+    let Some(errors) = &b.std_error else { return false };
+    let known = pixels.iter().filter(|&&p| errors[p][channel] == 0.0 && b.mean[p][channel] > 0.0);
+    let mut ratios = known.map(|&p| f64::from(a.mean[p][channel]) / f64::from(b.mean[p][channel]));
+    let Some(first) = ratios.next() else { return false };
+    let mut count = 1;
+    (first - 1.0).abs() > rounding
+        && ratios.all(|r| {
+            count += 1;
+            (r - first).abs() <= 1e-6 * first.abs()
+        })
+        && count >= 4
+}
+
+/// One channel of a difference a − f·b over some pixels: mean, error, and the pixels that carry it.
+pub(super) fn difference(
+    (a, b, factor): (&Layer, &Layer, f64),
+    width: usize,
+    pixels: &[usize],
+    channel: usize,
+    known: bool,
+) -> (Measured, f64) {
+    let n = pixels.len() as f64;
+    let d = |p: usize| f64::from(a.mean[p][channel]) - factor * f64::from(b.mean[p][channel]);
+    let mean = pixels.iter().map(|&p| d(p)).sum::<f64>() / n;
+    let (variance, carried, dof) = match (&a.std_error, &b.std_error) {
+        (Some(s), Some(t)) if known => {
+            let v = |p: usize| f64::from(s[p][channel]).powi(2) + (factor * f64::from(t[p][channel])).powi(2);
+            let (one, two) = pixels.iter().fold((0.0, 0.0), |acc, &p| (acc.0 + v(p), acc.1 + v(p) * v(p)));
+            // errors of pixels come from few replicates each, but many pixels are added
+            (one / (n * n), if two > 0.0 { one * one / two } else { n }, (n - 1.0).max(1.0))
+        }
+        _ => spread(&d, width, pixels),
+    };
+    (Measured { mean, std_error: variance.sqrt(), dof }, carried)
+}
+
+/// Variance of the mean of `d` over some pixels from its scatter inside blocks, the number of pixels that carry it, and the
+/// degrees of freedom.
+fn spread(d: &dyn Fn(usize) -> f64, width: usize, pixels: &[usize]) -> (f64, f64, f64) {
+    let mut blocks: std::collections::BTreeMap<usize, Vec<f64>> = std::collections::BTreeMap::new();
+    for &p in pixels {
+        blocks.entry(p / width / BLOCK * width + p % width / BLOCK).or_default().push(d(p));
+    }
+    let n = pixels.len() as f64;
+    let (mut variance, mut second, mut fourth, mut dof) = (0.0, 0.0, 0.0, 0.0);
+    for block in blocks.values() {
+        let m = block.len() as f64;
+        let mean = block.iter().sum::<f64>() / m;
+        let squares: Vec<f64> = block.iter().map(|x| (x - mean) * (x - mean)).collect();
+        let sum: f64 = squares.iter().sum();
+        // a block of one pixel has no scatter: the others stand for it
+        variance += if m > 1.0 { m * sum / (m - 1.0) } else { 0.0 };
+        dof += m - 1.0;
+        second += sum;
+        fourth += squares.iter().map(|s| s * s).sum::<f64>();
+    }
+    // of a normal variable (Σ x²)²/Σ x⁴ is n/3
+    let carried = if fourth > 0.0 { 3.0 * second * second / fourth } else { n };
+    (variance / (n * n), carried, dof.max(1.0))
+}
+
+/// The middle one; 0 of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Compares every slot that both have in every region.
+pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> Fit {
+    let rounding = suspect.code.rounding().max(predicted.code.rounding());
+    let (width, exact) = (suspect.size[0], suspect.code != Code::EightBit);
+    let mut gaps = vec![];
+    for a in &suspect.layers {
+        let Some(b) = predicted.layer(a.slot) else { continue };
+        for channel in 0..3 {
+            let measured: Vec<(Measured, f64, f64)> = regions
+                .iter()
+                .map(|r| {
+                    let (m, carried) = difference((a, b, 1.0), width, &r.pixels, channel, true);
+                    let n = r.pixels.len() as f64;
+                    (m, r.pixels.iter().map(|&p| f64::from(b.mean[p][channel])).sum::<f64>() / n, carried)
+                })
+                .collect();
+            let level = |r: usize| (measured[r].0.mean + measured[r].1).max(measured[r].1).max(0.0);
+            let size = |r: usize| regions[r].pixels.len() as f64;
+            let usual = |r: usize| measured[r].0.std_error.powi(2) * size(r) / level(r);
+            let kappa = median((1..regions.len()).map(usual).filter(|k| *k > 0.0 && k.is_finite()).collect());
+            for (r, region) in regions.iter().enumerate() {
+                let (Measured { mean: difference, std_error: own, dof }, predicted, carried) = measured[r];
+                let suspect = difference + predicted;
+                let floor = if r == 0 { 0.0 } else { (kappa * level(r) / size(r)).sqrt() };
+                let std_error = own.max(floor);
+                let equal = difference.abs() <= rounding * predicted.abs();
+                let p =
+                    if exact && differs_without_noise(a, b, &region.pixels, channel, rounding) || difference.is_nan() {
+                        // what is not a number differs from every number
+                        0.0
+                    } else if equal || carried < FEW {
+                        1.0
+                    } else {
+                        two_sided_p(difference / std_error, dof)
+                    };
+                gaps.push(Gap { slot: a.slot, region: r, channel, suspect, predicted, std_error, p, adjusted: 1.0 });
+            }
+        }
+    }
+    // half of the level is for the few comparisons of image means, which see what is small and everywhere
+    let adjust = |gaps: &[Gap], image: bool| {
+        let at: Vec<usize> = (0..gaps.len()).filter(|&i| (gaps[i].region == 0) == image).collect();
+        let p: Vec<f64> = at.iter().map(|&i| if gaps[i].p.is_nan() { 1.0 } else { gaps[i].p }).collect();
+        at.into_iter().zip(holm(&p)).map(|(i, p)| (i, (2.0 * p).min(1.0))).collect::<Vec<_>>()
+    };
+    for image in [true, false] {
+        for (i, p) in adjust(&gaps, image) {
+            gaps[i].adjusted = p;
+        }
+    }
+    let p = gaps.iter().map(|g| g.adjusted).fold(1.0, f64::min);
+    let z = |g: &Gap| if g.p == 1.0 { 0.0 } else { ((g.suspect - g.predicted) / g.std_error).abs().min(1e6) };
+    let by = |a: &usize, b: &usize| {
+        gaps[*a].adjusted.total_cmp(&gaps[*b].adjusted).then(z(&gaps[*b]).total_cmp(&z(&gaps[*a])))
+    };
+    let worst = (0..gaps.len()).min_by(by).unwrap_or(0);
+    let misfit = gaps.iter().map(|g| z(g) * z(g)).sum::<f64>() / gaps.len().max(1) as f64;
+    Fit { gaps, p, worst, misfit }
+}
+
+/// Ratio of the means of two layers over some pixels, channels averaged, with its standard error: of S/P from the scatter of
+/// S − r P. NaN where P is zero.
+pub fn ratio(suspect: &Layer, predicted: &Layer, width: usize, pixels: &[usize]) -> Measured {
+    let grey = |layer: &Layer| Layer {
+        slot: layer.slot,
+        mean: layer.mean.iter().map(|v| [(v[0] + v[1] + v[2]) / 3.0; 3]).collect(),
+        // channels of one path share their noise: at worst all of it
+        std_error: layer.std_error.as_ref().map(|s| s.iter().map(|v| [(v[0] + v[1] + v[2]) / 3.0; 3]).collect()),
+    };
+    let (a, b) = (grey(suspect), grey(predicted));
+    let mean = |l: &Layer| pixels.iter().map(|&p| f64::from(l.mean[p][0])).sum::<f64>() / pixels.len() as f64;
+    let (below, above) = (mean(&b), mean(&a));
+    let r = above / below;
+    let (m, _) = difference((&a, &b, r), width, pixels, 0, true);
+    Measured { mean: r, std_error: m.std_error / below.abs(), dof: m.dof }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::picture::Code;
+    use crate::diagnosis::regions::grid;
+    use crate::math::{Key, Purpose, Rng};
+
+    fn noisy(seed: u64, level: f32, errors: bool) -> Pictures {
+        let key = Key::new(seed, "noise");
+        let mean = (0..1024).map(|p| [level + 0.1 * (Rng::at(key, p, 0, 0, Purpose::Start).one() - 0.5); 3]);
+        let layer = Layer {
+            slot: Slot::Whole,
+            mean: mean.collect(),
+            std_error: errors.then(|| vec![[0.1 / 12.0f32.sqrt(); 3]; 1024]),
+        };
+        Pictures { size: [32, 32], layers: vec![layer], code: Code::Float }
+    }
+
+    #[test]
+    fn known_and_estimated_errors_agree_and_find_a_shift() {
+        let regions = grid([32, 32]);
+        for errors in [true, false] {
+            let (a, b) = (noisy(1, 1.0, errors), noisy(2, 1.0, errors));
+            let fit = compare(&a, &b, &regions);
+            assert!(fit.p > 1e-3, "{}", fit.p);
+            let expected = 0.1 / 12.0f64.sqrt() * (2.0f64 / 1024.0).sqrt();
+            assert!((fit.gaps[0].std_error / expected - 1.0).abs() < 0.1);
+            let shifted = compare(&noisy(3, 1.02, errors), &b, &regions);
+            assert!(shifted.p < 1e-6);
+            assert!(shifted.worst().is_some_and(|g| g.region == 0 && g.suspect > g.predicted));
+            let r = ratio(&noisy(3, 2.0, errors).layers[0], &b.layers[0], 32, &regions[0].pixels);
+            assert!((r.mean - 2.0).abs() < 5.0 * r.std_error && r.std_error < 0.01);
+        }
+    }
+
+    #[test]
+    fn what_has_no_noise_needs_few_pixels() {
+        let regions = grid([32, 32]);
+        let dark = |value: f32, error: f32| {
+            let lamp = |p: usize| p == 500 || p == 501 || p == 532 || p == 533;
+            let of = |v: f32| (0..1024).map(|p| if lamp(p) { [v; 3] } else { [0.0; 3] }).collect::<Vec<_>>();
+            let layer = Layer { slot: Slot::Term(0), mean: of(value), std_error: Some(of(error)) };
+            Pictures { size: [32, 32], layers: vec![layer], code: Code::Float }
+        };
+        assert_eq!(compare(&dark(0.0, 0.0), &dark(17.0, 0.0), &regions).p, 0.0);
+        assert_eq!(compare(&dark(17.0, 0.0), &dark(17.0, 0.0), &regions).p, 1.0);
+        // four pixels that are noisy decide nothing
+        assert_eq!(compare(&dark(0.0, 0.0), &dark(17.0, 1.0), &regions).p, 1.0);
+    }
+
+    #[test]
+    fn one_bright_pixel_decides_nothing_and_nan_decides_all() {
+        let regions = grid([32, 32]);
+        let (mut a, b) = (noisy(1, 1.0, false), noisy(2, 1.0, false));
+        a.layers[0].mean[77] = [1e6; 3];
+        assert_eq!(compare(&a, &b, &regions[..1]).p, 1.0);
+        a.layers[0].mean[77] = [f32::NAN; 3];
+        assert_eq!(compare(&a, &b, &regions[..1]).p, 0.0);
+    }
+}

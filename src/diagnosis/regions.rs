@@ -1,0 +1,106 @@
+//! Where to look: the whole image, sixteen regions, and what the camera sees there.
+//!
+//! | region | pixels |
+//! |---|---|
+//! | image | all |
+//! | region r,c | a quarter of the rows times a quarter of the columns |
+//! | lamps | whose centre sees an emitter |
+//! | mirrors and glass | whose centre sees a surface with a delta part |
+//! | grazing | whose centre sees a surface at cos θ < 0.25 |
+//! | beside lamps | within an eighth of the image of a lamp, and not a lamp |
+
+use crate::math::Rgb;
+use crate::scene::Scene;
+
+/// A set of pixels with a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// In words.
+    pub name: String,
+    /// Indices, ascending.
+    pub pixels: Vec<usize>,
+}
+
+/// Regions with fewer pixels are not tested: their noise is not known well enough.
+pub const FEWEST: usize = 30;
+/// Regions per side of the image.
+pub const SIDE: usize = 4;
+
+/// The whole image first, then the sixteen regions, of which small images have fewer.
+pub fn grid([w, h]: [usize; 2]) -> Vec<Region> {
+    let mut regions = vec![Region { name: "image".into(), pixels: (0..w * h).collect() }];
+    for (row, column) in (0..SIDE).flat_map(|r| (0..SIDE).map(move |c| (r, c))) {
+        let inside = |p: &usize| p / w * SIDE / h == row && p % w * SIDE / w == column;
+        let pixels: Vec<usize> = (0..w * h).filter(inside).collect();
+        regions.push(Region { name: format!("region {row},{column}"), pixels });
+    }
+    regions.retain(|r| r.pixels.len() >= FEWEST);
+    regions
+}
+
+/// The regions without the pixels of a mask (empty: none); the first one stays whatever is left of it.
+pub fn without(regions: Vec<Region>, mask: &[bool]) -> Vec<Region> {
+    let left = |r: Region| Region {
+        pixels: r.pixels.into_iter().filter(|&p| !mask.get(p).copied().unwrap_or(false)).collect(),
+        ..r
+    };
+    let mut all: Vec<Region> = regions.into_iter().map(left).collect();
+    let mut at = 0;
+    all.retain(|r| {
+        at += 1;
+        at == 1 || r.pixels.len() >= FEWEST
+    });
+    all
+}
+
+/// What the camera of a scene sees, as sets of pixels; those with too few pixels are left out.
+pub fn seen(scene: &Scene) -> Vec<Region> {
+    let [w, h] = scene.camera.size.map(|s| s as usize);
+    let looks: Vec<_> =
+        (0..w * h).map(|p| scene.look(scene.camera.origin, scene.camera.direction(p as u32, [0.5; 2]))).collect();
+    let surface = |p: usize| looks[p].filter(|v| v.on_surface());
+    let lamp = |p: usize| surface(p).is_some_and(|v| scene.emission(v.side) != Rgb::ZERO);
+    let reach = (w / 8).max(1) as isize;
+    let beside = |p: usize| {
+        let (x, y) = ((p % w) as isize, (p / w) as isize);
+        let near = |dx: isize, dy: isize| {
+            let (x, y) = (x + dx, y + dy);
+            x >= 0 && y >= 0 && x < w as isize && y < h as isize && lamp(y as usize * w + x as usize)
+        };
+        !lamp(p) && (-reach..=reach).any(|dy| (-reach..=reach).any(|dx| near(dx, dy)))
+    };
+    let set = |name: &str, inside: &dyn Fn(usize) -> bool| Region {
+        name: name.into(),
+        pixels: (0..w * h).filter(|&p| inside(p)).collect(),
+    };
+    let mut regions = vec![
+        set("lamps", &lamp),
+        set(MIRRORS, &|p| surface(p).is_some_and(|v| scene.bsdf(&v).has_delta())),
+        set("grazing", &|p| surface(p).is_some_and(|v| v.n.dot(v.omega) < 0.25)),
+        set("beside lamps", &beside),
+    ];
+    regions.retain(|r| r.pixels.len() >= FEWEST && r.pixels.len() < w * h);
+    regions
+}
+
+/// The name of the region of mirrors and glass.
+pub const MIRRORS: &str = "mirrors and glass";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sixteen_regions_are_a_partition() {
+        for size in [[64, 64], [37, 50], [8, 90]] {
+            let all = grid(size);
+            let mut pixels: Vec<usize> = all[1..].iter().flat_map(|r| r.pixels.clone()).collect();
+            pixels.sort_unstable();
+            if all.len() == 17 {
+                assert_eq!(pixels, all[0].pixels);
+            }
+            assert_eq!(all[0].pixels.len(), size[0] * size[1]);
+        }
+        assert_eq!(grid([16, 16]).len(), 1); // regions of 16 pixels are too small
+    }
+}
