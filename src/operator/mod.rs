@@ -6,9 +6,10 @@
 //! | discrete | a matrix over patches, diag(ρ) F: can be applied | [`patches`], [`form_factor`], [`matrix`] |
 //! | walk | a random walk on that matrix: can be sampled, and is known exactly | [`matrix_walk`] |
 //!
-//! Sampling is the trait [`Transport`]; applying is [`matrix::LinearOperator`].
+//! Sampling is the trait [`Transport`]; applying is [`matrix::LinearOperator`], and [`algebra`] combines what can be applied.
 
 pub mod adjoint;
+pub mod algebra;
 pub mod form_factor;
 pub mod matrix;
 pub mod matrix_walk;
