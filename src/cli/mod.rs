@@ -13,6 +13,7 @@ mod guard;
 mod info;
 mod output;
 mod progress;
+mod radiosity;
 mod solve;
 mod strategies;
 mod sweep;
@@ -78,7 +79,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Tour(run)) => solve::tour(run),
         Some(Command::Series(run)) => solve::series(run),
         Some(Command::Render(run)) => solve::render(run),
-        Some(Command::Radiosity(run)) => solve::radiosity(run),
+        Some(Command::Radiosity(args)) => radiosity::run(args),
         Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
         Some(Command::Info(args)) => info::run(args),

@@ -10,6 +10,7 @@
 //! | z maps of `compare` | [`zmap`] |
 //! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
 //! | `summary.json` | [`summary`] |
+//! | `solvers.svg`, its PNG, `history.csv` | [`solvers`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
 
@@ -30,6 +31,7 @@ pub mod plot;
 pub mod pyramid;
 mod rate;
 pub mod sheet;
+pub mod solvers;
 pub mod summary;
 pub mod sweep;
 pub mod table;

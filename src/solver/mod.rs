@@ -9,6 +9,7 @@
 //! | term by term | [`Neumann`] |
 //! | by LU | [`direct`] |
 //! | step by step, to be watched ([`Watched`]) | [`PartialSums`], [`Jacobi`], [`Sor`], [`Southwell`], [`Chebyshev`], [`ConjugateGradients`], [`Gmres`] |
+//! | all of them beside each other | [`study`] |
 //! | by extrapolation of the series | [`accelerate`] |
 
 pub mod accelerate;
@@ -20,6 +21,7 @@ pub mod neumann;
 mod radiosity;
 mod southwell;
 mod stationary;
+pub mod study;
 
 pub use chebyshev::Chebyshev;
 pub use iteration::{Iteration, Step, Watched, residual};
