@@ -87,8 +87,7 @@ fn expressions_are_what_they_say() {
     let (se, te) = (Expression::from(&s), Expression::from(&t));
     assert!(apart(&se.times(&te).unwrap().of(&x).unwrap(), &product) < 1e-14);
     // sums, differences and scalings, entry by entry
-    let mixed: Vec<f64> =
-        (0..n).map(|i| (0..n).map(|j| (2.0 * s.entry(i, j) - t.entry(i, j)) * x[j]).sum()).collect();
+    let mixed: Vec<f64> = (0..n).map(|i| (0..n).map(|j| (2.0 * s.entry(i, j) - t.entry(i, j)) * x[j]).sum()).collect();
     assert!(apart(&se.scaled(2.0).minus(&te).unwrap().of(&x).unwrap(), &mixed) < 1e-14);
     // powers are the terms of the series, the resolvent is their sum and what LU finds
     let fifth = Neumann::new(&t, x.clone()).nth(5).unwrap();

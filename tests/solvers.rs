@@ -29,8 +29,7 @@ impl Case {
 /// Two plates, random matrices with and without a diagonal, the Cornell box (with its black lamp), a sphere of bands.
 fn cases() -> Vec<Case> {
     let plates = FormFactors { n: 2, f: vec![0.0, 1.0, 1.0, 0.0], area: vec![1.0, 1.0], rays: 0 };
-    let mut all =
-        vec![Case { name: "plates".into(), factors: plates, rho: vec![0.9, 0.4], emission: vec![1.0, 0.0] }];
+    let mut all = vec![Case { name: "plates".into(), factors: plates, rho: vec![0.9, 0.4], emission: vec![1.0, 0.0] }];
     for (seed, n, own) in [(1, 5, 0.0), (2, 30, 1.0), (3, 31, 20.0)] {
         let factors = random_factors(n, own, seed);
         let (rho, emission) = (numbers_between(n, 0.1, 1.0, seed + 10), numbers_between(n, 0.0, 2.0, seed + 20));
@@ -73,7 +72,8 @@ fn every_solver_finds_what_lu_finds() {
             let last = h.points.last().unwrap();
             assert!(last.error <= 2e-13, "{what}: error {:e} after {} products", last.error, last.applications);
             assert!(last.residual <= 1e-11 * size, "{what}: residual {:e}", last.residual);
-            let order = h.points.windows(2).all(|w| w[0].applications < w[1].applications && w[0].seconds <= w[1].seconds);
+            let order =
+                h.points.windows(2).all(|w| w[0].applications < w[1].applications && w[0].seconds <= w[1].seconds);
             assert!(order, "{what}: work only grows");
         }
     }

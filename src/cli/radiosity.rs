@@ -4,6 +4,7 @@ use super::args::Run;
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, args::WorldName, guard, output, solve};
 use clap::{Args, ValueEnum};
+use fredholm::operator::matrix::{LinearOperator, Rows};
 use fredholm::report::solvers;
 use fredholm::report::typeset::Caption;
 use fredholm::report::{summary, write_atomically};
@@ -173,13 +174,19 @@ fn solve_step_by_step(args: &Radiosity, name: SolverName) -> Result<Ending, Fail
     if args.run.json {
         super::say(&serde_json::to_string_pretty(&record)?)?;
     } else {
-        let head = format!(
+        let sees_itself = (0..operator.len()).any(|i| operator.entry(i, i) > 0.0);
+        let mut head = format!(
             "{}\n{} patches, {} channel: eigenvalues {low:.5} to {high:.5}\n\
-             error ‖x − L‖/‖L‖ in the weight A/ρ; LU counts as n³/3 multiplications; products and seconds to an error of",
+             products with T, then seconds, until ‖x − L‖/‖L‖ in the weight A/ρ is below 1e-3, 1e-6, 1e-10\n\
+             the reference is LU, which counts as n/3 products; Chebyshev and SOR spend {} on the spectrum first",
             lab.command,
             radiosity.patches.len(),
             NAMES[channel],
+            system.ends.steps,
         );
+        if !sees_itself {
+            head += "\nno patch sees itself, so Jacobi is the Neumann series here";
+        }
         let table = solvers::table(&histories);
         let written = format!("written to {}: {}", lab.folder.display(), files.join(", "));
         super::say(&super::paragraphs(&[head, table, written]))?;

@@ -209,7 +209,11 @@ impl Node<'_> {
         match self {
             Node::Leaf(t) => {
                 let mut y = vec![0.0; x.len()];
-                if adjoint { t.apply_adjoint(x, &mut y) } else { t.apply(x, &mut y) }
+                if adjoint {
+                    t.apply_adjoint(x, &mut y)
+                } else {
+                    t.apply(x, &mut y)
+                }
                 y
             }
             Node::Identity => x.to_vec(),

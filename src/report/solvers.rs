@@ -12,7 +12,7 @@ use super::{
     axis::Axis,
     canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
     panel::Panel,
-    plot::{Curve, Figure, GREY, Look, Point, figure},
+    plot::{Curve, Figure, GREY, Look, Mark, Point, figure},
     table::{Side, aligned, significant},
     typeset::Caption,
 };
@@ -22,11 +22,11 @@ use serde_json::{Value, json};
 /// Errors at which work and time are compared.
 pub const MILESTONES: [f64; 3] = [1e-3, 1e-6, 1e-10];
 
-/// A row per solver.
+/// A row per solver: products with T to each milestone, seconds to each, error and residual at the end.
 pub fn table(histories: &[History]) -> String {
     let mut header = vec!["solver".to_string()];
-    header.extend(MILESTONES.map(|m| format!("products {m:.0e}")));
-    header.extend(MILESTONES.map(|m| format!("s {m:.0e}")));
+    header.extend(MILESTONES.map(|m| format!("to {m:.0e}")));
+    header.extend(MILESTONES.map(|m| format!("s to {m:.0e}")));
     header.extend(["error", "residual"].map(String::from));
     let mut rows = vec![header];
     let dash = || "–".to_string();
@@ -100,8 +100,17 @@ pub fn draw(histories: &[History], radius: f64, title: &str, caption: &Caption) 
     figure("solvers", 960, 560, caption, |page| panels(page, histories, radius, title))
 }
 
+/// The same solver looks the same, alone or among others.
+fn look(solver: Solver) -> Look {
+    match Solver::ALL.iter().position(|s| *s == solver).unwrap_or(0) {
+        7 => Look { color: GREY, mark: Mark::Ring },
+        i => Look::nth(i),
+    }
+}
+
 fn panels(page: &Page, histories: &[History], radius: f64, title: &str) -> Drawn {
     page.text(title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
+    // LU has no steps to draw
     let drawn: Vec<(usize, &History)> = histories.iter().enumerate().filter(|(_, h)| h.points.len() > 1).collect();
     let points = || drawn.iter().flat_map(|(_, h)| &h.points).filter(|p| p.error > 0.0);
     let last = points().map(|p| p.applications).fold(1.0, f64::max).ceil() as usize;
@@ -112,7 +121,7 @@ fn panels(page: &Page, histories: &[History], radius: f64, title: &str) -> Drawn
     panel.line((0.0, 1.0), (end, radius.powf(end)), GUIDE)?;
     let mut entries = vec![];
     for (i, h) in &drawn {
-        let look = Look::nth(*i);
+        let look = look(h.solver);
         let path: Vec<_> = h.points.iter().filter(|p| p.error > 0.0).collect();
         for pair in path.windows(2) {
             let end = |i: usize| (pair[i].applications, pair[i].error);

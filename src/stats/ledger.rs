@@ -76,6 +76,8 @@ pub const ENTRIES: &[Entry] = &[
     entry("estimators_match_matrices_at_length", 12_000, 2e-8),
     entry("variances_follow_the_recursion_of_second_moments", 144, 1e-8),
     entry("a_small_error_in_the_operator_is_seen", 9, 1e-9),
+    // tests/acceleration.rs
+    entry("accelerated_series_are_as_noisy_as_predicted", 12, 1e-9),
     // tests/adjoint.rs
     entry("light_tracing_matches_matrix_powers", 200, 1e-8),
     entry("bidirectional_matches_matrix_powers", 200, 1e-8),
