@@ -10,9 +10,11 @@
 
 pub mod adjoint;
 pub mod algebra;
+pub mod edges;
 pub mod form_factor;
 pub mod matrix;
 pub mod matrix_walk;
+pub mod modes;
 pub mod patches;
 mod scene_adjoint;
 pub mod scene_transport;

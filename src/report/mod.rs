@@ -10,6 +10,7 @@
 //! | z maps of `compare` | [`zmap`] |
 //! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
 //! | `summary.json` | [`summary`] |
+//! | `modes.svg`, `modes-painted.png` | [`modes`] |
 //! | `solvers.svg`, its PNG, `history.csv` | [`solvers`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
@@ -24,6 +25,7 @@ mod files;
 pub mod html;
 mod interval;
 pub mod markdown;
+pub mod modes;
 mod null_as_nan;
 mod panel;
 pub mod picture;
