@@ -70,8 +70,19 @@ tail. (Elsewhere the same images are Mitsuba's max_depth = K + 1 and pbrt's maxd
     #[command(after_help = "Example:\n  fredholm render cornell --spp 256 --roulette constant:0.3@2")]
     Render(Run),
     /// The matrix alone: form factors, terms, solve
-    #[command(after_help = "Example:\n  fredholm radiosity cornell --patches 2400 --orders")]
-    Radiosity(Run),
+    #[command(after_help = "Examples:
+  fredholm radiosity cornell --patches 2400 --orders
+  fredholm radiosity cornell --patches 2000 --solver all --history history.csv
+  fredholm radiosity cornell --solver southwell --channel green --json
+  fredholm radiosity cornell --modes 8 --size 128x128
+
+With --solver nothing is rendered. Written: solvers.json, solvers.svg, solvers.png, summary.json, and
+the file of --history. A product is one application of T; LU counts as n/3 of them.
+
+With --modes the dense eigenproblem of every channel is solved. Written: modes.json, modes.svg,
+modes.png, modes-painted.png, summary.json. Eigenvalues inside the band of the edges get no name:
+they belong to the mesh, not to the scene.")]
+    Radiosity(super::radiosity::Radiosity),
     /// Two results: verdict per term, z map
     #[command(
         after_help = "Agrees: the difference is proved smaller than δ = 2 % of the term + 1e-4 of the whole image.

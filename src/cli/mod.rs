@@ -17,6 +17,7 @@ mod info;
 mod output;
 mod progress;
 mod quiz;
+mod radiosity;
 mod roulette;
 mod solve;
 mod strategies;
@@ -88,7 +89,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Some(Command::Tour(run)) => solve::tour(run),
         Some(Command::Series(run)) => solve::series(run),
         Some(Command::Render(run)) => solve::render(run),
-        Some(Command::Radiosity(run)) => solve::radiosity(run),
+        Some(Command::Radiosity(args)) => radiosity::run(args),
         Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Diagnose(args)) => diagnose::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),

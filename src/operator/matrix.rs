@@ -14,16 +14,23 @@
 //!
 //! Every sum runs in a fixed order, so results do not depend on the number of threads.
 
+mod lanczos;
 mod spectrum;
 
 use super::form_factor::FormFactors;
+pub use lanczos::{Extremes, extremes};
 use rayon::prelude::*;
 pub use spectrum::{Spectral, spectral_radius};
 
 /// Something that can be applied to radiance per patch, and so can its adjoint.
 pub trait LinearOperator: Sync {
+    /// The space it acts on: Aᵢ, m², one per patch.
+    fn area(&self) -> &[f64];
+
     /// Number of patches.
-    fn len(&self) -> usize;
+    fn len(&self) -> usize {
+        self.area().len()
+    }
 
     /// There are no patches.
     fn is_empty(&self) -> bool {
@@ -35,6 +42,25 @@ pub trait LinearOperator: Sync {
 
     /// y = T* x: ⟨y, T x⟩_A = ⟨T* y, x⟩_A in the area inner product.
     fn apply_adjoint(&self, x: &[f64], y: &mut [f64]);
+
+    /// ⟨u, v⟩_A = Σᵢ Aᵢ uᵢ vᵢ.
+    fn inner(&self, u: &[f64], v: &[f64]) -> f64 {
+        self.area().iter().zip(u).zip(v).map(|((a, u), v)| a * u * v).sum()
+    }
+
+    /// √⟨u, u⟩_A.
+    fn norm(&self, u: &[f64]) -> f64 {
+        self.inner(u, u).sqrt()
+    }
+}
+
+/// An operator whose rows can be used one at a time, and whose entries can be read.
+pub trait Rows: LinearOperator {
+    /// Tᵢⱼ.
+    fn entry(&self, i: usize, j: usize) -> f64;
+
+    /// (T x)ᵢ.
+    fn row_times(&self, i: usize, x: &[f64]) -> f64;
 }
 
 /// `diag(ρ) F` for one channel.
@@ -65,11 +91,6 @@ impl<'a> PatchOperator<'a> {
         Self { factors, rho }
     }
 
-    /// Tᵢⱼ = ρᵢ Fᵢⱼ.
-    pub fn entry(&self, i: usize, j: usize) -> f64 {
-        self.rho[i] * f64::from(self.factors.row(i)[j])
-    }
-
     /// ‖T‖∞ = maxᵢ ρᵢ Σⱼ Fᵢⱼ: no patch gains more than this in one bounce.
     pub fn norm_inf(&self) -> f64 {
         let mut y = vec![0.0; self.len()];
@@ -84,20 +105,35 @@ impl<'a> PatchOperator<'a> {
         y.into_iter().fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
     }
 
-    /// Norm in the weight A/ρ, in which T is self-adjoint. Patches with ρ = 0 do not count: T u vanishes there.
+    /// ⟨u, v⟩_w = Σ Aᵢ uᵢ vᵢ / ρᵢ, in which T is self-adjoint. Patches with ρ = 0 do not count: T u vanishes there.
+    pub fn weighted_inner(&self, u: &[f64], v: &[f64]) -> f64 {
+        let terms = u.iter().zip(v).zip(self.rho.iter().zip(&self.factors.area));
+        terms.filter(|(_, (r, _))| **r > 0.0).map(|((u, v), (r, a))| a * u * v / r).sum()
+    }
+
+    /// √⟨x, x⟩_w.
     pub fn weighted_norm(&self, x: &[f64]) -> f64 {
-        let terms = x.iter().zip(&self.rho).zip(&self.factors.area);
-        terms.filter(|((_, r), _)| **r > 0.0).map(|((x, r), a)| a * x * x / r).sum::<f64>().sqrt()
+        self.weighted_inner(x, x).sqrt()
+    }
+}
+
+impl Rows for PatchOperator<'_> {
+    fn entry(&self, i: usize, j: usize) -> f64 {
+        self.rho[i] * f64::from(self.factors.row(i)[j])
+    }
+
+    fn row_times(&self, i: usize, x: &[f64]) -> f64 {
+        self.rho[i] * dot(self.factors.row(i), x)
     }
 }
 
 impl LinearOperator for PatchOperator<'_> {
-    fn len(&self) -> usize {
-        self.factors.n
+    fn area(&self) -> &[f64] {
+        &self.factors.area
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64]) {
-        y.par_iter_mut().with_min_len(16).enumerate().for_each(|(i, y)| *y = self.rho[i] * dot(self.factors.row(i), x));
+        y.par_iter_mut().with_min_len(16).enumerate().for_each(|(i, y)| *y = self.row_times(i, x));
     }
 
     fn apply_adjoint(&self, x: &[f64], y: &mut [f64]) {

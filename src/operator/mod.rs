@@ -6,13 +6,16 @@
 //! | discrete | a matrix over patches, diag(ρ) F: can be applied | [`patches`], [`form_factor`], [`matrix`] |
 //! | walk | a random walk on that matrix: can be sampled, and is known exactly | [`matrix_walk`], [`guided_walk`] |
 //!
-//! Sampling is the trait [`Transport`]; applying is [`matrix::LinearOperator`].
+//! Sampling is the trait [`Transport`]; applying is [`matrix::LinearOperator`], and [`algebra`] combines what can be applied.
 
 pub mod adjoint;
+pub mod algebra;
+pub mod edges;
 pub mod form_factor;
 pub mod guided_walk;
 pub mod matrix;
 pub mod matrix_walk;
+pub mod modes;
 pub mod patches;
 mod scene_adjoint;
 pub mod scene_transport;

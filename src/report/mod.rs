@@ -17,6 +17,8 @@
 //! | `diagnosis.svg` | [`diagnosis`] |
 //! | `NAME-ratios.svg` of the zoo and its PNG | [`signature`] |
 //! | `summary.json` | [`summary`] |
+//! | `modes.svg`, `modes-painted.png` | [`modes`] |
+//! | `solvers.svg`, its PNG, `history.csv` | [`solvers`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
 
@@ -32,6 +34,7 @@ mod files;
 pub mod html;
 mod interval;
 pub mod markdown;
+pub mod modes;
 mod null_as_nan;
 mod panel;
 pub mod picture;
@@ -42,6 +45,7 @@ pub mod refine;
 pub mod roulette;
 pub mod sheet;
 pub mod signature;
+pub mod solvers;
 pub mod split;
 pub mod stages;
 pub mod summary;

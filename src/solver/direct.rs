@@ -7,7 +7,7 @@
 //! nalgebra's LU is the reference; faer's blocked LU takes over above [`LARGE`] unknowns where the feature is on
 //! (measured: 7 times faster at 2000, 29 times at 5000).
 
-use crate::operator::matrix::{LinearOperator, PatchOperator};
+use crate::operator::matrix::{LinearOperator, PatchOperator, Rows};
 use nalgebra::{DMatrix, DVector};
 
 /// From this size on [`solve`] prefers faer.

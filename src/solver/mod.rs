@@ -3,10 +3,30 @@
 //! ```text
 //! (I − T) L = E        L = Σ_{k≥0} T^k E
 //! ```
+//!
+//! | way | place |
+//! |---|---|
+//! | term by term | [`Neumann`] |
+//! | by LU | [`direct`] |
+//! | step by step, to be watched ([`Watched`]) | [`PartialSums`], [`Jacobi`], [`Sor`], [`Southwell`], [`Chebyshev`], [`ConjugateGradients`], [`Gmres`] |
+//! | all of them beside each other | [`study`] |
+//! | by extrapolation of the series | [`accelerate`] |
 
+pub mod accelerate;
+mod chebyshev;
 pub mod direct;
+mod iteration;
+mod krylov;
 pub mod neumann;
 mod radiosity;
+mod southwell;
+mod stationary;
+pub mod study;
 
+pub use chebyshev::Chebyshev;
+pub use iteration::{Iteration, Step, Watched, residual};
+pub use krylov::{ConjugateGradients, Gmres};
 pub use neumann::Neumann;
 pub use radiosity::{Radiosity, Solution};
+pub use southwell::Southwell;
+pub use stationary::{Jacobi, PartialSums, Sor};

@@ -89,6 +89,8 @@ pub const ENTRIES: &[Entry] = &[
     // tests/split.rs
     entry("splits_cost_what_the_covariance_says", 30, 1e-8),
     entry("the_film_knows_the_covariance_of_its_terms", 100, 1e-8),
+    // tests/acceleration.rs
+    entry("accelerated_series_are_as_noisy_as_predicted", 12, 1e-9),
     // tests/adjoint.rs
     entry("light_tracing_matches_matrix_powers", 200, 1e-8),
     entry("bidirectional_matches_matrix_powers", 200, 1e-8),

@@ -11,7 +11,7 @@ use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
 use crate::scene::{Description, Scene, SceneError};
 use crate::solver::{Radiosity, Solution};
-use crate::terms::World;
+use crate::terms::{TermImage, World};
 use glam::DVec3;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
@@ -107,6 +107,31 @@ impl Matrix {
             if settings.read_patches { ", read" } else { "" }
         );
         sampled::sample(&t, &scene.camera, &gather, "radiosity", (World::Radiosity, label), settings, observer, stop)
+    }
+}
+
+impl Matrix {
+    /// Functions on the patches through the camera, after one more bounce: the image i shows `T fields[i]`, in colours as
+    /// albedos are. A mode of eigenvalue λ is seen smooth, and λ times as bright.
+    pub fn paint(
+        &self,
+        scene: &Scene,
+        fields: &[Vec<f64>],
+        settings: &Settings,
+        observer: &dyn Observer,
+        stop: &AtomicBool,
+    ) -> Vec<TermImage> {
+        let t = SceneTransport { scene, sampling: settings.sampling };
+        let patches = &self.radiosity.patches;
+        let nothing = vec![DVec3::ZERO; patches.len()];
+        // slot s gathers from what stands at s − 1; slots 0 and 1 are the scene's own light
+        let mut terms = vec![nothing.clone()];
+        terms.extend(fields.iter().map(|f| f.iter().map(|v| DVec3::splat(*v)).collect()));
+        terms.push(nothing.clone());
+        let gather = Gather { patches, terms: &terms, tail: nothing, read_patches: false };
+        let world = (World::Radiosity, "modes".to_string());
+        let mut seen = sampled::sample(&t, &scene.camera, &gather, "modes", world, settings, observer, stop);
+        seen.terms.drain(2..2 + fields.len()).collect()
     }
 }
 

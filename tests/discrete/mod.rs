@@ -83,3 +83,30 @@ pub fn cpu_seconds() -> f64 {
 pub fn truth() -> serde_json::Map<String, serde_json::Value> {
     serde_json::from_str(include_str!("../truth/discrete.json")).unwrap()
 }
+
+/// A fixed pseudo-random number in [0, 1).
+pub fn uniform(seed: u64) -> f64 {
+    let z = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// n numbers in [lo, hi).
+pub fn numbers_between(n: usize, lo: f64, hi: f64, seed: u64) -> Vec<f64> {
+    (0..n as u64).map(|i| lo + (hi - lo) * uniform(seed.wrapping_mul(1_000_003).wrapping_add(i))).collect()
+}
+
+/// Form factors of no geometry at all, but with everything that makes them such: A F symmetric, rows that sum to at most
+/// 0.9. `own` scales what a patch sees of itself.
+pub fn random_factors(n: usize, own: f64, seed: u64) -> FormFactors {
+    let area = numbers_between(n, 0.2, 2.0, seed);
+    let exchange = |i: usize, j: usize| {
+        let pair = uniform(seed ^ ((i.min(j) * n + i.max(j)) as u64) << 20);
+        if i == j { own * pair } else { pair }
+    };
+    let power = |i: usize| (0..n).map(|j| exchange(i, j)).sum::<f64>() / area[i];
+    let most = (0..n).map(power).fold(0.0, f64::max) / 0.9;
+    let f = (0..n * n).map(|k| (exchange(k / n, k % n) / area[k / n] / most) as f32).collect();
+    FormFactors { n, f, area, rays: 0 }
+}

@@ -1,0 +1,188 @@
+//! `fredholm radiosity [SCENE]`: the matrix through the camera; with `--solver` all ways to solve it, with `--modes` its
+//! spectrum.
+
+mod modes;
+mod solvers;
+
+use super::args::Run;
+use super::progress::{Progress, stop_flag};
+use super::{Ending, Failure, args::WorldName, guard, output, solve};
+use clap::{Args, ValueEnum};
+use fredholm::report::summary;
+use fredholm::report::typeset::Caption;
+use fredholm::scene::Scene;
+use fredholm::scene::load::{self, Loaded, Options};
+use fredholm::solver::study::Solver;
+use fredholm::terms::TermFilm;
+use fredholm::worlds::discrete::{self, Matrix, MatrixError};
+use std::path::PathBuf;
+
+/// Arguments of `radiosity`.
+#[derive(Clone, Debug, Args)]
+pub struct Radiosity {
+    /// Solve (I − T) L = E step by step instead of showing L: all, or the name of one solver
+    ///
+    /// neumann: partial sums of Σ TᵏE. jacobi: the same unless patches are curved and see themselves.
+    /// gauss-seidel, sor: patch by patch. southwell: progressive shooting, the brightest first.
+    /// chebyshev: needs the ends of the spectrum. cg: conjugate gradients in the weight 1/ρ. gmres.
+    /// lu: the direct solve that all others are held against.
+    #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
+    pub solver: Option<SolverName>,
+    /// Channel of --solver and of the pictures of --modes [default: that of the largest spectral radius]
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub channel: Option<Channel>,
+    /// File for every step of every solver, as CSV, in the output folder
+    #[arg(long, value_name = "FILE", requires = "solver")]
+    pub history: Option<String>,
+    /// Show the spectrum of T and its N leading modes instead of L
+    #[arg(long, value_name = "N", conflicts_with = "solver", value_parser = clap::value_parser!(u16).range(1..=64))]
+    pub modes: Option<u16>,
+    /// What is solved.
+    #[command(flatten)]
+    pub run: Run,
+}
+
+/// Solvers as a choice on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SolverName {
+    /// Every one
+    All,
+    /// Partial sums
+    Neumann,
+    /// Jacobi
+    Jacobi,
+    /// Gauss–Seidel
+    GaussSeidel,
+    /// Over-relaxation
+    Sor,
+    /// Progressive shooting
+    Southwell,
+    /// Chebyshev's semi-iteration
+    Chebyshev,
+    /// Conjugate gradients
+    Cg,
+    /// GMRES
+    Gmres,
+    /// LU
+    Lu,
+}
+
+impl SolverName {
+    /// What it stands for; LU is the reference and always there.
+    fn solvers(self) -> Vec<Solver> {
+        let one = match self {
+            Self::All => return Solver::ALL.to_vec(),
+            Self::Neumann => Solver::Neumann,
+            Self::Jacobi => Solver::Jacobi,
+            Self::GaussSeidel => Solver::GaussSeidel,
+            Self::Sor => Solver::Sor,
+            Self::Southwell => Solver::Southwell,
+            Self::Chebyshev => Solver::Chebyshev,
+            Self::Cg => Solver::ConjugateGradients,
+            Self::Gmres => Solver::Gmres,
+            Self::Lu => return vec![Solver::Lu],
+        };
+        vec![one, Solver::Lu]
+    }
+}
+
+/// A colour channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Channel {
+    /// Channel 0
+    Red,
+    /// Channel 1
+    Green,
+    /// Channel 2
+    Blue,
+}
+
+const NAMES: [&str; 3] = ["red", "green", "blue"];
+
+/// Shows the matrix, solves it in every way, or takes it apart.
+pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
+    match (args.solver, args.modes) {
+        (Some(name), _) => solvers::run(args, name),
+        (None, Some(count)) => modes::run(args, count.into()),
+        (None, None) if args.channel.is_some() => Err(Failure::Usage(
+            "error: --channel is for --solver and --modes, and none of them is asked for\nhelp: add one of them".into(),
+        )),
+        (None, None) => solve::radiosity(&args.run),
+    }
+}
+
+/// A scene, its matrix and where the results go.
+struct Laboratory {
+    command: String,
+    loaded: Loaded,
+    scene: Scene,
+    matrix: Matrix,
+    folder: PathBuf,
+}
+
+impl Laboratory {
+    /// Loads, meshes and computes form factors; `None` if interrupted.
+    fn new(run: &Run, what: &str) -> Result<Option<Self>, Failure> {
+        if let Some(n) = run.threads {
+            rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
+        }
+        let command = output::canonical_command();
+        let mut set = run.set.clone();
+        set.extend(run.size.map(|[w, h]| format!("camera.size=[{w},{h}]")));
+        let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
+        loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
+        let scene = Scene::new(&loaded.description);
+        let mut worlds = vec![WorldName::Radiosity];
+        guard::suits_a_matrix(&loaded.description, &mut worlds, true)?;
+        guard::fits_in_a_matrix(&scene, &mut worlds, true)?;
+        let name = format!("{}-{what}", loaded.description.name);
+        let folder = output::folder(run.out.as_deref(), &name, &command, run.force)?;
+        let progress = Progress::new(run.quiet, |_: &TermFilm| {});
+        let patches = run.patches.unwrap_or(600) as usize;
+        let matrix = discrete::matrix(&loaded.description, &scene, patches, 0, &progress, stop_flag());
+        progress.finish();
+        match matrix {
+            Ok(matrix) => Ok(Some(Self { command, loaded, scene, matrix, folder })),
+            Err(e) => {
+                let _ = std::fs::remove_dir(&folder); // only if it is empty
+                if !matches!(e, MatrixError::Stopped) {
+                    return Err(e.into());
+                }
+                super::note("nothing to save yet");
+                Ok(None)
+            }
+        }
+    }
+
+    /// The channel asked for, or the slowest.
+    fn channel(&self, asked: Option<Channel>) -> usize {
+        let radius = |c: usize| self.matrix.spectral[c].radius;
+        let slowest = (0..3).fold(0, |best, c| if radius(c) > radius(best) { c } else { best });
+        asked.map_or(slowest, |c| c as usize)
+    }
+
+    fn patches(&self) -> usize {
+        self.matrix.radiosity.patches.len()
+    }
+
+    fn caption(&self, run: &Run) -> Caption {
+        Caption { command: self.command.clone(), seed: run.seed, scene: self.loaded.description.name.clone() }
+    }
+
+    /// Writes the summary that owns the folder, and removes what the last run left and this one did not write.
+    fn sign(&self, run: &Run, files: &[String]) -> Result<(), Failure> {
+        let record = summary::Summary {
+            command: self.command.clone(),
+            scene: self.loaded.description.name.clone(),
+            scene_hash: solve::scene_hash(&self.loaded.canonical),
+            seed: run.seed,
+            threads: rayon::current_num_threads(),
+            files: files.to_vec(),
+            ..summary::Summary::default()
+        };
+        let old = output::left_by_the_last_run(&self.folder);
+        summary::write(&self.folder.join("summary.json"), &record)?;
+        output::remove_stale(&self.folder, &old, files);
+        Ok(())
+    }
+}

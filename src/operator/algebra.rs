@@ -1,0 +1,268 @@
+//! Operators as values: a small algebra that is only evaluated when it is applied.
+//!
+//! ```text
+//! (S + T) x = S x + T x      (S T) x = S (T x)      T^k x = T (T^{k−1} x)      (I − T)⁻¹ x = Σ_{k≥0} T^k x
+//! (S + T)* = S* + T*         (S T)* = T* S*         (T^k)* = (T*)^k            ((I − T)⁻¹)* = (I − T*)⁻¹
+//! ```
+//!
+//! `T*` is the adjoint in ⟨u, v⟩ = Σᵢ Aᵢ uᵢ vᵢ, so that ⟨W, T x⟩ = ⟨T* W, x⟩: light tracing and path tracing of the same
+//! number. `T = diag(ρ) F` with ρ on the left, and since F is self-adjoint here, `T* = F diag(ρ)`.
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | I, diag(ρ) | identity, multiplication patch by patch | [`Expression::identity`], [`Expression::diagonal`] |
+//! | S + T, c T, S T, T^k | combinations | [`Expression::plus`], [`Expression::scaled`], [`Expression::times`], [`Expression::power`] |
+//! | (I − T)⁻¹ | everything that ever arrives | [`Expression::resolvent`] |
+//! | T* | walked from the lights | [`Expression::adjoint`] |
+//!
+//! Operators can be combined if they act on the same space: as many patches, of the same areas. Anything else is an
+//! error that says where the spaces differ.
+//!
+//! Reference: Arvo, *Analytic Methods for Simulated Light Transport* (1995), chapter 6.
+
+use super::matrix::LinearOperator;
+use std::borrow::Cow;
+
+/// Why operators cannot be combined or applied.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AlgebraError {
+    /// Another number of patches.
+    #[error("one side has {left} patches, the other {right}: they act on different meshes")]
+    Sizes {
+        /// Of the left operand.
+        left: usize,
+        /// Of the right operand.
+        right: usize,
+    },
+    /// As many patches, of other areas: the adjoint would be another.
+    #[error("patch {patch} has area {left} on one side and {right} on the other: they act on different meshes")]
+    Areas {
+        /// The first patch that differs.
+        patch: usize,
+        /// Its area in the left operand, m².
+        left: f64,
+        /// Its area in the right operand, m².
+        right: f64,
+    },
+    /// Σ T^k 1 does not settle.
+    #[error("Σ T^k 1 has not settled after {steps} terms: I − T has no inverse that the Neumann series could give")]
+    Diverges {
+        /// Terms tried.
+        steps: usize,
+    },
+}
+
+/// More terms than this, and the Neumann series is said to diverge.
+const MOST_TERMS: usize = 100_000;
+/// A term below this share of the sum is below rounding, with room for the slow tail of a series.
+const NEGLIGIBLE: f64 = 1.0 / (1u64 << 60) as f64;
+
+/// An operator built from others. It borrows them, and does nothing before it is applied.
+///
+/// ```
+/// use fredholm::operator::{algebra::Expression, form_factor::FormFactors, matrix::PatchOperator};
+/// let plates = FormFactors { n: 2, f: vec![0.0, 1.0, 1.0, 0.0], area: vec![1.0, 1.0], rays: 0 };
+/// let t = PatchOperator::new(&plates, vec![0.9, 0.4]);
+/// let t = Expression::from(&t);
+/// let light = t.resolvent()?.of(&[1.0, 0.0])?;           // L = (I − T)⁻¹ E
+/// let two_step = t.power(2).of(&light)?;                 // T² L
+/// assert!((light[0] - 1.5625).abs() < 1e-14 && (two_step[0] - 0.5625).abs() < 1e-14);
+/// # Ok::<(), fredholm::operator::algebra::AlgebraError>(())
+/// ```
+#[derive(Clone)]
+pub struct Expression<'a> {
+    area: Cow<'a, [f64]>,
+    node: Node<'a>,
+}
+
+#[derive(Clone)]
+enum Node<'a> {
+    Leaf(&'a dyn LinearOperator),
+    Identity,
+    Diagonal(Vec<f64>),
+    Sum(Box<Node<'a>>, Box<Node<'a>>),
+    Scaled(f64, Box<Node<'a>>),
+    Product(Box<Node<'a>>, Box<Node<'a>>),
+    Power(Box<Node<'a>>, usize),
+    Resolvent(Box<Node<'a>>),
+    Adjoint(Box<Node<'a>>),
+}
+
+impl<'a, T: LinearOperator> From<&'a T> for Expression<'a> {
+    fn from(operator: &'a T) -> Self {
+        Self { area: Cow::Borrowed(operator.area()), node: Node::Leaf(operator) }
+    }
+}
+
+impl<'a> Expression<'a> {
+    /// I on patches of these areas.
+    pub fn identity(area: &'a [f64]) -> Self {
+        Self { area: Cow::Borrowed(area), node: Node::Identity }
+    }
+
+    /// Multiplication by one number per patch; self-adjoint.
+    ///
+    /// # Errors
+    /// [`AlgebraError::Sizes`] if there are not as many values as areas.
+    pub fn diagonal(area: &'a [f64], values: Vec<f64>) -> Result<Self, AlgebraError> {
+        match (values.len(), area.len()) {
+            (left, right) if left != right => Err(AlgebraError::Sizes { left, right }),
+            _ => Ok(Self { area: Cow::Borrowed(area), node: Node::Diagonal(values) }),
+        }
+    }
+
+    /// S + T.
+    ///
+    /// # Errors
+    /// If they act on different spaces.
+    pub fn plus(&self, other: &Self) -> Result<Self, AlgebraError> {
+        self.join(other, Node::Sum)
+    }
+
+    /// S − T.
+    ///
+    /// # Errors
+    /// If they act on different spaces.
+    pub fn minus(&self, other: &Self) -> Result<Self, AlgebraError> {
+        self.plus(&other.scaled(-1.0))
+    }
+
+    /// S T: first `other`, then `self`.
+    ///
+    /// # Errors
+    /// If they act on different spaces.
+    pub fn times(&self, other: &Self) -> Result<Self, AlgebraError> {
+        self.join(other, Node::Product)
+    }
+
+    /// c T.
+    pub fn scaled(&self, c: f64) -> Self {
+        self.with(Node::Scaled(c, self.boxed()))
+    }
+
+    /// T^k; T⁰ = I.
+    pub fn power(&self, k: usize) -> Self {
+        self.with(Node::Power(self.boxed(), k))
+    }
+
+    /// T*, in the area inner product.
+    pub fn adjoint(&self) -> Self {
+        self.with(Node::Adjoint(self.boxed()))
+    }
+
+    /// (I − T)⁻¹ as the Neumann series, summed until its terms fall below rounding.
+    ///
+    /// That the series settles is tried on x = 1 first. For T ≥ 0 this proves it for every x, because
+    /// |T^k x| ≤ max|x| T^k 1. For other T a series that does not settle gives NaN, never a wrong number.
+    ///
+    /// # Errors
+    /// [`AlgebraError::Diverges`] if Σ T^k 1 does not settle.
+    pub fn resolvent(&self) -> Result<Self, AlgebraError> {
+        let out = self.with(Node::Resolvent(self.boxed()));
+        let probe = out.of(&vec![1.0; self.area.len()])?;
+        if probe.iter().all(|x| x.is_finite()) { Ok(out) } else { Err(AlgebraError::Diverges { steps: MOST_TERMS }) }
+    }
+
+    /// T x as a new vector.
+    ///
+    /// # Errors
+    /// [`AlgebraError::Sizes`] if x has not one value per patch.
+    pub fn of(&self, x: &[f64]) -> Result<Vec<f64>, AlgebraError> {
+        if x.len() != self.area.len() {
+            return Err(AlgebraError::Sizes { left: self.area.len(), right: x.len() });
+        }
+        Ok(self.node.image(&self.area, x, false))
+    }
+
+    fn boxed(&self) -> Box<Node<'a>> {
+        Box::new(self.node.clone())
+    }
+
+    fn with(&self, node: Node<'a>) -> Self {
+        Self { area: self.area.clone(), node }
+    }
+
+    fn join(
+        &self,
+        other: &Self,
+        combine: impl Fn(Box<Node<'a>>, Box<Node<'a>>) -> Node<'a>,
+    ) -> Result<Self, AlgebraError> {
+        same_space(&self.area, &other.area)?;
+        Ok(self.with(combine(self.boxed(), other.boxed())))
+    }
+}
+
+/// Whether two lists of areas are of one space.
+fn same_space(left: &[f64], right: &[f64]) -> Result<(), AlgebraError> {
+    if left.len() != right.len() {
+        return Err(AlgebraError::Sizes { left: left.len(), right: right.len() });
+    }
+    match left.iter().zip(right).position(|(a, b)| a != b) {
+        Some(patch) => Err(AlgebraError::Areas { patch, left: left[patch], right: right[patch] }),
+        None => Ok(()),
+    }
+}
+
+impl Node<'_> {
+    /// T x, or T* x if `adjoint`.
+    fn image(&self, area: &[f64], x: &[f64], adjoint: bool) -> Vec<f64> {
+        match self {
+            Node::Leaf(t) => {
+                let mut y = vec![0.0; x.len()];
+                if adjoint {
+                    t.apply_adjoint(x, &mut y)
+                } else {
+                    t.apply(x, &mut y)
+                }
+                y
+            }
+            Node::Identity => x.to_vec(),
+            Node::Diagonal(d) => x.iter().zip(d).map(|(x, d)| d * x).collect(),
+            Node::Sum(s, t) => {
+                let mut y = s.image(area, x, adjoint);
+                y.iter_mut().zip(t.image(area, x, adjoint)).for_each(|(y, t)| *y += t);
+                y
+            }
+            Node::Scaled(c, t) => t.image(area, x, adjoint).into_iter().map(|y| c * y).collect(),
+            Node::Product(s, t) => {
+                let (first, second) = if adjoint { (s, t) } else { (t, s) };
+                second.image(area, &first.image(area, x, adjoint), adjoint)
+            }
+            Node::Power(t, k) => (0..*k).fold(x.to_vec(), |x, _| t.image(area, &x, adjoint)),
+            Node::Resolvent(t) => neumann(|x| t.image(area, x, adjoint), x),
+            Node::Adjoint(t) => t.image(area, x, !adjoint),
+        }
+    }
+}
+
+/// Σ T^k x; NaN where it does not settle.
+fn neumann(apply: impl Fn(&[f64]) -> Vec<f64>, x: &[f64]) -> Vec<f64> {
+    let largest = |v: &[f64]| v.iter().fold(0.0, |a: f64, v| if v.abs() > a || v.is_nan() { v.abs() } else { a });
+    let (mut term, mut sum) = (x.to_vec(), x.to_vec());
+    for _ in 0..MOST_TERMS {
+        term = apply(&term);
+        sum.iter_mut().zip(&term).for_each(|(s, t)| *s += t);
+        let (t, s) = (largest(&term), largest(&sum));
+        if t <= NEGLIGIBLE * s {
+            return sum;
+        }
+        if !(s < f64::MAX) {
+            break;
+        }
+    }
+    vec![f64::NAN; x.len()]
+}
+
+impl LinearOperator for Expression<'_> {
+    fn area(&self) -> &[f64] {
+        &self.area
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        y.copy_from_slice(&self.node.image(&self.area, x, false));
+    }
+
+    fn apply_adjoint(&self, x: &[f64], y: &mut [f64]) {
+        y.copy_from_slice(&self.node.image(&self.area, x, true));
+    }
+}

@@ -1,0 +1,106 @@
+//! Both ends of the spectrum of T, by the method of Lanczos, with error bounds.
+//!
+//! ```text
+//! T V = V H + β v eᵀ        V: orthonormal in ⟨u, v⟩_w = Σ Aᵢ uᵢ vᵢ/ρᵢ,  H: tridiagonal
+//! H s = θ s     ⇒     some eigenvalue lies within β |s_last| of θ,  and  λ_min ≤ θ ≤ λ_max
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | θ | Ritz value | [`Extremes::smallest`], [`Extremes::largest`] |
+//! | β \|s_last\| | residual ‖T u − θ u‖_w of its unit vector | [`Extremes::residual`] |
+//!
+//! Vectors are made orthogonal to all before them, twice, so no eigenvalue appears as a ghost of another. The start is a fixed
+//! pseudo-random vector: an eigenvalue is missed only if its whole eigenspace is orthogonal to it.
+//!
+//! Reference: Lanczos (1950); Parlett, *The Symmetric Eigenvalue Problem* (1980), chapter 13.
+
+use super::{LinearOperator, PatchOperator};
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// The ends of the spectrum on the patches that reflect.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extremes {
+    /// The smallest Ritz value: not below the smallest eigenvalue.
+    pub smallest: f64,
+    /// The largest Ritz value: not above the largest eigenvalue.
+    pub largest: f64,
+    /// How far from them an eigenvalue is at most.
+    pub residual: [f64; 2],
+    /// Applications spent.
+    pub steps: usize,
+}
+
+impl Extremes {
+    /// [a, b] that holds the spectrum, as far as the residuals can tell.
+    pub fn bracket(&self) -> [f64; 2] {
+        [self.smallest - self.residual[0], self.largest + self.residual[1]]
+    }
+}
+
+/// Smallest and largest eigenvalue of T to a residual of `tolerance`, in at most `max_steps` applications.
+///
+/// ```
+/// use fredholm::operator::{form_factor::FormFactors, matrix::{PatchOperator, extremes}};
+/// let plates = FormFactors { n: 2, f: vec![0.0, 1.0, 1.0, 0.0], area: vec![1.0, 1.0], rays: 0 };
+/// let ends = extremes(&PatchOperator::new(&plates, vec![0.9, 0.4]), 1e-12, 10);
+/// assert!((ends.largest - 0.6).abs() < 1e-14 && (ends.smallest + 0.6).abs() < 1e-14);
+/// ```
+pub fn extremes(t: &PatchOperator<'_>, tolerance: f64, max_steps: usize) -> Extremes {
+    let mut v: Vec<f64> = t.rho.iter().enumerate().map(|(i, r)| r * scrambled(i as u64)).collect();
+    let (mut basis, mut diagonal, mut below): (Vec<Vec<f64>>, Vec<f64>, Vec<f64>) = (vec![], vec![], vec![]);
+    let mut found = Extremes::default();
+    let mut length = t.weighted_norm(&v);
+    let start = length;
+    for steps in 1..=max_steps {
+        // nothing new is left: the Ritz values are eigenvalues
+        if length <= 1e-14 * start || length == 0.0 {
+            break;
+        }
+        v.iter_mut().for_each(|v| *v /= length);
+        basis.push(std::mem::take(&mut v));
+        v = vec![0.0; t.len()];
+        t.apply(&basis[steps - 1], &mut v);
+        diagonal.push(t.weighted_inner(&v, &basis[steps - 1]));
+        for _ in 0..2 {
+            for b in &basis {
+                let part = t.weighted_inner(&v, b);
+                v.iter_mut().zip(b).for_each(|(v, b)| *v -= part * b);
+            }
+        }
+        length = t.weighted_norm(&v);
+        found = ritz(&diagonal, &below, length);
+        if found.residual.iter().all(|r| *r <= tolerance) {
+            break;
+        }
+        below.push(length);
+    }
+    found
+}
+
+/// The extreme Ritz values of a tridiagonal matrix, and their residuals.
+fn ritz(diagonal: &[f64], below: &[f64], next: f64) -> Extremes {
+    let m = diagonal.len();
+    let entry = |i: usize, j: usize| match i.abs_diff(j) {
+        0 => diagonal[i],
+        1 => below[i.min(j)],
+        _ => 0.0,
+    };
+    let eigen = SymmetricEigen::new(DMatrix::from_fn(m, m, entry));
+    let last = |i: usize| next * eigen.eigenvectors[(m - 1, i)].abs();
+    let (low, high) = (eigen.eigenvalues.imin(), eigen.eigenvalues.imax());
+    Extremes {
+        smallest: eigen.eigenvalues[low],
+        largest: eigen.eigenvalues[high],
+        residual: [last(low), last(high)],
+        steps: m,
+    }
+}
+
+/// A fixed pseudo-random number in [0.5, 1.5), by the finaliser of `SplitMix64`.
+fn scrambled(i: u64) -> f64 {
+    let z = (i + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    0.5 + ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}

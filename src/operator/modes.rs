@@ -1,0 +1,149 @@
+//! The spectrum of T: every eigenvalue, the leading modes, and what bounds them.
+//!
+//! ```text
+//! S = √(ρᵢAᵢ) Fᵢⱼ √(ρⱼ/Aⱼ)      symmetric, on the patches with ρ > 0:      S s = λ s      uᵢ = sᵢ √(ρᵢ/Aᵢ)      T u = λ u
+//! T^k E = Σ_j λ_j^{k−1} ⟨u_j, T E⟩_w u_j                       k ≥ 1,  ⟨u, v⟩_w = Σ Aᵢ uᵢ vᵢ/ρᵢ,  ‖u_j‖_w = 1
+//! ⟨v, T v⟩_w/⟨v, v⟩_w ≤ r(T) ≤ maxᵢ (T v)ᵢ/vᵢ                  for any v > 0: Rayleigh, Collatz–Wielandt
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | λ_j, u_j | eigenvalues by falling magnitude, modes of w-length 1 | [`Modes`] |
+//! | ‖T u − λ u‖_w | some eigenvalue lies within this of λ | [`Mode::residual`] |
+//! | r(T) | spectral radius: the rate at which T^k E decays at last | [`radius_bounds`] |
+//! | ‖T‖₂ | largest gain of the area norm in one bounce | [`norm_2`] |
+//!
+//! Only eigenvalues outside the [essential band](super::edges) belong to the scene; those inside belong to the mesh.
+//!
+//! Reference: Parlett, *The Symmetric Eigenvalue Problem* (1980), chapter 4; Varga, *Matrix Iterative Analysis* (1962), 2.2.
+
+use super::algebra::Expression;
+use super::matrix::{LinearOperator, PatchOperator, Rows};
+
+/// One eigenvalue with its mode.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// λ.
+    pub value: f64,
+    /// u, one value per patch; ‖u‖_w = 1, its largest value positive.
+    pub vector: Vec<f64>,
+    /// ‖T u − λ u‖_w.
+    pub residual: f64,
+}
+
+/// The spectrum of one channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Modes {
+    /// Every eigenvalue on the patches that reflect, by falling magnitude.
+    pub values: Vec<f64>,
+    /// The first of them with their modes.
+    pub leading: Vec<Mode>,
+}
+
+impl Modes {
+    /// All eigenvalues of T and the first `count` modes, by a dense symmetric solver.
+    ///
+    /// ```
+    /// use fredholm::operator::{form_factor::FormFactors, matrix::PatchOperator, modes::Modes};
+    /// let plates = FormFactors { n: 2, f: vec![0.0, 1.0, 1.0, 0.0], area: vec![1.0, 1.0], rays: 0 };
+    /// let modes = Modes::of(&PatchOperator::new(&plates, vec![0.9, 0.4]), 1);
+    /// assert!((modes.values[0].abs() - 0.6).abs() < 1e-14 && (modes.values[0] + modes.values[1]).abs() < 1e-14);
+    /// ```
+    pub fn of(t: &PatchOperator<'_>, count: usize) -> Self {
+        let on: Vec<usize> = (0..t.len()).filter(|&i| t.rho[i] > 0.0).collect();
+        let weight = |i: usize| (t.area()[i] / t.rho[i]).sqrt();
+        let s = |a: usize, b: usize| t.entry(on[a], on[b]) * weight(on[a]) / weight(on[b]);
+        // entries are rounded to single precision one by one: the mean of both is symmetric
+        let (values, vectors) = symmetric_eigen(on.len(), |a, b| 0.5 * (s(a, b) + s(b, a)));
+        let mut order: Vec<usize> = (0..values.len()).collect();
+        order.sort_by(|&a, &b| values[b].abs().total_cmp(&values[a].abs()).then(values[b].total_cmp(&values[a])));
+        let mode = |&j: &usize| {
+            let mut vector = vec![0.0; t.len()];
+            on.iter().enumerate().for_each(|(a, &i)| vector[i] = vectors(a, j) / weight(i));
+            let largest = vector.iter().fold(0.0, |m: f64, v| if v.abs() > m.abs() { *v } else { m });
+            vector.iter_mut().for_each(|v| *v *= largest.signum());
+            let mut image = vec![0.0; t.len()];
+            t.apply(&vector, &mut image);
+            image.iter_mut().zip(&vector).for_each(|(y, u)| *y -= values[j] * u);
+            Mode { value: values[j], residual: t.weighted_norm(&image), vector }
+        };
+        Self {
+            values: order.iter().map(|&j| values[j]).collect(),
+            leading: order.iter().take(count).map(mode).collect(),
+        }
+    }
+}
+
+/// Eigenvalues of a symmetric matrix, and entry a of eigenvector j.
+#[cfg(feature = "faer")]
+fn symmetric_eigen(n: usize, entry: impl Fn(usize, usize) -> f64) -> (Vec<f64>, Box<dyn Fn(usize, usize) -> f64>) {
+    use faer::{Mat, Side};
+    let matrix = Mat::from_fn(n, n, &entry);
+    match matrix.self_adjoint_eigen(Side::Lower) {
+        Ok(eigen) => {
+            let values = (0..n).map(|j| eigen.S()[j]).collect();
+            (values, Box::new(move |a, j| eigen.U()[(a, j)]))
+        }
+        Err(_) => by_nalgebra(n, entry),
+    }
+}
+
+#[cfg(not(feature = "faer"))]
+fn symmetric_eigen(n: usize, entry: impl Fn(usize, usize) -> f64) -> (Vec<f64>, Box<dyn Fn(usize, usize) -> f64>) {
+    by_nalgebra(n, entry)
+}
+
+fn by_nalgebra(n: usize, entry: impl Fn(usize, usize) -> f64) -> (Vec<f64>, Box<dyn Fn(usize, usize) -> f64>) {
+    let eigen = nalgebra::SymmetricEigen::new(nalgebra::DMatrix::from_fn(n, n, entry));
+    (eigen.eigenvalues.iter().copied().collect(), Box::new(move |a, j| eigen.eigenvectors[(a, j)]))
+}
+
+/// Lower and upper bound of r(T) from v = T^steps 1: the Rayleigh quotient of v, and maxᵢ (T v)ᵢ/vᵢ.
+///
+/// The upper bound holds for the matrix as it is stored, whatever T; the lower one as far as A F is symmetric, 1e-7 for
+/// entries in single precision.
+///
+/// ```
+/// use fredholm::operator::{form_factor::FormFactors, matrix::PatchOperator, modes::radius_bounds};
+/// let f = FormFactors { n: 2, f: vec![0.5, 0.5, 0.5, 0.5], area: vec![1.0, 1.0], rays: 0 };
+/// let [low, high] = radius_bounds(&PatchOperator::new(&f, vec![0.9, 0.3]), 8);
+/// assert!((low - 0.6).abs() < 1e-7 && (high - 0.6).abs() < 1e-14); // (ρ₁ + ρ₂)/2
+/// ```
+pub fn radius_bounds(t: &PatchOperator<'_>, steps: usize) -> [f64; 2] {
+    let (mut v, mut y) = (vec![1.0; t.len()], vec![0.0; t.len()]);
+    for _ in 0..=steps {
+        t.apply(&v, &mut y);
+        std::mem::swap(&mut v, &mut y);
+        let largest = v.iter().copied().fold(0.0, f64::max);
+        if largest == 0.0 {
+            return [0.0; 2]; // nothing comes back: all eigenvalues are 0
+        }
+        v.iter_mut().for_each(|v| *v /= largest);
+    }
+    t.apply(&v, &mut y);
+    let gain = y.iter().zip(&v).filter(|(_, v)| **v > 0.0).map(|(y, v)| y / v).fold(0.0, f64::max);
+    [t.weighted_inner(&v, &y) / t.weighted_inner(&v, &v), gain]
+}
+
+/// ‖T‖₂ = √r(T*T) in the area inner product, by power iteration: a lower bound that rises to it, to the relative change
+/// `tolerance` per step, in at most `max_steps` steps.
+pub fn norm_2(t: &impl LinearOperator, tolerance: f64, max_steps: usize) -> f64 {
+    let t = Expression::from(t);
+    let back = t.adjoint();
+    let (mut v, mut gain) = (vec![1.0; t.len()], 0.0);
+    for _ in 0..max_steps {
+        let length = t.norm(&v);
+        v.iter_mut().for_each(|v| *v /= length);
+        let (mut image, mut y) = (vec![0.0; v.len()], vec![0.0; v.len()]);
+        t.apply(&v, &mut image);
+        back.apply(&image, &mut y);
+        let next = t.norm(&image);
+        let settled = (next - gain).abs() <= tolerance * next;
+        gain = next;
+        if settled {
+            break;
+        }
+        v = y;
+    }
+    gain
+}

@@ -1,0 +1,183 @@
+//! Iterations that look for the best x in E + span{T E, T² E, …}.
+//!
+//! ```text
+//! CG          self-adjoint in ⟨u, v⟩_w = Σ Aᵢ uᵢ vᵢ/ρᵢ:   ‖L − xₙ‖_e ≤ 2 qⁿ/(1 + q²ⁿ) ‖L − x₀‖_e,  ‖u‖_e² = ⟨u, (I − T) u⟩_w
+//! GMRES       any T:   ‖E − (I − T) xₙ‖_A is least, so never above that of the Neumann sum, ‖T^{n+1} E‖_A
+//!
+//! q = (√c − 1)/(√c + 1)        c = (1 − λ_min)/(1 − λ_max)
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | D^½ A^½ F A^−½ D^½ | the symmetrised T; in ⟨·,·⟩_w it is T itself | [`ConjugateGradients`] |
+//! | V, H | orthonormal basis of the Krylov space and T in it, by Arnoldi | [`Gmres`] |
+//!
+//! The weight 1/ρ leaves black patches out: there L = E, which the start x₀ = E has right already, and every direction
+//! T p vanishes there. The first residual, T E, costs one application.
+//!
+//! Reference: Hestenes and Stiefel (1952); Saad and Schultz (1986); Saad, *Iterative Methods for Sparse Linear Systems*
+//! (2003), chapter 6.
+
+use super::iteration::Iteration;
+use crate::operator::matrix::{LinearOperator, PatchOperator};
+
+/// Conjugate gradients on I − T in the inner product in which T is self-adjoint.
+///
+/// Needs A F symmetric and r(T) < 1: dense form factors. Sampled rows are not symmetric; use [`Gmres`] there.
+#[derive(Clone, Debug)]
+pub struct ConjugateGradients<'a> {
+    operator: &'a PatchOperator<'a>,
+    x: Vec<f64>,
+    residual: Vec<f64>,
+    direction: Vec<f64>,
+    image: Vec<f64>,
+    /// ⟨r, r⟩_w.
+    square: f64,
+    applications: usize,
+}
+
+impl<'a> ConjugateGradients<'a> {
+    /// Starts at E.
+    pub fn new(operator: &'a PatchOperator<'a>, emission: &[f64]) -> Self {
+        let mut residual = vec![0.0; emission.len()];
+        operator.apply(emission, &mut residual);
+        let square = operator.weighted_inner(&residual, &residual);
+        let direction = residual.clone();
+        let image = vec![0.0; emission.len()];
+        Self { operator, x: emission.to_vec(), residual, direction, image, square, applications: 1 }
+    }
+}
+
+impl Iteration for ConjugateGradients<'_> {
+    fn advance(&mut self) -> bool {
+        if self.square == 0.0 {
+            return false;
+        }
+        let Self { operator, x, residual, direction, image, square, applications } = self;
+        operator.apply(direction, image);
+        *applications += 1;
+        image.iter_mut().zip(&*direction).for_each(|(y, p)| *y = p - *y); // (I − T) p
+        let step = *square / operator.weighted_inner(direction, image);
+        x.iter_mut().zip(&*direction).for_each(|(x, p)| *x += step * p);
+        residual.iter_mut().zip(&*image).for_each(|(r, y)| *r -= step * y);
+        let next = operator.weighted_inner(residual, residual);
+        let turn = next / *square;
+        direction.iter_mut().zip(&*residual).for_each(|(p, r)| *p = r + turn * *p);
+        *square = next;
+        true
+    }
+
+    fn iterate(&self) -> &[f64] {
+        &self.x
+    }
+
+    fn applications(&self) -> f64 {
+        self.applications as f64
+    }
+}
+
+/// Generalised minimal residuals, without restarts, in the area inner product.
+#[derive(Clone, Debug)]
+pub struct Gmres<'a, T: ?Sized> {
+    operator: &'a T,
+    start: Vec<f64>,
+    x: Vec<f64>,
+    /// V: v₀ = T E/‖T E‖, v₁, ….
+    basis: Vec<Vec<f64>>,
+    /// H turned into a triangle by the rotations, column by column.
+    triangle: Vec<Vec<f64>>,
+    rotations: Vec<[f64; 2]>,
+    /// The rotated right-hand side; its last entry is ± the residual.
+    right: Vec<f64>,
+    applications: usize,
+    over: bool,
+}
+
+impl<'a, T: LinearOperator + ?Sized> Gmres<'a, T> {
+    /// Starts at E.
+    pub fn new(operator: &'a T, emission: &[f64]) -> Self {
+        let mut first = vec![0.0; emission.len()];
+        operator.apply(emission, &mut first);
+        let norm = operator.norm(&first);
+        first.iter_mut().for_each(|v| *v /= norm);
+        Self {
+            operator,
+            start: emission.to_vec(),
+            x: emission.to_vec(),
+            basis: vec![first],
+            triangle: vec![],
+            rotations: vec![],
+            right: vec![norm],
+            applications: 1,
+            over: norm == 0.0,
+        }
+    }
+
+    /// The residual by the recurrence, ‖E − (I − T) x‖_A.
+    pub fn recurrence(&self) -> f64 {
+        self.right.last().map_or(0.0, |r| r.abs())
+    }
+
+    /// x = E + V y with y from the triangle.
+    fn assemble(&mut self) {
+        let m = self.triangle.len();
+        let mut y = self.right[..m].to_vec();
+        for i in (0..m).rev() {
+            y[i] = (y[i] - (i + 1..m).map(|j| self.triangle[j][i] * y[j]).sum::<f64>()) / self.triangle[i][i];
+        }
+        self.x.copy_from_slice(&self.start);
+        for (v, y) in self.basis.iter().zip(y) {
+            self.x.iter_mut().zip(v).for_each(|(x, v)| *x += y * v);
+        }
+    }
+}
+
+impl<T: LinearOperator + ?Sized> Iteration for Gmres<'_, T> {
+    fn advance(&mut self) -> bool {
+        let m = self.triangle.len();
+        if self.over {
+            return false;
+        }
+        // Arnoldi: w = (I − T) v_m made orthogonal to the basis, twice for the sake of rounding
+        let mut w = vec![0.0; self.x.len()];
+        self.operator.apply(&self.basis[m], &mut w);
+        self.applications += 1;
+        w.iter_mut().zip(&self.basis[m]).for_each(|(w, v)| *w = v - *w);
+        let whole = self.operator.norm(&w);
+        let mut h = vec![0.0; m + 1];
+        for _ in 0..2 {
+            for (h, v) in h.iter_mut().zip(&self.basis) {
+                let part = self.operator.inner(&w, v);
+                *h += part;
+                w.iter_mut().zip(v).for_each(|(w, v)| *w -= part * v);
+            }
+        }
+        let below = self.operator.norm(&w);
+        // Givens: the rotations so far, and a new one that clears the entry below the diagonal
+        for (i, [c, s]) in self.rotations.iter().enumerate() {
+            (h[i], h[i + 1]) = (c * h[i] + s * h[i + 1], c * h[i + 1] - s * h[i]);
+        }
+        let length = h[m].hypot(below);
+        let [c, s] = [h[m] / length, below / length];
+        h[m] = length;
+        let last = self.right[m];
+        self.right[m] = c * last;
+        self.right.push(-s * last);
+        self.rotations.push([c, s]);
+        self.triangle.push(h);
+        self.assemble();
+        // the space is exhausted when nothing new is left but rounding: then x is L
+        self.over = below <= 1e-14 * whole;
+        w.iter_mut().for_each(|w| *w /= below);
+        self.basis.push(w);
+        true
+    }
+
+    fn iterate(&self) -> &[f64] {
+        &self.x
+    }
+
+    fn applications(&self) -> f64 {
+        self.applications as f64
+    }
+}

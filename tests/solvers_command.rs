@@ -1,0 +1,91 @@
+//! `fredholm radiosity --solver`: what is printed, written and refused.
+#![allow(clippy::unwrap_used)]
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::path::Path;
+
+fn fredholm(folder: &Path, args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fredholm"));
+    command.current_dir(folder).args(args);
+    command
+}
+
+const ALL: [&str; 9] = ["Neumann", "Jacobi", "Gauss–Seidel", "SOR", "Southwell", "Chebyshev", "CG", "GMRES", "LU"];
+
+#[test]
+fn all_solvers_stand_in_one_table_and_one_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["radiosity", "cornell", "--patches", "150", "--solver", "all", "--history", "h.csv", "-o", "out"];
+    let run = fredholm(folder.path(), &args).assert().success();
+    let printed = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+    assert!(printed.lines().all(|l| l.chars().count() <= 120), "{printed}");
+    for name in ALL {
+        assert!(printed.lines().any(|l| l.starts_with(name)), "{name} in\n{printed}");
+    }
+    let out = folder.path().join("out");
+    for file in ["solvers.json", "solvers.svg", "solvers.png", "summary.json", "h.csv"] {
+        assert!(out.join(file).is_file() && printed.contains(file), "{file}");
+    }
+    let svg = std::fs::read_to_string(out.join("solvers.svg")).unwrap();
+    assert!(svg.contains("--solver all") && ALL[..8].iter().all(|name| svg.contains(name)));
+    // the same command replaces its own output, another one does not; --json is what is in the file, and the same steps
+    let again = fredholm(folder.path(), &[&args[..], &["--json"]].concat()).assert().success();
+    let json: Value = serde_json::from_slice(&again.get_output().stdout).unwrap();
+    let file: Value = serde_json::from_str(&std::fs::read_to_string(out.join("solvers.json")).unwrap()).unwrap();
+    assert_eq!(json, file);
+    fredholm(folder.path(), &["radiosity", "cornell", "--patches", "150", "--solver", "cg", "-o", "out"])
+        .assert()
+        .code(3);
+    // table, JSON and CSV hold one set of numbers; all solvers get to 1e-10
+    let csv = std::fs::read_to_string(out.join("h.csv")).unwrap();
+    assert_eq!(csv.lines().next(), Some("solver,step,products,norm,residual,error,seconds"));
+    for (solver, name) in json["solvers"].as_array().unwrap().iter().zip(ALL) {
+        assert_eq!(solver["solver"], name);
+        let steps = solver["steps"].as_array().unwrap();
+        assert_eq!(csv.lines().filter(|l| l.split(',').next() == Some(name)).count(), steps.len());
+        let last = solver["reaches"][2]["products"].as_f64().unwrap();
+        let whole = if last.fract() == 0.0 { format!("{last:.0}") } else { format!("{last:.1}") };
+        let row = printed.lines().find(|l| l.starts_with(name)).unwrap();
+        assert!(row.split_whitespace().any(|word| word == whole), "{whole} in {row}");
+        let errors: Vec<f64> = steps.iter().map(|s| s["error"].as_f64().unwrap()).collect();
+        assert!(errors[errors.len() - 1] <= 1e-12, "{name}: {errors:?}");
+    }
+}
+
+#[test]
+fn one_solver_and_a_channel_can_be_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let base = ["radiosity", "cornell", "--patches", "100", "--json", "-q", "--solver"];
+    for (name, shown, channel) in [("gauss-seidel", "Gauss–Seidel", "green"), ("southwell", "Southwell", "blue")] {
+        let run = fredholm(folder.path(), &[&base[..], &[name, "--channel", channel]].concat()).assert().success();
+        let json: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+        let names: Vec<&str> =
+            json["solvers"].as_array().unwrap().iter().map(|s| s["solver"].as_str().unwrap()).collect();
+        assert_eq!((names, json["channel"].as_str()), (vec![shown, "LU"], Some(channel)));
+    }
+    assert!(folder.path().join("fredholm-out/cornell-solvers-2/solvers.json").is_file());
+    // LU alone has no steps to draw
+    fredholm(folder.path(), &[&base[..], &["lu", "-o", "lu"]].concat()).assert().success();
+    assert!(!folder.path().join("lu/solvers.svg").exists());
+}
+
+#[test]
+fn what_cannot_be_solved_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let code = |args: &[&str]| {
+        let run = fredholm(folder.path(), args).assert();
+        let output = run.get_output();
+        (output.status.code(), String::from_utf8(output.stderr.clone()).unwrap())
+    };
+    let (status, text) = code(&["radiosity", "cornell", "--history", "h.csv"]);
+    assert!(status == Some(2) && text.contains("--solver"), "{text}");
+    let (status, text) = code(&["radiosity", "cornell", "--solver", "newton"]);
+    assert!(status == Some(2) && text.contains("newton"), "{text}");
+    let (status, text) = code(&["radiosity", "veach-mis", "--solver", "all"]);
+    assert!(status == Some(2) && text.contains("no radiosity matrix can hold this scene"), "{text}");
+    let white =
+        ["radiosity", "furnace", "--set", "materials.wall.reflectance=[1,1,1]", "--solver", "all", "--patches", "50"];
+    let (status, text) = code(&white);
+    assert!(status == Some(3) && text.contains("keeps all its light"), "{text}");
+}
