@@ -21,6 +21,7 @@ mod choose;
 mod cover;
 mod curved;
 pub mod polygon;
+mod segments;
 mod tree;
 
 use crate::scene::{Description, Primitive, SceneError, description::Sides};
@@ -29,6 +30,7 @@ use choose::Shape;
 use cover::{Cover, CoverTest};
 use curved::Grid;
 use glam::DVec3;
+pub(crate) use segments::{LANES, Lane, Segments};
 use tree::Tree;
 
 /// A point of the true surface with the normal of the side meant.
