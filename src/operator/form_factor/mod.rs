@@ -305,6 +305,32 @@ mod tests {
     }
 
     #[test]
+    fn what_is_called_hidden_is_never_seen() {
+        let scene = clutter();
+        let patches = Patches::new(&scene, 400).unwrap();
+        let caster = BruteForce::new(&scene);
+        let mut segments = caster.segments();
+        let (mut hidden, fine) = (0, Sampling { rays: 64, refined: 64 });
+        for (i, a) in patches.iter().enumerate().filter(|(_, p)| p.ball.is_none()) {
+            for (j, b) in patches.iter().enumerate().skip(i + 1).filter(|(_, p)| p.ball.is_none()) {
+                let (mut ca, mut cb) = (Vec::new(), Vec::new());
+                let Some((pa, pb)) = facing(&a.polygon, &side(a), &b.polygon, &side(b), &mut ca, &mut cb) else {
+                    continue;
+                };
+                for k in (0..caster.len()).filter(|k| *k != a.primitive && *k != b.primitive) {
+                    if caster.hides(k, pa, pb) {
+                        hidden += 1;
+                        let block = |segments: &mut Segments| caster.block(k, segments);
+                        let pair = (i * patches.len() + j) as u64;
+                        assert_eq!(visible_share(fine, (a, pa), (b, pb), true, pair, &mut segments, block).0, 0.0);
+                    }
+                }
+            }
+        }
+        assert!(hidden > 1000, "{hidden}");
+    }
+
+    #[test]
     fn the_result_does_not_depend_on_threads_and_can_be_stopped() {
         let scene = clutter();
         let patches = Patches::new(&scene, 100).unwrap();

@@ -28,7 +28,7 @@ impl Visibility for BruteForce {
 /// Samples per pair that is not provably clear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampling {
-    /// First look: 64.
+    /// First look: 128.
     pub rays: u32,
     /// Total for pairs of which the first look saw a part: 576.
     pub refined: u32,
@@ -36,7 +36,7 @@ pub struct Sampling {
 
 impl Default for Sampling {
     fn default() -> Self {
-        Self { rays: 64, refined: 576 }
+        Self { rays: 128, refined: 576 }
     }
 }
 

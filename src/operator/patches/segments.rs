@@ -214,3 +214,88 @@ pub(super) fn hides(body: &Body, a: &[DVec3], b: &[DVec3]) -> bool {
     debug_assert!(area_vector(a) != DVec3::ZERO && area_vector(b) != DVec3::ZERO);
     a.iter().all(|x| b.iter().all(|y| body.crossing(*x, *y - *x, 1.0).is_some()))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::{BruteForce, Patches};
+    use super::*;
+    use crate::scene::Primitive;
+    use crate::scene::description::{CameraDescription, Description, Geometry, Material, Shape, Sides};
+
+    fn scene() -> Description {
+        let v = DVec3::new;
+        let geometries = [
+            Geometry::Box { min: DVec3::NEG_ONE, max: DVec3::ONE, rotate_y: 0.0, inward: true },
+            Geometry::Box { min: v(-0.5, -1.0, -0.4), max: v(0.1, 0.2, 0.3), rotate_y: 25.0, inward: false },
+            Geometry::Sphere { center: v(0.5, -0.2, 0.3), radius: 0.3, z: [-0.6, 0.7], inward: false },
+            Geometry::Disk { center: v(0.3, 0.4, -0.2), normal: v(0.2, -1.0, 0.1).normalize(), radius: 0.3 },
+            Geometry::Mesh {
+                vertices: vec![v(-0.8, 0.3, -0.2), v(-0.2, 0.5, 0.6), v(-0.6, 0.6, 0.1)],
+                faces: vec![[0, 1, 2]],
+                uvs: vec![],
+            },
+        ];
+        let shape = |geometry| Shape { name: "s".into(), geometry, material: 0, emission: DVec3::ZERO };
+        Description {
+            name: "lanes".into(),
+            camera: CameraDescription { origin: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov: 40.0, size: [8, 8] },
+            materials: vec![Material::diffuse("m", DVec3::splat(0.5), Sides::Both)],
+            shapes: geometries.map(shape).to_vec(),
+            lights: vec![],
+            expect: None,
+        }
+    }
+
+    #[test]
+    fn lanes_and_single_segments_meet_the_same() {
+        let scene = scene();
+        let (patches, caster) = (Patches::new(&scene, 60).unwrap(), BruteForce::new(&scene));
+        let mut segments = caster.segments();
+        let numbers = [0.311, 0.577, 0.731, 0.919]
+            .map(|step: f64| std::array::from_fn(|k| (0.5 + step * k as f64).fract()));
+        let mut met = vec![[0u32; 2]; caster.len()];
+        for (i, a) in patches.iter().enumerate() {
+            let b = &patches[(i * 37 + 11) % patches.len()];
+            segments.place((a, &a.polygon), (b, &b.polygon), &numbers, true);
+            for (number, met) in met.iter_mut().enumerate() {
+                segments.blocked = [0.0; LANES];
+                caster.block(number, &mut segments);
+                for k in 0..LANES {
+                    let [x, y] = segments.ends(k, a, b);
+                    let free = caster.free(x, y, std::iter::once(number));
+                    // the ends are moved off their own flat surface by rounding's grace only
+                    let own = a.primitive == number || b.primitive == number;
+                    assert!(own || free == (segments.blocked[k] == 0.0), "{number} {k} {x:?} {y:?}");
+                    met[usize::from(free)] += 1;
+                }
+            }
+        }
+        assert!(met.iter().all(|[blocked, free]| *blocked > 20 && *free > 20), "{met:?}");
+    }
+
+    #[test]
+    fn weights_are_densities_times_the_kernel() {
+        let scene = scene();
+        let patches = Patches::new(&scene, 60).unwrap();
+        let caster = BruteForce::new(&scene);
+        let mut segments = caster.segments();
+        let numbers = [0.311, 0.577, 0.731, 0.919]
+            .map(|step: f64| std::array::from_fn(|k| (0.5 + step * k as f64).fract()));
+        let (mut corners, mut facing) = ([0; 6], 0);
+        for (i, a) in patches.iter().enumerate().filter(|(_, p)| p.ball.is_none()) {
+            let b = &patches[(i * 37 + 11) % patches.len()];
+            corners[a.polygon.len()] += 1;
+            segments.place((a, &a.polygon), (b, &b.polygon), &numbers, true);
+            for k in 0..LANES {
+                let (x, v) = at(&a.polygon, numbers[0][k], numbers[1][k]);
+                let (y, w) = at(&b.polygon, numbers[2][k], numbers[3][k]);
+                let r = y - x;
+                let weight = v * w * a.normal.dot(r) * -b.normal.dot(r) / r.length_squared().powi(2);
+                facing += u32::from(weight > 0.0);
+                assert!((segments.weight[k] - weight.max(0.0)).abs() <= 1e-12 * weight.abs().max(v * w), "{i} {k}");
+            }
+        }
+        assert!(facing > 500 && corners[3] > 0 && corners[4] > 0 && matches!(scene.primitives()[0].1, Primitive::Parallelogram { .. }));
+    }
+}
