@@ -1,5 +1,5 @@
 //! What form factors cost and how right they are:
-//! `cargo bench --bench factors [-- cube:1944 cornell:2305 cornell:8602 reference]`.
+//! `cargo bench --bench factors [-- cube:1944 cornell:2305 cornell:8602 rays:33000:1024 reference]`.
 //!
 //! Prints CPU seconds of all threads (wall time in brackets) and errors. A cube is compared with the closed contour of
 //! every pair; with `reference` the Cornell box is compared with a matrix of 256, then 6400 visibility rays per pair.
@@ -8,6 +8,7 @@
 
 use fredholm::operator::form_factor::{FormFactors, Sampling, Watch, polygon_to_polygon};
 use fredholm::operator::patches::Patches;
+use fredholm::operator::rays::{Light, Rays};
 use fredholm::scene::description::*;
 use fredholm::scene::{Scene, load};
 use fredholm::solver::Radiosity;
@@ -16,15 +17,52 @@ use std::time::Instant;
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
-    let words =
-        if words.is_empty() { ["cube:1944", "cornell:2305"].map(String::from).to_vec() } else { words };
+    let words = if words.is_empty() { ["cube:1944", "cornell:2305"].map(String::from).to_vec() } else { words };
     let with_reference = words.iter().any(|w| w == "reference");
     for word in &words {
         match word.split_once(':') {
             Some(("cube", n)) => cube(n.parse().unwrap()),
             Some(("cornell", n)) => cornell(n.parse().unwrap(), with_reference),
+            Some(("rays", n)) => {
+                let (n, per_row) = n.split_once(':').unwrap_or((n, "256"));
+                rays(n.parse().unwrap(), per_row.parse().unwrap(), with_reference);
+            }
             _ => {}
         }
+    }
+}
+
+/// Stored rays in the Cornell box, with the bar from their halves; `reference`: against those of another seed as well.
+fn rays(n: usize, per_row: usize, with_reference: bool) {
+    let description = load::scene("cornell", &load::Options::default()).unwrap().description;
+    let scene = Scene::new(&description);
+    let patches = timed("patches", || Patches::new(&description, n).unwrap());
+    println!("cornell, {} patches, {per_row} rays a row", patches.len());
+    let shoot = |seed| Rays::new(&patches, &scene, per_row, seed, Watch::default()).unwrap();
+    let red = |l: &[DVec3]| l.iter().zip(patches.iter()).map(|(l, p)| l.x - p.emission.x).collect::<Vec<f64>>();
+    let rows = timed("rays", || shoot(0));
+    let light = Light { patches: &patches, rays: &rows };
+    let solved = timed("solve", || light.solve(1e-7, 200));
+    let radius = timed("spectral radius", || light.spectral_radius(&solved.last, 1e-6, 100));
+    let noise = timed("error bar", || light.noise(&solved.radiance));
+    let u = red(&solved.radiance);
+    let norm = |x: &[f64]| x.iter().zip(patches.iter()).map(|(x, p)| p.area * x * x).sum::<f64>().sqrt();
+    println!(
+        "  {} steps, residual {:.1e}, radius {:.6?} after {}, {} lost, {:.2} GB of rows",
+        solved.steps,
+        solved.residual.max_element(),
+        radius.each_ref().map(|s| s.radius),
+        radius[0].steps,
+        rows.lost,
+        rows.bytes() as f64 * 1e-9
+    );
+    println!("  bar of u {:.1e}", norm(&noise.iter().map(|d| d.x).collect::<Vec<_>>()) / norm(&u));
+    if with_reference {
+        // two independent solutions differ by √2 of the error of one
+        let first = u;
+        let other = shoot(1);
+        let second = red(&Light { patches: &patches, rays: &other }.solve(1e-7, 200).radiance);
+        println!("  error of u by two seeds {:.1e}", distance(&patches, &first, &second) / 2f64.sqrt());
     }
 }
 
@@ -109,12 +147,17 @@ fn cornell(n: usize, with_reference: bool) {
         r.solve().unwrap().radiance.iter().zip(patches.iter()).map(|(l, p)| l.x - p.emission.x).collect()
     };
     let (u, truth) = (reflected(f), timed("solve", || reflected(exact)));
-    println!("  Frobenius {:.1e}, error of u {:.1e}", (square / f64::max(whole, f64::MIN_POSITIVE)).sqrt(), distance(&patches, &u, &truth));
+    println!(
+        "  Frobenius {:.1e}, error of u {:.1e}",
+        (square / f64::max(whole, f64::MIN_POSITIVE)).sqrt(),
+        distance(&patches, &u, &truth)
+    );
 }
 
 /// Area-weighted relative L² distance.
 fn distance(patches: &Patches, u: &[f64], truth: &[f64]) -> f64 {
-    let norm = |f: &dyn Fn(usize) -> f64| patches.iter().enumerate().map(|(i, p)| p.area * f(i).powi(2)).sum::<f64>().sqrt();
+    let norm =
+        |f: &dyn Fn(usize) -> f64| patches.iter().enumerate().map(|(i, p)| p.area * f(i).powi(2)).sum::<f64>().sqrt();
     norm(&|i| u[i] - truth[i]) / norm(&|i| truth[i])
 }
 

@@ -136,6 +136,8 @@ pub const ENTRIES: &[Entry] = &[
     entry("means_do_not_depend_on_the_axes", 600, 1e-8),
     entry("no_material_gains_energy", 480, 1e-8),
     entry("two_patches_may_change_places", 180, 1e-8),
+    // tests/rays.rs
+    entry("rows_agree_with_the_matrix", 5_000, 1e-9),
     // tests/bsdf.rs
     entry("directions_have_the_density_they_claim", 1_000, 1e-8),
     entry("a_million_directions_have_the_density_they_claim", 1_000, 1e-8),

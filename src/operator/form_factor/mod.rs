@@ -213,17 +213,16 @@ impl Pairs<'_> {
             return 1.0;
         }
         let pair = (i as u64) << 32 | j as u64;
-        let (share, traced) =
-            visible_share(self.sampling, (a, pa), (b, pb), flat_kernel, pair, segments, |segments| {
-                if among.len() <= MAX_LISTED {
-                    among.iter().for_each(|k| self.bodies.block(*k as usize, segments));
-                    return;
-                }
-                for k in 0..LANES {
-                    let [x, y] = segments.ends(k, a, b);
-                    segments.blocked[k] = f64::from(u8::from(!self.visibility.visible(x, y)));
-                }
-            });
+        let (share, traced) = visible_share(self.sampling, (a, pa), (b, pb), flat_kernel, pair, segments, |segments| {
+            if among.len() <= MAX_LISTED {
+                among.iter().for_each(|k| self.bodies.block(*k as usize, segments));
+                return;
+            }
+            for k in 0..LANES {
+                let [x, y] = segments.ends(k, a, b);
+                segments.blocked[k] = f64::from(u8::from(!self.visibility.visible(x, y)));
+            }
+        });
         *rays += u64::from(traced);
         share
     }

@@ -252,8 +252,8 @@ mod tests {
         let scene = scene();
         let (patches, caster) = (Patches::new(&scene, 60).unwrap(), BruteForce::new(&scene));
         let mut segments = caster.segments();
-        let numbers = [0.311, 0.577, 0.731, 0.919]
-            .map(|step: f64| std::array::from_fn(|k| (0.5 + step * k as f64).fract()));
+        let numbers =
+            [0.311, 0.577, 0.731, 0.919].map(|step: f64| std::array::from_fn(|k| (0.5 + step * k as f64).fract()));
         let mut met = vec![[0u32; 2]; caster.len()];
         for (i, a) in patches.iter().enumerate() {
             let b = &patches[(i * 37 + 11) % patches.len()];
@@ -280,8 +280,8 @@ mod tests {
         let patches = Patches::new(&scene, 60).unwrap();
         let caster = BruteForce::new(&scene);
         let mut segments = caster.segments();
-        let numbers = [0.311, 0.577, 0.731, 0.919]
-            .map(|step: f64| std::array::from_fn(|k| (0.5 + step * k as f64).fract()));
+        let numbers =
+            [0.311, 0.577, 0.731, 0.919].map(|step: f64| std::array::from_fn(|k| (0.5 + step * k as f64).fract()));
         let (mut corners, mut facing) = ([0; 6], 0);
         for (i, a) in patches.iter().enumerate().filter(|(_, p)| p.ball.is_none()) {
             let b = &patches[(i * 37 + 11) % patches.len()];
@@ -296,6 +296,11 @@ mod tests {
                 assert!((segments.weight[k] - weight.max(0.0)).abs() <= 1e-12 * weight.abs().max(v * w), "{i} {k}");
             }
         }
-        assert!(facing > 500 && corners[3] > 0 && corners[4] > 0 && matches!(scene.primitives()[0].1, Primitive::Parallelogram { .. }));
+        assert!(
+            facing > 500
+                && corners[3] > 0
+                && corners[4] > 0
+                && matches!(scene.primitives()[0].1, Primitive::Parallelogram { .. })
+        );
     }
 }
