@@ -43,7 +43,7 @@ pub fn read() -> Cli {
     // the tour's options are explained by `fredholm tour --help`; here they would hide the commands
     let cli = Cli::command().mut_args(|arg| arg.hide(true));
     // nor does a sweep know matrices
-    let matrix = ["worlds", "patches", "read_patches", "orders", "verbose"];
+    let matrix = ["worlds", "patches", "factors", "rays", "read_patches", "orders", "verbose"];
     let cli = cli.mut_subcommand("sweep", |c| matrix.iter().fold(c, |c, name| c.mut_arg(name, |arg| arg.hide(true))));
     let mut matches = cli.get_matches();
     Cli::from_arg_matches_mut(&mut matches).unwrap_or_else(|e| e.exit())
@@ -68,7 +68,10 @@ tail. (Elsewhere the same images are Mitsuba's max_depth = K + 1 and pbrt's maxd
     #[command(after_help = "Example:\n  fredholm render cornell --spp 256 --roulette constant:0.3@2")]
     Render(Run),
     /// The matrix alone: form factors, terms, solve
-    #[command(after_help = "Example:\n  fredholm radiosity cornell --patches 2400 --orders")]
+    #[command(after_help = "Examples:
+  fredholm radiosity cornell --patches 2400 --orders
+  fredholm radiosity cornell --patches 2400 --factors both --rays 1024    matrix and stored rays, apart
+  fredholm radiosity cornell --patches 130000 --rays 256                  too many for a matrix")]
     Radiosity(Run),
     /// Two results: verdict per term, z map
     #[command(
@@ -212,8 +215,16 @@ pub struct Run {
     )]
     pub worlds: Vec<WorldName>,
     /// About how many patches the matrix has [default: 600; tour: 2400]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20_000))]
+    ///
+    /// Up to 20000 for a dense matrix, 2000000 for stored rays.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
     pub patches: Option<u32>,
+    /// How form factors are held [default: dense up to 10000 patches, rays beyond]
+    #[arg(long, value_enum, value_name = "HOW")]
+    pub factors: Option<FactorsName>,
+    /// Rays of every patch, where they are stored: 2 to 65536, powers of two are best [default: 256]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=65_536))]
+    pub rays: Option<u32>,
     /// Show patches as they are, without gathering a last bounce from them
     #[arg(long)]
     pub read_patches: bool,
@@ -249,6 +260,17 @@ pub struct Run {
     /// More about the matrix and the cost
     #[arg(short, long)]
     pub verbose: bool,
+}
+
+/// How form factors are held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FactorsName {
+    /// A matrix of deterministic form factors
+    Dense,
+    /// Rows of stored rays, with an error bar
+    Rays,
+    /// The matrix, and how far rays on the same patches are from it
+    Both,
 }
 
 /// A setting that can be swept over.

@@ -1,6 +1,6 @@
 //! `tour`, `series`, `render`, `radiosity`: load, solve in the worlds asked for, compare, write, print.
 
-use super::args::{EstimatorName, Run, WorldName};
+use super::args::{EstimatorName, FactorsName, Run, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, facts, guard, output, write};
 use fredholm::estimator::Roulette;
@@ -13,6 +13,7 @@ use fredholm::terms::Series;
 use fredholm::terms::functional::Replicates;
 use fredholm::worlds::discrete::{self, Discrete, MatrixError};
 use fredholm::worlds::pyramid::{self, Strategy};
+use fredholm::worlds::realisation::{Difference, Factors};
 use fredholm::worlds::sampled::{self, Estimator, Sampled};
 use fredholm::worlds::{Settings, Unobserved, surface};
 use std::path::PathBuf;
@@ -33,6 +34,8 @@ pub struct Found {
     pub terms: Vec<Sampled>,
     pub path: Option<Sampled>,
     pub radiosity: Option<Discrete>,
+    /// How far stored rays are from the matrix, where both were asked for.
+    pub by_rays: Option<Difference>,
     /// Three meshes, coarse to fine, for the order of convergence: patches and image means.
     pub orders: Vec<Series>,
     /// Every strategy of the bidirectional estimator, where they were asked for.
@@ -111,6 +114,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let max_bounces = usize::from(run.max_bounces.unwrap_or(8));
     let fallback = default.roulette.unwrap_or(Roulette::Albedo { from: 2 });
     let roulette = run.roulette.clone();
+    let patches = run.patches.unwrap_or(default.patches);
     let settings = Settings {
         spp: run.spp.unwrap_or(256),
         seed: run.seed,
@@ -120,13 +124,14 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         sampling: run.sampling,
         roulette: roulette.clone().unwrap_or(fallback.clone().after(max_bounces)),
         path_roulette: roulette.unwrap_or(fallback),
-        patches: run.patches.unwrap_or(default.patches) as usize,
+        patches: patches as usize,
+        factors: guard::factors(run, patches)?,
         read_patches: run.read_patches,
     };
     let mut worlds: Vec<WorldName> = if run.worlds.is_empty() { default.worlds.to_vec() } else { run.worlds.clone() };
     let by_name = !run.worlds.is_empty() || default.worlds.len() == 1;
     guard::suits_a_matrix(&description, &mut worlds, by_name)?;
-    guard::fits_in_a_matrix(&scene, &mut worlds, by_name)?;
+    guard::fits_in_a_matrix(&scene, settings.factors, &mut worlds, by_name)?;
     let estimators = match (
         worlds.contains(&WorldName::Terms),
         default.both_estimators,
@@ -151,6 +156,9 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     }
     guard::light_is_seen(&scene, &estimators, &settings, &worlds)?;
     guard::fits_in_memory(&settings, description.camera.size)?;
+    if worlds.contains(&WorldName::Radiosity) {
+        guard::rows_fit_in_memory(&settings)?;
+    }
     guard::light_is_lost(&scene, &settings, &worlds)?;
     let folder = output::folder(run.out.as_deref(), &description.name, &command, run.force)?;
     let stop = stop_flag();
@@ -170,6 +178,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         terms: vec![],
         path: None,
         radiosity: None,
+        by_rays: None,
         orders: vec![],
         surface: vec![],
         strategies: vec![],
@@ -195,6 +204,9 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
             Ok(result) => found.radiosity = Some(result),
             Err(MatrixError::Stopped) => {}
             Err(e) => return Err(e.into()),
+        }
+        if run.factors == Some(FactorsName::Both) && !stopped() {
+            found.by_rays = apart(run, &found, &progress)?;
         }
         if run.orders && !stopped() {
             found.orders = orders(&found, &progress)?;
@@ -243,15 +255,25 @@ fn second_moment(found: &Found) -> Option<f64> {
     if found.scene.sides() > 400 {
         return None; // not worth a matrix of its own
     }
-    let coarse = discrete::matrix(&found.description, &found.scene, 150, 0, &Unobserved, stop_flag());
+    let settings = Settings { max_bounces: 0, factors: Factors::Dense, ..found.settings.clone() };
+    let coarse = discrete::matrix(&found.description, &found.scene, 150, &settings, &Unobserved, stop_flag());
     coarse.ok().map(|m| largest(&m))
+}
+
+/// How far stored rays on the same patches are from the matrix.
+fn apart(run: &Run, found: &Found, progress: &Progress) -> Result<Option<Difference>, Failure> {
+    let Some(r) = &found.radiosity else { return Ok(None) };
+    match r.matrix.against_rays(&found.scene, guard::rays(run), found.settings.seed, progress, stop_flag()) {
+        Ok(difference) => Ok(Some(difference)),
+        Err(MatrixError::Stopped) => Ok(None),
+        Err(e) => Err(e.into()),
+    }
 }
 
 /// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.
 fn orders(found: &Found, progress: &Progress) -> Result<Vec<Series>, Failure> {
     let coarsest = (found.settings.patches / 16).max(1);
-    let matrix =
-        discrete::matrix(&found.description, &found.scene, coarsest, found.settings.max_bounces, progress, stop_flag());
+    let matrix = discrete::matrix(&found.description, &found.scene, coarsest, &found.settings, progress, stop_flag());
     let picture = match matrix {
         Ok(m) => m.through_camera(&found.scene, &found.settings, progress, stop_flag()),
         Err(MatrixError::Stopped) => return Ok(vec![]),
@@ -326,6 +348,7 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     blocks.extend(found.path.iter().map(|p| world(p, &[])));
     blocks.extend(found.radiosity.iter().map(|r| world(&r.fine, &[])));
     let mut lines: Vec<String> = found.radiosity.iter().map(|r| facts::matrix_facts(r, verbose)).collect();
+    lines.extend(found.by_rays.iter().map(facts::difference));
     lines.extend(facts::decay_facts(found));
     lines.extend(facts::orders(&found.orders));
     blocks.push(lines.join("\n"));

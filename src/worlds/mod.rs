@@ -11,6 +11,7 @@
 
 pub mod discrete;
 pub mod pyramid;
+pub mod realisation;
 pub mod sampled;
 pub mod surface;
 pub mod unseen;
@@ -42,6 +43,8 @@ pub struct Settings {
     pub path_roulette: Roulette,
     /// About how many patches the matrix has.
     pub patches: usize,
+    /// How its form factors are held.
+    pub factors: realisation::Factors,
     /// Read the patch under the pixel instead of gathering.
     pub read_patches: bool,
 }
@@ -60,6 +63,7 @@ impl Default for Settings {
             roulette: end.clone().after(max_bounces),
             path_roulette: end,
             patches: 600,
+            factors: realisation::Factors::Dense,
             read_patches: false,
         }
     }

@@ -35,7 +35,7 @@ struct Lamp {
 pub(super) struct Lamps(Vec<Lamp>);
 
 /// Most pairs per half of a row; fewer where the row has fewer rays.
-const PAIRS: usize = 128;
+const PAIRS: usize = 256;
 
 impl Lamps {
     pub(super) fn new(patches: &Patches) -> Self {

@@ -1,7 +1,7 @@
 //! The spectral radius of sampled operators, three channels at once.
 //!
 //! ```text
-//! r ≈ ‖T v‖ / ‖v‖ in the weight A/ρ,     v ← T v / ‖T v‖
+//! r ≈ ‖T v‖ / ‖v‖ in the weight A/w, w = ρ,    v ← T v / ‖T v‖
 //! ```
 //!
 //! T is self-adjoint in that weight only within the sampling error, so the ratio is an estimate and no bound. Its noise is
@@ -14,19 +14,25 @@ use glam::DVec3;
 impl Light<'_> {
     /// r(T) per channel, from `start` (u = ρ will do) to the relative change `tolerance` per step.
     pub fn spectral_radius(&self, start: &[DVec3], tolerance: f64, max_steps: usize) -> [Spectral; 3] {
+        let rho: Vec<DVec3> = self.patches.iter().map(|p| p.reflectance).collect();
+        self.power_iteration(&rho, start, tolerance, max_steps)
+    }
+
+    /// The same for `diag(w) F`: w = ρ²/s tells whether walks with survival s have a finite variance.
+    pub fn power_iteration(&self, w: &[DVec3], start: &[DVec3], tolerance: f64, max_steps: usize) -> [Spectral; 3] {
         let mut v = start.to_vec();
-        self.normalise(&mut v);
+        self.normalise(w, &mut v);
         let mut found = [DVec3::ZERO; 3];
         let mut taken = 0;
         for step in 1..=max_steps {
-            let y = self.bounce(&v, Half::Both);
-            let radius = self.inner(&y, &y).powf(0.5);
-            let rayleigh = self.inner(&y, &v);
+            let y = self.gathered(&v, Half::Both, |i| w[i]);
+            let radius = self.inner(w, &y, &y).powf(0.5);
+            let rayleigh = self.inner(w, &y, &v);
             let off: Vec<DVec3> = y.iter().zip(&v).map(|(y, v)| *y - rayleigh * *v).collect();
             let settled = (radius - found[0]).abs().cmple(tolerance * radius).all();
-            found = [radius, rayleigh, self.inner(&off, &off).powf(0.5)];
+            found = [radius, rayleigh, self.inner(w, &off, &off).powf(0.5)];
             (v, taken) = (y, step);
-            self.normalise(&mut v);
+            self.normalise(w, &mut v);
             if settled {
                 break;
             }
@@ -42,16 +48,16 @@ impl Light<'_> {
         })
     }
 
-    /// Σ Aᵢ xᵢ yᵢ / ρᵢ per channel, over the patches that reflect in it.
-    fn inner(&self, x: &[DVec3], y: &[DVec3]) -> DVec3 {
-        let one = |((p, x), y): ((&crate::operator::patches::Patch, &DVec3), &DVec3)| {
-            DVec3::select(p.reflectance.cmpgt(DVec3::ZERO), p.area * *x * *y / p.reflectance, DVec3::ZERO)
+    /// Σ Aᵢ xᵢ yᵢ / wᵢ per channel, over the patches that count in it.
+    fn inner(&self, w: &[DVec3], x: &[DVec3], y: &[DVec3]) -> DVec3 {
+        let one = |(((a, w), x), y): (((&f64, &DVec3), &DVec3), &DVec3)| {
+            DVec3::select(w.cmpgt(DVec3::ZERO), *a * *x * *y / *w, DVec3::ZERO)
         };
-        self.patches.iter().zip(x).zip(y).map(one).sum()
+        self.rays.area.iter().zip(w).zip(x).zip(y).map(one).sum()
     }
 
-    fn normalise(&self, v: &mut [DVec3]) {
-        let length = self.inner(v, v).powf(0.5);
+    fn normalise(&self, w: &[DVec3], v: &mut [DVec3]) {
+        let length = self.inner(w, v, v).powf(0.5);
         let scale = DVec3::select(length.cmpgt(DVec3::ZERO), 1.0 / length, DVec3::ZERO);
         v.iter_mut().for_each(|v| *v *= scale);
     }
