@@ -44,7 +44,7 @@ pub fn read() -> Cli {
     // the tour's options are explained by `fredholm tour --help`; here they would hide the commands
     let cli = Cli::command().mut_args(|arg| arg.hide(true));
     // nor does a sweep know matrices
-    let matrix = ["worlds", "patches", "read_patches", "orders", "verbose"];
+    let matrix = ["worlds", "patches", "factors", "rays", "read_patches", "orders", "verbose"];
     let cli = cli.mut_subcommand("sweep", |c| matrix.iter().fold(c, |c, name| c.mut_arg(name, |arg| arg.hide(true))));
     let cli = cli.mut_subcommand("sweep", super::sweep_spp::several_values);
     let mut matches = cli.get_matches();
@@ -72,6 +72,8 @@ tail. (Elsewhere the same images are Mitsuba's max_depth = K + 1 and pbrt's maxd
     /// The matrix alone: form factors, terms, solve
     #[command(after_help = "Examples:
   fredholm radiosity cornell --patches 2400 --orders
+  fredholm radiosity cornell --patches 2400 --factors both --rays 1024    matrix and stored rays, apart
+  fredholm radiosity cornell --patches 130000 --rays 256                  too many for a matrix
   fredholm radiosity cornell --patches 2000 --solver all --history history.csv
   fredholm radiosity cornell --solver southwell --channel green --json
   fredholm radiosity cornell --modes 8 --size 128x128
@@ -301,8 +303,16 @@ pub struct Run {
     )]
     pub worlds: Vec<WorldName>,
     /// About how many patches the matrix has [default: 600; tour: 2400]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20_000))]
+    ///
+    /// Up to 20000 for a dense matrix, 2000000 for stored rays.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
     pub patches: Option<u32>,
+    /// How form factors are held [default: dense up to 10000 patches, rays beyond]
+    #[arg(long, value_enum, value_name = "HOW")]
+    pub factors: Option<FactorsName>,
+    /// Rays of every patch, where they are stored: 2 to 65536, powers of two are best [default: 256]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=65_536))]
+    pub rays: Option<u32>,
     /// Show patches as they are, without gathering a last bounce from them
     #[arg(long)]
     pub read_patches: bool,
@@ -338,6 +348,17 @@ pub struct Run {
     /// More about the matrix and the cost
     #[arg(short, long)]
     pub verbose: bool,
+}
+
+/// How form factors are held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FactorsName {
+    /// A matrix of deterministic form factors
+    Dense,
+    /// Rows of stored rays, with an error bar
+    Rays,
+    /// The matrix, and how far rays on the same patches are from it
+    Both,
 }
 
 /// A setting that can be swept over.

@@ -5,6 +5,7 @@ use fredholm::report::summary;
 use fredholm::stats::{self, Comparison, TermMeans, observed_rate};
 use fredholm::terms::Series;
 use fredholm::worlds::discrete::Discrete;
+use fredholm::worlds::realisation::{Difference, Sampling};
 use fredholm::worlds::sampled::Estimator;
 
 /// One line: the outcome, and what would decide.
@@ -33,31 +34,68 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
     let m = &r.matrix;
     let i = &m.invariants;
     let rho = m.spectral.each_ref().map(|s| format!("{:.5}", s.radius)).join(", ");
+    let reciprocity = match &m.sampling {
+        None => format!("reciprocity {:.1e}", i.reciprocity),
+        Some(s) => {
+            let c = &s.checks;
+            format!("reciprocity {:.1e} ({:.1} standard errors)", c.reciprocity, c.reciprocity_z)
+        }
+    };
     let d = (r.fine.series.image().total.mean - r.coarse.series.image().total.mean).abs();
     let mut out = format!(
-        "F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4}, reciprocity {:.1e}\n\
+        "F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4}, {reciprocity}\n\
          residual of the solve {:.1e}; spectral radius ({rho})\n\
          |R_h − R_2h| of the image mean {:.1e}",
         i.row_sum_min,
         i.row_sum_max,
         i.smallest,
         i.largest,
-        i.reciprocity,
         m.solution.residual.max_element(),
         d.element_sum() / 3.0
     );
+    if let Some(s) = &m.sampling {
+        out += &format!("\n{}", sampling(s));
+    }
     if verbose {
-        let norms = m.norms.each_ref().map(|(one, inf)| format!("{one:.4}/{inf:.4}")).join(", ");
-        let p = &m.radiosity.patches;
+        if let Some(norms) = &m.norms {
+            let norms = norms.each_ref().map(|(one, inf)| format!("{one:.4}/{inf:.4}")).join(", ");
+            out += &format!("\n‖T_h‖₁/‖T_h‖∞ per channel {norms}");
+        }
+        let p = m.radiosity.patches();
         out += &format!(
-            "\n‖T_h‖₁/‖T_h‖∞ per channel {norms}\nsurface {:.4} m², covered {:.4} m²; visibility rays {}",
+            "\nsurface {:.4} m², covered {:.4} m²; {} {}",
             p.surface_area(),
             p.covered_area(),
-            m.radiosity.factors.rays
+            if m.sampling.is_some() { "rays" } else { "visibility rays" },
+            m.radiosity.rays()
         );
         out += "\nT¹ through the camera reads E itself: it tests no matrix";
     }
     out
+}
+
+/// What stored rays are worth.
+fn sampling(s: &Sampling) -> String {
+    let mut out = format!(
+        "u = L − E of {} rays a row: relative L² error bar over the patches {:.1e} (halves of the rows); {} steps",
+        s.per_row,
+        s.noise.element_sum() / 3.0,
+        s.steps
+    );
+    if s.checks.lost > 0.0 {
+        out += &format!("\n{:.1e} of the rays met a surface where no patch is, and count as lost", s.checks.lost);
+    }
+    out
+}
+
+/// How far stored rays are from the matrix.
+pub fn difference(d: &Difference) -> String {
+    format!(
+        "rays on the same patches: ‖u_dense − u_rays‖/‖u_dense‖ {:.1e}; spectral radius ({})\n{}",
+        d.of_u.element_sum() / 3.0,
+        d.spectral.each_ref().map(|s| format!("{:.5}", s.radius)).join(", "),
+        sampling(&d.sampling)
+    )
 }
 
 /// What is printed about the decay.

@@ -1,13 +1,14 @@
 //! What is refused before a run starts, because it could only end badly.
 
 use super::Failure;
-use super::args::WorldName;
+use super::args::{FactorsName, Run, WorldName};
 use fredholm::estimator::Technique;
 use fredholm::math::{Key, Purpose, Rng};
 use fredholm::operator::{SceneTransport, Transport};
 use fredholm::scene::{Description, Scene, SurfaceSensor};
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::MatrixError;
+use fredholm::worlds::realisation::Factors;
 use fredholm::worlds::{sampled::Estimator, unseen::unseen};
 
 /// The sums of all terms, pixels and replicates are held at once: better refused now than killed later.
@@ -92,9 +93,17 @@ pub fn light_is_seen(
 
 /// A side of a primitive is at least one patch, and the matrix is dense. Where the radiosity was not asked for by name it is
 /// left out of scenes with many primitives; asked for by name it is refused beyond what any machine holds.
-pub fn fits_in_a_matrix(scene: &Scene, worlds: &mut Vec<WorldName>, asked: bool) -> Result<(), Failure> {
+pub fn fits_in_a_matrix(
+    scene: &Scene,
+    factors: Factors,
+    worlds: &mut Vec<WorldName>,
+    asked: bool,
+) -> Result<(), Failure> {
     const COMFORTABLE: usize = 4000;
-    const POSSIBLE: usize = 20_000;
+    const POSSIBLE: usize = MOST_DENSE as usize;
+    if let Factors::Rays(_) = factors {
+        return Ok(());
+    }
     let sides = (0..scene.sides()).filter(|&s| scene.takes_part(s)).count();
     if !worlds.contains(&WorldName::Radiosity) || sides <= if asked { POSSIBLE } else { COMFORTABLE } {
         return Ok(());
@@ -102,7 +111,7 @@ pub fn fits_in_a_matrix(scene: &Scene, worlds: &mut Vec<WorldName>, asked: bool)
     if asked {
         return Err(Failure::Usage(format!(
             "error: {sides} sides make a matrix of at least {sides}², more than the {POSSIBLE}² it may have\n\
-             help: leave the radiosity world out: --worlds terms,path"
+             help: store rays instead: --factors rays; or leave the radiosity world out: --worlds terms,path"
         )));
     }
     worlds.retain(|w| *w != WorldName::Radiosity);
@@ -110,6 +119,59 @@ pub fn fits_in_a_matrix(scene: &Scene, worlds: &mut Vec<WorldName>, asked: bool)
         "note: no radiosity: {sides} sides are many for a dense matrix (--worlds terms,path,radiosity insists)"
     ));
     Ok(())
+}
+
+/// Beyond this a matrix is refused.
+const MOST_DENSE: u32 = 20_000;
+/// Beyond this rays are stored unless a matrix is asked for.
+const DENSE: u32 = 10_000;
+/// Rays of a row unless told otherwise.
+const RAYS: u32 = 256;
+
+/// Rays of a row, where rays are stored.
+pub fn rays(run: &Run) -> u32 {
+    run.rays.unwrap_or(RAYS)
+}
+
+/// How form factors are held.
+pub fn factors(run: &Run, patches: u32) -> Result<Factors, Failure> {
+    let dense = run.factors.map_or(patches <= DENSE, |f| f != FactorsName::Rays);
+    if dense && patches > MOST_DENSE {
+        return Err(Failure::Usage(format!(
+            "error: {patches} patches make a matrix of {patches}², more than the {MOST_DENSE}² it may have\n\
+             help: use --factors rays"
+        )));
+    }
+    if dense && run.rays.is_some() && run.factors != Some(FactorsName::Both) {
+        return Err(Failure::Usage(
+            "error: --rays is for stored rays, and this is a matrix\nhelp: add --factors rays or --factors both".into(),
+        ));
+    }
+    Ok(if dense { Factors::Dense } else { Factors::Rays(rays(run)) })
+}
+
+/// Rows, patches, terms and solution are held at once.
+pub fn rows_fit_in_memory(settings: &Settings) -> Result<(), Failure> {
+    let n = settings.patches as u64;
+    // measured: a patch of the mesh takes about 400 bytes, a vector over the patches 24
+    let row = match settings.factors {
+        Factors::Dense => 4 * n,
+        Factors::Rays(rays) => 4 * u64::from(rays),
+    };
+    let bytes = n * (row + 400 + 24 * (settings.max_bounces as u64 + 12));
+    let Some(free) = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| available(&text)) else {
+        return Ok(());
+    };
+    if bytes <= free {
+        return Ok(());
+    }
+    let gib = |b: u64| b as f64 / f64::from(1 << 30);
+    Err(Failure::Usage(format!(
+        "error: the rows of {n} patches need {:.1} GiB of memory; {:.1} GiB are free\n\
+         help: choose fewer --patches or --rays",
+        gib(bytes),
+        gib(free)
+    )))
 }
 
 /// Bytes that Linux says are available.

@@ -1,6 +1,6 @@
 //! `tour`, `series`, `render`, `radiosity`: load, solve in the worlds asked for, compare, write, print.
 
-use super::args::{EstimatorName, Run, Schedule, WorldName};
+use super::args::{EstimatorName, FactorsName, Run, Schedule, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, facts, guard, output, write};
 use fredholm::estimator::Roulette;
@@ -8,11 +8,13 @@ use fredholm::math::Points;
 use fredholm::report::{summary, table};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
+use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, compare, discretisation};
 use fredholm::terms::functional::Replicates;
 use fredholm::terms::{Recorded, Series};
-use fredholm::worlds::discrete::{self, Discrete, MatrixError};
+use fredholm::worlds::discrete::{self, Discrete, Matrix, MatrixError};
 use fredholm::worlds::pyramid::{self, Strategy};
+use fredholm::worlds::realisation::Difference;
 use fredholm::worlds::roulette::Radii;
 use fredholm::worlds::sampled::{self, Estimator, Sampled};
 use fredholm::worlds::{Settings, Unobserved, roulette, surface};
@@ -34,6 +36,8 @@ pub struct Found {
     pub terms: Vec<Sampled>,
     pub path: Option<Sampled>,
     pub radiosity: Option<Discrete>,
+    /// How far stored rays are from the matrix, where both were asked for.
+    pub by_rays: Option<Difference>,
     /// Three meshes, coarse to fine, for the order of convergence: patches and image means.
     pub orders: Vec<Series>,
     /// Every strategy of the bidirectional estimator, where they were asked for.
@@ -114,6 +118,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let max_bounces = usize::from(run.max_bounces.unwrap_or(8));
     let fallback = default.roulette.unwrap_or(Roulette::Albedo { from: 2 });
     let asked = given(run.roulette.as_ref());
+    let patches = run.patches.unwrap_or(default.patches);
     let settings = Settings {
         spp: run.spp.unwrap_or(256),
         seed: run.seed,
@@ -123,13 +128,14 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         sampling: run.sampling,
         roulette: asked.clone().unwrap_or(fallback.clone().after(max_bounces)),
         path_roulette: asked.unwrap_or(fallback),
-        patches: run.patches.unwrap_or(default.patches) as usize,
+        patches: patches as usize,
+        factors: guard::factors(run, patches)?,
         read_patches: run.read_patches,
     };
     let mut worlds: Vec<WorldName> = if run.worlds.is_empty() { default.worlds.to_vec() } else { run.worlds.clone() };
     let by_name = !run.worlds.is_empty() || default.worlds.len() == 1;
     guard::suits_a_matrix(&description, &mut worlds, by_name)?;
-    guard::fits_in_a_matrix(&scene, &mut worlds, by_name)?;
+    guard::fits_in_a_matrix(&scene, settings.factors, &mut worlds, by_name)?;
     let estimators = match (
         worlds.contains(&WorldName::Terms),
         default.both_estimators,
@@ -154,6 +160,9 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     }
     guard::light_is_seen(&scene, &estimators, &settings, &worlds)?;
     guard::fits_in_memory(&settings, description.camera.size)?;
+    if worlds.contains(&WorldName::Radiosity) {
+        guard::rows_fit_in_memory(&settings)?;
+    }
     guard::light_is_lost(&scene, &settings, &worlds)?;
     let folder = output::folder(run.out.as_deref(), &description.name, &command, run.force)?;
     let stop = stop_flag();
@@ -173,6 +182,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         terms: vec![],
         path: None,
         radiosity: None,
+        by_rays: None,
         orders: vec![],
         surface: vec![],
         strategies: vec![],
@@ -205,6 +215,9 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
             Ok(result) => found.radiosity = Some(result),
             Err(MatrixError::Stopped) => {}
             Err(e) => return Err(e.into()),
+        }
+        if run.factors == Some(FactorsName::Both) && !stopped() {
+            found.by_rays = apart(run, &found, &progress)?;
         }
         if run.orders && !stopped() {
             found.orders = orders(&found, &progress)?;
@@ -250,19 +263,19 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
 fn radii(found: &Found) -> Option<Radii> {
     let Roulette::Constant { q, .. } = found.settings.path_roulette else { return None };
     found.path.as_ref()?;
-    if let Some(r) = &found.radiosity {
-        return Some(Radii::new(Some(&r.matrix.radiosity), &found.scene, q));
+    if let Some(matrix) = found.radiosity.as_ref().and_then(|r| r.matrix.radiosity.dense()) {
+        return Some(Radii::new(Some(matrix), &found.scene, q));
     }
     let coarse = coarse(&found.description, &found.scene);
     Some(Radii::new(coarse.as_ref().map(|m| &m.radiosity), &found.scene, q))
 }
 
 /// A coarse matrix, where the scene has one that costs little.
-pub fn coarse(description: &Description, scene: &Scene) -> Option<discrete::Matrix> {
+pub fn coarse(description: &Description, scene: &Scene) -> Option<Matrix<Radiosity>> {
     if scene.sides() > 400 || description.radiosity_suits().is_err() {
         return None;
     }
-    discrete::matrix(description, scene, 150, 0, &Unobserved, stop_flag()).ok()
+    discrete::dense_matrix(description, scene, 150, 0, &Unobserved, stop_flag()).ok()
 }
 
 /// The schedule that was typed; none if there is none, or if it is yet to be found.
@@ -289,11 +302,20 @@ fn aside(settings: &Settings) -> Option<u32> {
     (settings.spp >= 64 && settings.max_bounces <= 64).then(|| (settings.spp / 32).min(16))
 }
 
+/// How far stored rays on the same patches are from the matrix.
+fn apart(run: &Run, found: &Found, progress: &Progress) -> Result<Option<Difference>, Failure> {
+    let Some(r) = &found.radiosity else { return Ok(None) };
+    match r.matrix.against_rays(&found.scene, guard::rays(run), found.settings.seed, progress, stop_flag()) {
+        Ok(difference) => Ok(Some(difference)),
+        Err(MatrixError::Stopped) => Ok(None),
+        Err(e) => Err(e.into()),
+    }
+}
+
 /// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.
 fn orders(found: &Found, progress: &Progress) -> Result<Vec<Series>, Failure> {
     let coarsest = (found.settings.patches / 16).max(1);
-    let matrix =
-        discrete::matrix(&found.description, &found.scene, coarsest, found.settings.max_bounces, progress, stop_flag());
+    let matrix = discrete::matrix(&found.description, &found.scene, coarsest, &found.settings, progress, stop_flag());
     let picture = match matrix {
         Ok(m) => m.through_camera(&found.scene, &found.settings, progress, stop_flag()),
         Err(MatrixError::Stopped) => return Ok(vec![]),
@@ -368,6 +390,7 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     blocks.extend(found.path.iter().map(|p| world(p, &[])));
     blocks.extend(found.radiosity.iter().map(|r| world(&r.fine, &[])));
     let mut lines: Vec<String> = found.radiosity.iter().map(|r| facts::matrix_facts(r, verbose)).collect();
+    lines.extend(found.by_rays.iter().map(facts::difference));
     lines.extend(facts::decay_facts(found));
     lines.extend(facts::orders(&found.orders));
     blocks.push(lines.join("\n"));

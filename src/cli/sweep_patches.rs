@@ -8,7 +8,7 @@ use fredholm::report::{refine as report, summary, write_atomically};
 use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
 use fredholm::terms::TermFilm;
-use fredholm::worlds::{Settings, refine};
+use fredholm::worlds::{Settings, realisation::Factors, refine};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -46,7 +46,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let scene = Scene::new(&description).select_lights(run.lights);
     let mut worlds = vec![args::WorldName::Radiosity];
     guard::suits_a_matrix(&description, &mut worlds, true)?;
-    guard::fits_in_a_matrix(&scene, &mut worlds, true)?;
+    guard::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
     let max_bounces = usize::from(run.max_bounces.unwrap_or(8));
     let settings = Settings {
         spp: run.spp.unwrap_or(256),

@@ -8,10 +8,12 @@ use fredholm::report::typeset::Caption;
 use fredholm::report::{summary, table, walk as report, write_atomically};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
+use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, Outcome, compare};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::{self, Matrix, MatrixError};
+use fredholm::worlds::realisation::Factors;
 use fredholm::worlds::sampled::Estimator;
 use fredholm::worlds::walk::{self, Walked, Walker};
 use fredholm::worlds::zero_variance::{self, ZeroVariance};
@@ -121,7 +123,7 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
     let scene = Scene::new(&description);
     let mut worlds = vec![args::WorldName::Radiosity];
     guard::suits_a_matrix(&description, &mut worlds, true)?;
-    guard::fits_in_a_matrix(&scene, &mut worlds, true)?;
+    guard::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
     let walker = walker(args);
     refuse_lost_light(&description, walker)?;
 
@@ -142,8 +144,8 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
     }
     let folder = output::folder(args.out.as_deref(), &format!("{}-walk", description.name), &command, args.force)?;
     let progress = Progress::new(args.quiet, |_: &TermFilm| {});
-    let mesh = |patches: usize| -> Result<Option<Matrix>, Failure> {
-        match discrete::matrix(&description, &scene, patches, max_bounces, &progress, stop_flag()) {
+    let mesh = |patches: usize| -> Result<Option<Matrix<Radiosity>>, Failure> {
+        match discrete::dense_matrix(&description, &scene, patches, max_bounces, &progress, stop_flag()) {
             Ok(m) => Ok(Some(m)),
             Err(MatrixError::Stopped) => Ok(None),
             Err(e) => Err(e.into()),

@@ -240,7 +240,7 @@ fn write_plots(found: &Found, out: &mut Files, caption: &Caption) -> Result<(), 
         let points = decay::norms(&TermMeans::exact(&matrix_norms(r)));
         figure.ratios.push(Curve { label: "matrix".into(), points: independent_ratios(&points), look: Look::MATRIX });
         figure.surface.push(Curve {
-            label: format!("matrix, {} patches", r.matrix.radiosity.patches.len()),
+            label: format!("matrix, {} patches", r.matrix.radiosity.patches().len()),
             points,
             look: Look::MATRIX,
         });
@@ -377,7 +377,7 @@ fn tail_bound(g: DVec3, last: DVec3) -> DVec3 {
 fn radiosity_summary(r: &Discrete) -> summary::Radiosity {
     let (fine, coarse) = (r.fine.series.image(), r.coarse.series.image());
     summary::Radiosity {
-        patches: r.matrix.radiosity.patches.len(),
+        patches: r.matrix.radiosity.patches().len(),
         terms: fine.terms.iter().map(|t| t.mean).collect(),
         sum: fine.sum.mean,
         full: fine.total.mean,

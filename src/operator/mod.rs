@@ -3,7 +3,7 @@
 //! | world | T is | place |
 //! |---|---|---|
 //! | continuous | rays in a scene: can be sampled | [`scene_transport`] |
-//! | discrete | a matrix over patches, diag(ρ) F: can be applied | [`patches`], [`form_factor`], [`matrix`] |
+//! | discrete | a matrix over patches, diag(ρ) F: can be applied | [`patches`]; [`form_factor`] and [`matrix`], or stored [`rays`] |
 //! | walk | a random walk on that matrix: can be sampled, and is known exactly | [`matrix_walk`], [`guided_walk`] |
 //!
 //! Sampling is the trait [`Transport`]; applying is [`matrix::LinearOperator`], and [`algebra`] combines what can be applied.
@@ -17,6 +17,7 @@ pub mod matrix;
 pub mod matrix_walk;
 pub mod modes;
 pub mod patches;
+pub mod rays;
 mod scene_adjoint;
 pub mod scene_transport;
 pub mod transport;

@@ -171,6 +171,8 @@ pub const ENTRIES: &[Entry] = &[
     entry("lights_are_rejected_in_199_of_200_runs", 1, 1e-9),
     entry("specular_are_rejected_in_199_of_200_runs", 1, 1e-9),
     entry("bookkeeping_are_rejected_in_199_of_200_runs", 1, 1e-9),
+    // tests/rays.rs
+    entry("rows_agree_with_the_matrix", 5_000, 1e-9),
     // tests/bsdf.rs
     entry("directions_have_the_density_they_claim", 1_000, 1e-8),
     entry("a_million_directions_have_the_density_they_claim", 1_000, 1e-8),

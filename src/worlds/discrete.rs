@@ -1,14 +1,16 @@
 //! The discrete world: patches, form factors, terms, solve, and the picture of them through the camera.
 //!
-//! `T_h = diag(ρ) F`, `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
+//! `T_h = diag(ρ) F` as a matrix or as stored rays ([`realisation`](super::realisation)), `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
 //! same camera rays, gives the discretisation error |R_h − R_2h| that stands beside the Monte Carlo error in every verdict.
 
+use super::realisation::{Difference, Factors, Realisation, Sampling as RaySampling};
 use super::{Observer, Settings, sampled, sampled::Sampled};
 use crate::estimator::Gather;
 use crate::operator::SceneTransport;
 use crate::operator::form_factor::{FormFactors, Invariants, Sampling, Watch};
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
+use crate::operator::rays::{Light, Rays};
 use crate::scene::{Description, Scene, SceneError};
 use crate::solver::{Radiosity, Solution};
 use crate::terms::{TermImage, World};
@@ -17,9 +19,9 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 /// A scene as a matrix, with everything that is printed about it.
-pub struct Matrix {
+pub struct Matrix<R = Realisation> {
     /// Patches and form factors.
-    pub radiosity: Radiosity,
+    pub radiosity: R,
     /// `T_h^k E` per patch, k = 0..=K.
     pub terms: Vec<Vec<DVec3>>,
     /// `L_h` per patch, with its residual.
@@ -28,8 +30,10 @@ pub struct Matrix {
     pub invariants: Invariants,
     /// Spectral radius per channel.
     pub spectral: [Spectral; 3],
-    /// ‖T_h‖₁ and ‖T_h‖∞ per channel.
-    pub norms: [(f64, f64); 3],
+    /// ‖T_h‖₁ and ‖T_h‖∞ per channel of a dense matrix; columns of stored rays are too noisy for the first.
+    pub norms: Option<[(f64, f64); 3]>,
+    /// The error bar of stored rays.
+    pub sampling: Option<RaySampling>,
     /// Surface means `Σ A_i (T_h^k E)_i / A`.
     pub surface: Vec<DVec3>,
 }
@@ -53,6 +57,11 @@ pub enum MatrixError {
     Stopped,
 }
 
+/// The Neumann series of stored rays ends when what is left is this small against the sum.
+const LEFT: f64 = 1e-7;
+/// Or after so many steps; the residual then tells.
+const MOST_STEPS: usize = 2000;
+
 /// Meshes a scene into about `patches` patches and solves it.
 ///
 /// # Errors
@@ -61,20 +70,68 @@ pub fn matrix(
     description: &Description,
     scene: &Scene,
     patches: usize,
-    max_bounces: usize,
+    settings: &Settings,
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Matrix, MatrixError> {
     let patches = Patches::new(description, patches)?;
-    observer.begin(&format!("form factors, {} patches", patches.len()), patches.len() as u64);
+    match settings.factors {
+        Factors::Dense => {
+            let m = dense(patches, scene, settings.max_bounces, observer, stop)?;
+            Ok(Matrix {
+                radiosity: Realisation::Dense(m.radiosity),
+                terms: m.terms,
+                solution: m.solution,
+                invariants: m.invariants,
+                spectral: m.spectral,
+                norms: m.norms,
+                sampling: None,
+                surface: m.surface,
+            })
+        }
+        Factors::Rays(per_row) => {
+            let rays = trace(&patches, scene, per_row, settings.seed, observer, stop)?;
+            by_rays(patches, rays, settings.max_bounces)
+        }
+    }
+}
+
+/// The same as a dense matrix, for what asks for its entries.
+///
+/// # Errors
+/// See [`MatrixError`].
+pub fn dense_matrix(
+    description: &Description,
+    scene: &Scene,
+    patches: usize,
+    max_bounces: usize,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Result<Matrix<Radiosity>, MatrixError> {
+    dense(Patches::new(description, patches)?, scene, max_bounces, observer, stop)
+}
+
+/// Passes the highest count of rows on.
+fn rows(observer: &dyn Observer) -> impl Fn(usize, usize) + Sync + '_ {
     let last = Mutex::new(0);
-    let progress = |done: usize, _: usize| {
+    move |done: usize, _: usize| {
         let mut last = last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if done > *last {
             observer.advance((done - *last) as u64);
             *last = done;
         }
-    };
+    }
+}
+
+fn dense(
+    patches: Patches,
+    scene: &Scene,
+    max_bounces: usize,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Result<Matrix<Radiosity>, MatrixError> {
+    observer.begin(&format!("form factors, {} patches", patches.len()), patches.len() as u64);
+    let progress = rows(observer);
     let watch = Watch { progress: Some(&progress), stop: Some(stop) };
     let factors = FormFactors::new(&patches, scene, Sampling::default(), watch).map_err(|_| MatrixError::Stopped)?;
     let invariants = factors.invariants();
@@ -87,10 +144,80 @@ pub fn matrix(
     let terms = radiosity.terms(max_bounces);
     let solution = radiosity.solve().map_err(|_| MatrixError::Singular)?;
     let surface = terms.iter().map(|t| radiosity.surface_mean(t)).collect();
-    Ok(Matrix { spectral, norms: radiosity.norms(), radiosity, terms, solution, invariants, surface })
+    let norms = Some(radiosity.norms());
+    Ok(Matrix { spectral, norms, radiosity, terms, solution, invariants, sampling: None, surface })
+}
+
+fn trace(
+    patches: &Patches,
+    scene: &Scene,
+    per_row: u32,
+    seed: u64,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Result<Rays, MatrixError> {
+    observer.begin(&format!("{per_row} rays from each of {} patches", patches.len()), patches.len() as u64);
+    let progress = rows(observer);
+    let watch = Watch { progress: Some(&progress), stop: Some(stop) };
+    Rays::new(patches, scene, per_row as usize, seed, watch).map_err(|_| MatrixError::Stopped)
+}
+
+fn by_rays(patches: Patches, rays: Rays, max_bounces: usize) -> Result<Matrix, MatrixError> {
+    let light = Light { patches: &patches, rays: &rays };
+    let (solution, spectral, sampling) = solve_by_rays(&light)?;
+    let c = sampling.checks;
+    let invariants = Invariants {
+        closure: (1.0 - c.row_sum_min).abs().max((1.0 - c.row_sum_max).abs()),
+        row_sum_min: c.row_sum_min,
+        row_sum_max: c.row_sum_max,
+        reciprocity: c.reciprocity,
+        smallest: 0.0,
+        largest: c.largest,
+    };
+    let terms = light.terms(max_bounces);
+    let radiosity = Realisation::Rays(patches, rays);
+    let surface = terms.iter().map(|t| radiosity.surface_mean(t)).collect();
+    Ok(Matrix { spectral, norms: None, radiosity, terms, solution, invariants, sampling: Some(sampling), surface })
+}
+
+fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], RaySampling), MatrixError> {
+    let solved = light.solve(LEFT, MOST_STEPS);
+    // the last term is close to the top mode; where the series has died out, start from ρ
+    let start: Vec<DVec3> = light.patches.iter().map(|p| p.reflectance).collect();
+    let died = light.norm(&solved.last).cmple(DVec3::ZERO).any();
+    let spectral = light.spectral_radius(if died { &start } else { &solved.last }, 1e-7, 500);
+    if spectral.iter().any(|s| s.radius >= KEEPS_ALL) {
+        return Err(MatrixError::Singular);
+    }
+    let u: Vec<DVec3> = solved.radiance.iter().zip(light.patches.iter()).map(|(l, p)| *l - p.emission).collect();
+    let noise = light.norm(&light.noise(&solved.radiance)) / light.norm(&u);
+    let sampling = RaySampling { per_row: light.rays.per_row, noise, checks: light.checks(), steps: solved.steps };
+    Ok((Solution { radiance: solved.radiance, residual: solved.residual }, spectral, sampling))
 }
 
 impl Matrix {
+    /// The same mesh by stored rays, and how far the reflected light is from this one.
+    ///
+    /// # Errors
+    /// See [`MatrixError`].
+    pub fn against_rays(
+        &self,
+        scene: &Scene,
+        per_row: u32,
+        seed: u64,
+        observer: &dyn Observer,
+        stop: &AtomicBool,
+    ) -> Result<Difference, MatrixError> {
+        let patches = self.radiosity.patches();
+        let rays = trace(patches, scene, per_row, seed, observer, stop)?;
+        let light = Light { patches, rays: &rays };
+        let (solution, spectral, sampling) = solve_by_rays(&light)?;
+        let pairs = self.solution.radiance.iter().zip(&solution.radiance);
+        let apart: Vec<DVec3> = pairs.map(|(a, b)| *a - *b).collect();
+        let u: Vec<DVec3> = self.solution.radiance.iter().zip(patches.iter()).map(|(l, p)| *l - p.emission).collect();
+        Ok(Difference { of_u: light.norm(&apart) / light.norm(&u), spectral, sampling })
+    }
+
     /// The terms and the solution through the camera of the scene.
     pub fn through_camera(
         &self,
@@ -100,17 +227,18 @@ impl Matrix {
         stop: &AtomicBool,
     ) -> Sampled {
         let t = SceneTransport { scene, sampling: settings.sampling };
-        let gather = Gather::new(&self.radiosity.patches, &self.terms, &self.solution.radiance, settings.read_patches);
+        let gather = Gather::new(self.radiosity.patches(), &self.terms, &self.solution.radiance, settings.read_patches);
         let label = format!(
-            "radiosity, {} patches{}",
-            self.radiosity.patches.len(),
+            "radiosity, {} patches{}{}",
+            self.radiosity.patches().len(),
+            self.sampling.map_or(String::new(), |s| format!(" of {} rays", s.per_row)),
             if settings.read_patches { ", read" } else { "" }
         );
         sampled::sample(&t, &scene.camera, &gather, "radiosity", (World::Radiosity, label), settings, observer, stop)
     }
 }
 
-impl Matrix {
+impl Matrix<Radiosity> {
     /// Functions on the patches through the camera, after one more bounce: the image i shows `T fields[i]`, in colours as
     /// albedos are. A mode of eigenvalue λ is seen smooth, and λ times as bright.
     pub fn paint(
@@ -157,7 +285,7 @@ pub fn radiosity(
     stop: &AtomicBool,
 ) -> Result<Discrete, MatrixError> {
     let one = |patches: usize| {
-        let matrix = matrix(description, scene, patches, settings.max_bounces, observer, stop)?;
+        let matrix = matrix(description, scene, patches, settings, observer, stop)?;
         let picture = matrix.through_camera(scene, settings, observer, stop);
         Ok::<_, MatrixError>((matrix, picture))
     };

@@ -22,6 +22,7 @@ pub mod discrete;
 pub mod equilibrium;
 pub mod falling;
 pub mod pyramid;
+pub mod realisation;
 pub mod refine;
 pub mod roulette;
 pub mod sampled;
@@ -59,6 +60,8 @@ pub struct Settings {
     pub path_roulette: Roulette,
     /// About how many patches the matrix has.
     pub patches: usize,
+    /// How its form factors are held.
+    pub factors: realisation::Factors,
     /// Read the patch under the pixel instead of gathering.
     pub read_patches: bool,
 }
@@ -77,6 +80,7 @@ impl Default for Settings {
             roulette: end.clone().after(max_bounces),
             path_roulette: end,
             patches: 600,
+            factors: realisation::Factors::Dense,
             read_patches: false,
         }
     }

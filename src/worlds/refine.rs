@@ -132,15 +132,15 @@ pub fn refine(
             break;
         }
         let started = Instant::now();
-        let matrix = match discrete::matrix(description, scene, n, settings.max_bounces, observer, stop) {
+        let matrix = match discrete::matrix(description, scene, n, settings, observer, stop) {
             Ok(m) => m,
             Err(MatrixError::Stopped) => break,
             Err(e) => return Err(e),
         };
         let seconds = started.elapsed().as_secs_f64();
         let picture = matrix.through_camera(scene, settings, observer, stop);
-        let area: f64 = matrix.radiosity.factors.area.iter().sum();
-        let patches = matrix.radiosity.patches.len();
+        let area: f64 = matrix.radiosity.patches().iter().map(|p| p.area).sum();
+        let patches = matrix.radiosity.patches().len();
         let radius = DVec3::from_array([0, 1, 2].map(|c| matrix.spectral[c].radius));
         meshes.push(Mesh { patches, h: (area / patches as f64).sqrt(), picture, radius, seconds });
     }

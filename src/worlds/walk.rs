@@ -19,6 +19,7 @@ use crate::estimator::render::render;
 use crate::estimator::{Absorption, PathTracer, Plan, Roulette};
 use crate::operator::MatrixWalk;
 use crate::operator::matrix_walk::Rows;
+use crate::solver::Radiosity;
 use crate::terms::functional::exact_functionals;
 use crate::terms::{Cost, Estimate, Series, World};
 use glam::DVec3;
@@ -57,7 +58,7 @@ pub struct Walked {
 }
 
 /// The matrix as something to walk on.
-pub fn transport(matrix: &Matrix) -> MatrixWalk {
+pub fn transport(matrix: &Matrix<Radiosity>) -> MatrixWalk {
     let r = &matrix.radiosity;
     let rows = r.factors.f.iter().map(|&f| f64::from(f)).collect();
     let colours = |of: &dyn Fn(usize) -> DVec3| (0..r.patches.len()).map(|i| of(i).as_vec3()).collect();
@@ -67,7 +68,7 @@ pub fn transport(matrix: &Matrix) -> MatrixWalk {
 
 /// Walks on a matrix from every patch, `settings.spp` times.
 pub fn walk(
-    matrix: &Matrix,
+    matrix: &Matrix<Radiosity>,
     walker: Walker,
     settings: &Settings,
     observer: &dyn Observer,
@@ -123,7 +124,7 @@ pub fn walk(
 
 /// The truth slot by slot: the terms and the tail, or the whole alone for the path tracer. The powers are those of the very numbers
 /// that the walk multiplies.
-fn exact(matrix: &Matrix, max_bounces: usize, whole: bool, ends: bool) -> Vec<Vec<DVec3>> {
+fn exact(matrix: &Matrix<Radiosity>, max_bounces: usize, whole: bool, ends: bool) -> Vec<Vec<DVec3>> {
     let mut slots = transport(matrix).powers(max_bounces);
     let n = slots[0].len();
     let sum: Vec<DVec3> = (0..n).map(|i| slots.iter().map(|t| t[i]).sum()).collect();

@@ -23,7 +23,7 @@ use crate::operator::matrix::PatchOperator;
 use crate::operator::matrix_walk::Rows;
 use crate::operator::patches::Patch;
 use crate::operator::{GuidedWalk, MatrixWalk, Sensor, Transport};
-use crate::solver::Neumann;
+use crate::solver::{Neumann, Radiosity};
 use rayon::prelude::*;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -96,8 +96,8 @@ const MOST: u32 = 1024;
 
 /// Walks led by several guides on the matrix of one channel; `coarse` are other meshes of the same scene, coarsest first.
 pub fn study(
-    matrix: &Matrix,
-    coarse: &[Matrix],
+    matrix: &Matrix<Radiosity>,
+    coarse: &[Matrix<Radiosity>],
     channel: usize,
     settings: &Settings,
     observer: &dyn Observer,
@@ -152,8 +152,8 @@ pub fn study(
 /// The guide as numbers; nothing for the analog walk.
 fn values(
     guide: Guide,
-    matrix: &Matrix,
-    coarse: &[Matrix],
+    matrix: &Matrix<Radiosity>,
+    coarse: &[Matrix<Radiosity>],
     channel: usize,
     t: &PatchOperator<'_>,
     e: &[f64],

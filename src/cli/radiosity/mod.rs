@@ -12,9 +12,10 @@ use fredholm::report::summary;
 use fredholm::report::typeset::Caption;
 use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Loaded, Options};
-use fredholm::solver::study::Solver;
+use fredholm::solver::{self, study::Solver};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::discrete::{self, Matrix, MatrixError};
+use fredholm::worlds::realisation::Factors;
 use std::path::PathBuf;
 
 /// Arguments of `radiosity`.
@@ -116,7 +117,7 @@ struct Laboratory {
     command: String,
     loaded: Loaded,
     scene: Scene,
-    matrix: Matrix,
+    matrix: Matrix<solver::Radiosity>,
     folder: PathBuf,
 }
 
@@ -134,12 +135,12 @@ impl Laboratory {
         let scene = Scene::new(&loaded.description);
         let mut worlds = vec![WorldName::Radiosity];
         guard::suits_a_matrix(&loaded.description, &mut worlds, true)?;
-        guard::fits_in_a_matrix(&scene, &mut worlds, true)?;
+        guard::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
         let name = format!("{}-{what}", loaded.description.name);
         let folder = output::folder(run.out.as_deref(), &name, &command, run.force)?;
         let progress = Progress::new(run.quiet, |_: &TermFilm| {});
         let patches = run.patches.unwrap_or(600) as usize;
-        let matrix = discrete::matrix(&loaded.description, &scene, patches, 0, &progress, stop_flag());
+        let matrix = discrete::dense_matrix(&loaded.description, &scene, patches, 0, &progress, stop_flag());
         progress.finish();
         match matrix {
             Ok(matrix) => Ok(Some(Self { command, loaded, scene, matrix, folder })),

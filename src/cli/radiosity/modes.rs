@@ -129,7 +129,7 @@ fn spectrum(lab: &Laboratory, channel: usize, count: usize) -> (Modes, Spectrum,
         residual: m.residual,
         decay: terms.iter().map(|x| t.weighted_inner(&m.vector, x).abs()).collect(),
     };
-    let (one, infinity) = lab.matrix.norms[channel];
+    let (one, infinity) = radiosity.norms()[channel];
     let spectrum = Spectrum {
         channel: NAMES[channel].into(),
         values: modes.values.clone(),

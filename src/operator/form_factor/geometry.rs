@@ -112,13 +112,13 @@ pub(super) fn exchange(a: &[DVec3], sa: &Side, b: &[DVec3], sb: &Side) -> f64 {
     // Gauss points go on the smaller polygon: what counts is how far the other is, in its radii
     let ((small, ss), (large, sl)) = if sa.radius <= sb.radius { ((a, sa), (b, sb)) } else { ((b, sb), (a, sa)) };
     let distance = (ss.centre - sl.centre).length() - sl.radius;
-    if distance < 4.0 * ss.radius {
+    if distance < 5.0 * ss.radius {
         let value = contour(a, b, sa.centre.distance_squared(sb.centre));
         // parts that touch in a sliver exchange less than the rounding of the sum; anything worse stays visible
         let rounding = 1e-13 * ss.radius * sl.radius;
         return if value < 0.0 && value > -rounding { 0.0 } else { value };
     }
-    let rule: &[(f64, f64)] = if distance < 16.0 * ss.radius { &GAUSS3 } else { &GAUSS2 };
+    let rule: &[(f64, f64)] = if distance < 24.0 * ss.radius { &GAUSS3 } else { &GAUSS2 };
     let at = |x: DVec3| -lambert(x, ss.normal, large);
     match *small {
         [p, q, r] => integrate([p, q, r, r], rule, at),

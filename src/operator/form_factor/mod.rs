@@ -19,7 +19,8 @@ mod invariants;
 mod shaft;
 mod visibility;
 
-use crate::operator::patches::{Patch, Patches, polygon::radius_about};
+use crate::operator::patches::{BruteForce, LANES, Patch, Patches, Segments, polygon::radius_about};
+use crate::scene::description::Sides;
 use geometry::{Side, exchange, facing};
 pub use geometry::{point_to_polygon, polygon_to_polygon};
 pub use invariants::Invariants;
@@ -76,7 +77,8 @@ impl FormFactors {
         let area = patches.areas();
         let blockers: Vec<Blocker> = patches.primitives().iter().map(Blocker::new).collect();
         let sides: Vec<Side> = patches.iter().map(side).collect();
-        let pairs = Pairs { patches, sides, blockers, visibility, sampling };
+        let bodies = BruteForce::of(patches.primitives().iter().map(|p| (*p, Sides::Both)));
+        let pairs = Pairs { patches, sides, blockers, bodies, visibility, sampling };
         let stopped = || watch.stop.is_some_and(|s| s.load(Relaxed));
         let (done, rays) = (AtomicUsize::new(0), AtomicU64::new(0));
 
@@ -85,11 +87,11 @@ impl FormFactors {
             if stopped() {
                 return;
             }
-            let mut work = Scratch::default();
+            let mut work = Scratch::new(&pairs.bodies);
             for (j, entry) in row.iter_mut().enumerate().skip(i) {
                 *entry = (pairs.exchange(i, j, &mut work) / area[i]) as f32;
             }
-            rays.fetch_add(work.rays, Relaxed);
+            rays.fetch_add(work.sight.rays, Relaxed);
             let done = done.fetch_add(1, Relaxed) + 1;
             if let Some(report) = watch.progress {
                 report(done, n);
@@ -136,16 +138,29 @@ struct Pairs<'a> {
     patches: &'a Patches,
     sides: Vec<Side>,
     blockers: Vec<Blocker>,
+    bodies: BruteForce,
     visibility: &'a dyn Visibility,
     sampling: Sampling,
 }
 
-#[derive(Default)]
 struct Scratch {
     a: Vec<glam::DVec3>,
     b: Vec<glam::DVec3>,
+    sight: Sight,
+}
+
+/// What the look from one patch to another works with.
+struct Sight {
     among: Vec<u32>,
+    segments: Segments,
     rays: u64,
+}
+
+impl Scratch {
+    fn new(bodies: &BruteForce) -> Self {
+        let sight = Sight { among: Vec::new(), segments: bodies.segments(), rays: 0 };
+        Self { a: Vec::new(), b: Vec::new(), sight }
+    }
 }
 
 impl Pairs<'_> {
@@ -158,34 +173,36 @@ impl Pairs<'_> {
                 return 0.0;
             }
             let clear = a.stretch * a.flat_area * b.stretch * b.flat_area / (2.0 * TAU * radius * radius);
-            return clear * self.visible(i, j, &a.polygon, &b.polygon, false, &mut work.among, &mut work.rays);
+            return clear * self.visible(i, j, [&a.polygon, &b.polygon], false, &mut work.sight);
         }
         if a.primitive == b.primitive {
             return 0.0;
         }
         let (sa, sb) = (&self.sides[i], &self.sides[j]);
         let Some((pa, pb)) = facing(&a.polygon, sa, &b.polygon, sb, &mut work.a, &mut work.b) else { return 0.0 };
-        let share = self.visible(i, j, pa, pb, true, &mut work.among, &mut work.rays);
+        let share = self.visible(i, j, [pa, pb], true, &mut work.sight);
         if share == 0.0 { 0.0 } else { share * a.stretch * b.stretch * exchange(pa, sa, pb, sb) }
     }
 
-    #[allow(clippy::too_many_arguments)]
+    /// Vᵢⱼ of the two parts.
     fn visible(
         &self,
         i: usize,
         j: usize,
-        pa: &[glam::DVec3],
-        pb: &[glam::DVec3],
+        [pa, pb]: [&[glam::DVec3]; 2],
         flat_kernel: bool,
-        among: &mut Vec<u32>,
-        rays: &mut u64,
+        Sight { among, segments, rays }: &mut Sight,
     ) -> f64 {
         let (a, b) = (&self.patches[i], &self.patches[j]);
         let (ea, eb) = (End::new(a, pa), End::new(b, pb));
+        let flat = a.ball.is_none() && b.ball.is_none();
         among.clear();
         for (k, blocker) in self.blockers.iter().enumerate() {
             let own = (k == a.primitive && a.ball.is_none()) || (k == b.primitive && b.ball.is_none());
             if !own && blocker.may_block(&ea, &eb) {
+                if flat && self.bodies.hides(k, pa, pb) {
+                    return 0.0;
+                }
                 among.push(k as u32);
                 if among.len() > MAX_LISTED {
                     break;
@@ -196,11 +213,14 @@ impl Pairs<'_> {
             return 1.0;
         }
         let pair = (i as u64) << 32 | j as u64;
-        let (share, traced) = visible_share(self.sampling, (a, pa), (b, pb), flat_kernel, pair, |x, y| {
-            if among.len() > MAX_LISTED {
-                self.visibility.visible(x, y)
-            } else {
-                self.visibility.visible_among(x, y, among)
+        let (share, traced) = visible_share(self.sampling, (a, pa), (b, pb), flat_kernel, pair, segments, |segments| {
+            if among.len() <= MAX_LISTED {
+                among.iter().for_each(|k| self.bodies.block(*k as usize, segments));
+                return;
+            }
+            for k in 0..LANES {
+                let [x, y] = segments.ends(k, a, b);
+                segments.blocked[k] = f64::from(u8::from(!self.visibility.visible(x, y)));
             }
         });
         *rays += u64::from(traced);
@@ -246,6 +266,7 @@ mod tests {
         let patches = Patches::new(&scene, 150).unwrap();
         let caster = BruteForce::new(&scene);
         let blockers: Vec<Blocker> = patches.primitives().iter().map(Blocker::new).collect();
+        let mut segments = caster.segments();
         let (mut ruled_out, mut tried) = (0, 0);
         for (i, a) in patches.iter().enumerate() {
             for (j, b) in patches.iter().enumerate().skip(i + 1) {
@@ -266,15 +287,46 @@ mod tests {
                 ruled_out += out.len();
                 let fine = Sampling { rays: 40, refined: 40 };
                 let pair = (i * patches.len() + j) as u64;
-                let (share, _) = visible_share(fine, (a, pa), (b, pb), true, pair, |x, y| {
-                    // a point below the true horizon of the other is no pair of the operator
-                    let r = y.position - x.position;
-                    x.normal.dot(r) <= 0.0 || y.normal.dot(r) >= 0.0 || caster.visible_among(x, y, &out)
+                let (share, _) = visible_share(fine, (a, pa), (b, pb), true, pair, &mut segments, |segments| {
+                    for k in 0..LANES {
+                        // a point below the true horizon of the other is no pair of the operator
+                        let [x, y] = segments.ends(k, a, b);
+                        let r = y.position - x.position;
+                        let apart = x.normal.dot(r) <= 0.0 || y.normal.dot(r) >= 0.0;
+                        let free = apart || caster.free(x, y, out.iter().map(|i| *i as usize));
+                        segments.blocked[k] = f64::from(u8::from(!free));
+                    }
                 });
                 assert_eq!(share, 1.0, "{i} {j}");
             }
         }
         assert!(ruled_out * 8 > tried * 7, "{ruled_out} of {tried}: the test is not sharp");
+    }
+
+    #[test]
+    fn what_is_called_hidden_is_never_seen() {
+        let scene = clutter();
+        let patches = Patches::new(&scene, 400).unwrap();
+        let caster = BruteForce::new(&scene);
+        let mut segments = caster.segments();
+        let (mut hidden, fine) = (0, Sampling { rays: 64, refined: 64 });
+        for (i, a) in patches.iter().enumerate().filter(|(_, p)| p.ball.is_none()) {
+            for (j, b) in patches.iter().enumerate().skip(i + 1).filter(|(_, p)| p.ball.is_none()) {
+                let (mut ca, mut cb) = (Vec::new(), Vec::new());
+                let Some((pa, pb)) = facing(&a.polygon, &side(a), &b.polygon, &side(b), &mut ca, &mut cb) else {
+                    continue;
+                };
+                for k in (0..caster.len()).filter(|k| *k != a.primitive && *k != b.primitive) {
+                    if caster.hides(k, pa, pb) {
+                        hidden += 1;
+                        let block = |segments: &mut Segments| caster.block(k, segments);
+                        let pair = (i * patches.len() + j) as u64;
+                        assert_eq!(visible_share(fine, (a, pa), (b, pb), true, pair, &mut segments, block).0, 0.0);
+                    }
+                }
+            }
+        }
+        assert!(hidden > 1000, "{hidden}");
     }
 
     #[test]

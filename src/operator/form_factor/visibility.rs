@@ -8,36 +8,27 @@
 //! The samples follow the additive recurrence of the four-dimensional golden ratio (Roberts 2018), shifted at random
 //! per pair so that the errors of a row do not add up.
 
-use crate::operator::patches::{BruteForce, Patch, SurfacePoint, polygon::at};
+use crate::operator::patches::{BruteForce, LANES, Lane, Patch, Segments, SurfacePoint};
 use glam::DVec3;
+use pulp::{Arch, Simd};
 
 /// Answers whether two surface points see each other.
 pub trait Visibility: Sync {
     /// Is the open segment between the two points free? The points lie on the true surface; implementations move them
     /// off it along their normals.
     fn visible(&self, a: SurfacePoint, b: SurfacePoint) -> bool;
-
-    /// The same, knowing that only the primitives in `among` can be in the way.
-    fn visible_among(&self, a: SurfacePoint, b: SurfacePoint, among: &[u32]) -> bool {
-        let _ = among;
-        self.visible(a, b)
-    }
 }
 
 impl Visibility for BruteForce {
     fn visible(&self, a: SurfacePoint, b: SurfacePoint) -> bool {
         self.free(a, b, 0..self.len())
     }
-
-    fn visible_among(&self, a: SurfacePoint, b: SurfacePoint, among: &[u32]) -> bool {
-        self.free(a, b, among.iter().map(|i| *i as usize))
-    }
 }
 
 /// Samples per pair that is not provably clear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampling {
-    /// First look: 64.
+    /// First look: 128.
     pub rays: u32,
     /// Total for pairs of which the first look saw a part: 576.
     pub refined: u32,
@@ -45,54 +36,88 @@ pub struct Sampling {
 
 impl Default for Sampling {
     fn default() -> Self {
-        Self { rays: 64, refined: 576 }
+        Self { rays: 128, refined: 576 }
     }
 }
 
 /// A patch with the part of it that can take part in the exchange.
 pub(super) type Part<'a> = (&'a Patch, &'a [DVec3]);
 
-/// The visible share of the pair (in [0, 1]) and the rays it took. `flat_kernel` is off for pairs on one sphere, where k is constant.
+/// The visible share of the pair (in [0, 1]) and the rays it took. `flat_kernel` is off for pairs on one sphere, where k
+/// is constant; `block` marks the segments that are not free.
 pub(super) fn visible_share(
     sampling: Sampling,
-    (a, pa): Part<'_>,
-    (b, pb): Part<'_>,
+    a: Part<'_>,
+    b: Part<'_>,
     flat_kernel: bool,
     pair: u64,
-    visible: impl Fn(SurfacePoint, SurfacePoint) -> bool,
+    segments: &mut Segments,
+    mut block: impl FnMut(&mut Segments),
 ) -> (f64, u32) {
-    // 1/φ, 1/φ², 1/φ³, 1/φ⁴ with φ⁵ = φ + 1
-    const STEP: [f64; 4] =
-        [0.856_674_883_854_502_9, 0.733_891_856_627_125_9, 0.628_706_721_037_806_6, 0.538_597_257_223_612_5];
     let shift = [0, 1, 2, 3].map(|d| uniform(pair.wrapping_mul(4).wrapping_add(d)));
-    let (mut seen, mut all) = (0.0, 0.0);
-    let (mut hits, mut misses) = (0u32, 0u32);
+    let mut seen = Tally::default();
+    let mut numbers = [[0.0; LANES]; 4];
     let mut look = |from: u32, to: u32| {
-        for s in from..to {
-            let u = [0, 1, 2, 3].map(|d| (shift[d] + f64::from(s) * STEP[d]).fract());
-            let ((x, jx), (y, jy)) = (at(pa, u[0], u[1]), at(pb, u[2], u[3]));
-            let r = y - x;
-            let kernel =
-                if flat_kernel { a.normal.dot(r) * -b.normal.dot(r) / r.length_squared().powi(2) } else { 1.0 };
-            let weight = jx * jy * kernel;
-            // the horizon of a clipped part may be missed by rounding, and touching parts may share a point
-            if weight > 0.0 && weight.is_finite() {
-                all += weight;
-                if visible(a.lift(x), b.lift(y)) {
-                    seen += weight;
-                    hits += 1;
-                } else {
-                    misses += 1;
-                }
-            }
+        for first in (from..to).step_by(LANES) {
+            golden(shift, first, &mut numbers);
+            segments.place(a, b, &numbers, flat_kernel);
+            // the last batch may be longer than asked for
+            segments.weight[LANES.min((to - first) as usize)..].fill(0.0);
+            block(segments);
+            tally(&segments.weight, &segments.blocked, &mut seen);
         }
-        hits > 0 && misses > 0
+        seen.hits > 0.0 && seen.misses > 0.0
     };
     let mixed = look(0, sampling.rays);
     if mixed && sampling.refined > sampling.rays {
         look(sampling.rays, sampling.refined);
     }
-    (if misses == 0 { 1.0 } else { seen / all }, hits + misses)
+    let rays = (seen.hits + seen.misses) as u32;
+    if seen.misses == 0.0 { (1.0, rays) } else { (seen.free.iter().sum::<f64>() / seen.all.iter().sum::<f64>(), rays) }
+}
+
+/// 1/φ, 1/φ², 1/φ³, 1/φ⁴ with φ⁵ = φ + 1.
+const STEP: [f64; 4] =
+    [0.856_674_883_854_502_9, 0.733_891_856_627_125_9, 0.628_706_721_037_806_6, 0.538_597_257_223_612_5];
+
+/// Points `first`, `first` + 1, … of the additive recurrence.
+#[pulp::with_simd(golden = Arch::new())]
+#[inline(always)]
+fn golden_with_simd<'a, S: Simd>(_simd: S, shift: [f64; 4], first: u32, numbers: &'a mut [Lane; 4]) {
+    for d in 0..4 {
+        for k in 0..LANES {
+            let x = shift[d] + f64::from(first + k as u32) * STEP[d];
+            numbers[d][k] = x - x.floor();
+        }
+    }
+}
+
+/// Sums in eight interleaved parts, so that they are the same whatever the width of the registers.
+#[derive(Default)]
+struct Tally {
+    free: [f64; 8],
+    all: [f64; 8],
+    hits: f64,
+    misses: f64,
+}
+
+#[pulp::with_simd(tally = Arch::new())]
+#[inline(always)]
+fn tally_with_simd<'a, S: Simd>(_simd: S, weight: &'a Lane, blocked: &'a Lane, sums: &'a mut Tally) {
+    let (mut used, mut free) = ([0.0; 8], [0.0; 8]);
+    for k in (0..LANES).step_by(8) {
+        for l in 0..8 {
+            let (w, open) = (weight[k + l], 1.0 - blocked[k + l]);
+            let counts = if w > 0.0 { 1.0 } else { 0.0 };
+            sums.all[l] += w;
+            sums.free[l] += w * open;
+            used[l] += counts;
+            free[l] += counts * open;
+        }
+    }
+    let (used, free) = (used.iter().sum::<f64>(), free.iter().sum::<f64>());
+    sums.hits += free;
+    sums.misses += used - free;
 }
 
 /// A number in [0, 1) per key (Steele, Lea and Flood 2014, SplitMix64).

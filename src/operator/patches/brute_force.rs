@@ -5,20 +5,23 @@
 //! sphere |o + t d − c|² = R²
 //! ```
 
-use super::SurfacePoint;
+use super::{SurfacePoint, segments, segments::Segments};
 use crate::scene::{Description, Primitive, description::Sides};
 use glam::DVec3;
 
+/// Outlines reach this far over their edge, in lengths of the edge, so that neighbours leave no gap.
+pub(super) const SLACK: f64 = 1e-12;
+
 /// Outline of a flat primitive in its own coordinates.
 #[derive(Clone, Copy, Debug)]
-enum Outline {
+pub(super) enum Outline {
     Triangle,
     Parallelogram,
     Disk { radius_squared: f64 },
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Body {
+pub(super) enum Body {
     Flat { origin: DVec3, normal: DVec3, u: DVec3, v: DVec3, outline: Outline },
     Sphere { center: DVec3, radius: f64, z: [f64; 2], inward: bool },
 }
@@ -46,16 +49,35 @@ pub struct BruteForce {
 impl BruteForce {
     /// The primitives of `scene`. Rays start 10⁻⁷ of the scene's size off the surface.
     pub fn new(scene: &Description) -> Self {
-        let list = scene.primitives();
-        let [lo, hi] = list
-            .iter()
-            .map(|(_, p)| p.bounds())
-            .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)]);
         let sides = |shape: usize| scene.materials.get(scene.shapes[shape].material).map_or(Sides::Both, |m| m.sides);
-        Self {
-            bodies: list.iter().map(|&(s, p)| (body(p), sides(s))).collect(),
-            offset: 1e-7 * (hi - lo).max_element(),
-        }
+        Self::of(scene.primitives().into_iter().map(|(s, p)| (p, sides(s))))
+    }
+
+    /// These primitives.
+    pub(crate) fn of(list: impl Iterator<Item = (Primitive, Sides)>) -> Self {
+        let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let bodies = list.map(|(p, sides)| {
+            let [a, b] = p.bounds();
+            (lo, hi) = (lo.min(a), hi.max(b));
+            (body(p), sides)
+        });
+        let bodies: Vec<_> = bodies.collect();
+        Self { bodies, offset: 1e-7 * (hi - lo).max_element() }
+    }
+
+    /// Room for segments that start and end just off their surfaces.
+    pub(crate) fn segments(&self) -> Segments {
+        Segments::new(self.offset)
+    }
+
+    /// Marks the segments that primitive `i` blocks.
+    pub(crate) fn block(&self, i: usize, segments: &mut Segments) {
+        segments::block(&self.bodies[i].0, segments);
+    }
+
+    /// Is it certain that primitive `i` hides the two convex polygons from each other? `true` is a proof.
+    pub(crate) fn hides(&self, i: usize, a: &[DVec3], b: &[DVec3]) -> bool {
+        segments::hides(&self.bodies[i].0, a, b)
     }
 
     /// The nearest surface along a ray that starts just in front of `from`.
@@ -110,8 +132,7 @@ fn body(p: Primitive) -> Body {
 impl Body {
     /// The first crossing with 0 < t < `limit`, and whether the ray comes from the front.
     #[inline]
-    fn crossing(&self, o: DVec3, d: DVec3, limit: f64) -> Option<(f64, bool)> {
-        const SLACK: f64 = 1e-12;
+    pub(super) fn crossing(&self, o: DVec3, d: DVec3, limit: f64) -> Option<(f64, bool)> {
         match *self {
             Self::Flat { origin, normal, u, v, outline } => {
                 let (height, slope) = (normal.dot(o - origin), normal.dot(d));

@@ -5,7 +5,7 @@
 //! ```
 
 use super::{
-    Cover, CoverTest, Grid, Tree,
+    Cover, CoverTest, Finder, Grid, Tree,
     polygon::{area_vector, extent},
     sides_of,
     tree::{meeting, share},
@@ -33,6 +33,13 @@ pub(super) struct Piece {
 #[derive(Clone, Debug)]
 pub(super) enum Shape {
     Flat { tree: Tree, cover: Vec<[Cover; 2]> },
+    Curved(Grid),
+}
+
+/// Finds the cell of a point.
+#[derive(Clone, Debug)]
+pub(super) enum Search {
+    Flat(Finder),
     Curved(Grid),
 }
 
@@ -187,31 +194,17 @@ fn grid(p: &Primitive, a: f64) -> Option<Grid> {
 }
 
 impl Shape {
-    /// Cell numbers are below this.
-    pub(super) fn len(&self) -> usize {
-        match self {
-            Self::Flat { tree, .. } => tree.len(),
-            Self::Curved(grid) => grid.len(),
-        }
-    }
-
-    pub(super) fn locate(&self, p: DVec3) -> usize {
-        match self {
-            Self::Flat { tree, .. } => tree.locate(p),
-            Self::Curved(grid) => grid.locate(p),
-        }
-    }
-
+    /// The cells in order; their numbers count up from 0.
     pub(super) fn cells(&self) -> Vec<Cell> {
         match self {
             Self::Flat { tree, cover } => {
-                let one = |(i, p): (usize, &[DVec3])| Cell {
-                    number: i,
+                let one = |(number, (node, p)): (usize, (usize, &[DVec3]))| Cell {
+                    number,
                     polygon: p.to_vec(),
                     area: area_vector(p).length(),
-                    cover: cover[i],
+                    cover: cover[node],
                 };
-                tree.cells().map(one).collect()
+                tree.cells().enumerate().map(one).collect()
             }
             Self::Curved(grid) => {
                 let one = |(number, f): (usize, super::curved::Facet)| Cell {
@@ -222,6 +215,31 @@ impl Shape {
                 };
                 grid.facets().into_iter().enumerate().map(one).collect()
             }
+        }
+    }
+
+    /// What finds the cell of a point.
+    pub(super) fn finder(self) -> Search {
+        match self {
+            Self::Flat { tree, .. } => Search::Flat(tree.finder()),
+            Self::Curved(grid) => Search::Curved(grid),
+        }
+    }
+}
+
+impl Search {
+    pub(super) fn locate(&self, p: DVec3) -> usize {
+        match self {
+            Self::Flat(finder) => finder.locate(p),
+            Self::Curved(grid) => grid.locate(p),
+        }
+    }
+
+    /// Groups of up to four neighbouring cells; a curved surface keeps its cells.
+    pub(super) fn groups(&self, cells: usize) -> Vec<u32> {
+        match self {
+            Self::Flat(finder) => finder.groups(cells, 4),
+            Self::Curved(_) => (0..cells as u32).collect(),
         }
     }
 }

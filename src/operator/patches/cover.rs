@@ -22,6 +22,7 @@ pub(super) enum Cover {
 }
 
 /// The test for points.
+#[derive(Clone, Debug)]
 pub(super) struct CoverTest {
     caster: BruteForce,
     primitives: Vec<(Primitive, Sides)>,
@@ -40,7 +41,7 @@ impl CoverTest {
         Self { caster, primitives, directions }
     }
 
-    fn is_covered(&self, primitive: usize, at: SurfacePoint) -> bool {
+    pub(super) fn is_covered(&self, primitive: usize, at: SurfacePoint) -> bool {
         if self.primitives[..primitive].iter().any(|p| coincides(p, at)) {
             return true;
         }

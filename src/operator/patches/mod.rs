@@ -20,15 +20,19 @@ mod brute_force;
 mod choose;
 mod cover;
 mod curved;
+mod finder;
 pub mod polygon;
+mod segments;
 mod tree;
 
 use crate::scene::{Description, Primitive, SceneError, description::Sides};
 pub use brute_force::{BruteForce, Hit};
-use choose::Shape;
+use choose::Search;
 use cover::{Cover, CoverTest};
 use curved::Grid;
+use finder::Finder;
 use glam::DVec3;
+pub(crate) use segments::{LANES, Lane, Segments};
 use tree::Tree;
 
 /// A point of the true surface with the normal of the side meant.
@@ -93,13 +97,17 @@ pub struct Patches {
     indices: Vec<Index>,
     surface_area: f64,
     covered_area: f64,
+    cover: CoverTest,
 }
+
+/// No patch: the cell is covered there, or the side does not reflect.
+const NONE: u32 = u32::MAX;
 
 /// The cells of a primitive and the patch on each side of each.
 #[derive(Clone, Debug)]
 struct Index {
-    shape: Shape,
-    patch: [Vec<Option<u32>>; 2],
+    search: Search,
+    patch: [Vec<u32>; 2],
 }
 
 impl Patches {
@@ -163,23 +171,25 @@ impl Patches {
             indices: Vec::new(),
             surface_area: primitives.iter().map(|(p, s)| p.area() * sides_of(*s).count() as f64).sum(),
             covered_area: 0.0,
+            cover,
         };
         for (number, region) in regions.into_iter().enumerate() {
             let (s, p) = listed[number];
-            let mut index = Index { shape: region.divide(&p, a), patch: [Vec::new(), Vec::new()] };
+            let shape = region.divide(&p, a);
+            let mut patch = [Vec::new(), Vec::new()];
             for side in sides_of(sides(s)) {
                 let front = side == 0;
-                index.patch[side] = vec![None; index.shape.len()];
-                for cell in index.shape.cells() {
+                for cell in shape.cells() {
+                    patch[side].push(NONE);
                     let geometry = PatchGeometry::new(&p, cell.polygon, cell.area, front);
                     let free = match cell.cover[side] {
                         Cover::Free => 1.0,
                         Cover::Covered => 0.0,
-                        Cover::Mixed => cover.free_share(number, &geometry.polygon, 8, |x| geometry.lift(x)),
+                        Cover::Mixed => patches.cover.free_share(number, &geometry.polygon, 8, |x| geometry.lift(x)),
                     };
                     patches.covered_area += (1.0 - free) * cell.area;
                     if free > 0.0 {
-                        index.patch[side][cell.number] = Some(patches.list.len() as u32);
+                        patch[side][cell.number] = patches.list.len() as u32;
                         let shape = &scene.shapes[s];
                         patches.list.push(Patch {
                             area: free * cell.area,
@@ -191,7 +201,7 @@ impl Patches {
                     }
                 }
             }
-            patches.indices.push(index);
+            patches.indices.push(Index { search: shape.finder(), patch });
         }
         if patches.list.is_empty() {
             return Err(
@@ -204,7 +214,34 @@ impl Patches {
     /// The patch of a point of the surface, also when rounding has put it slightly outside; `None` where covered.
     pub fn locate(&self, primitive: usize, front: bool, point: DVec3) -> Option<usize> {
         let index = self.indices.get(primitive)?;
-        index.patch[usize::from(!front)].get(index.shape.locate(point)).copied().flatten().map(|i| i as usize)
+        let patch = &index.patch[usize::from(!front)];
+        if patch.is_empty() {
+            return None;
+        }
+        patch.get(index.search.locate(point)).filter(|i| **i != NONE).map(|i| *i as usize)
+    }
+
+    /// Is this point of patch `i` under something, where it neither emits nor reflects?
+    pub fn is_covered(&self, i: usize, at: SurfacePoint) -> bool {
+        self.cover.is_covered(self.list[i].primitive, at)
+    }
+
+    /// A mesh twice as coarse, each patch the union of up to four neighbours on one side of one flat surface: for every
+    /// patch the number of the union it belongs to. Patches of curved surfaces stay alone.
+    pub fn parents(&self) -> Vec<u32> {
+        let mut parent = vec![0; self.list.len()];
+        let mut next = 0;
+        for index in &self.indices {
+            for cells in index.patch.iter().filter(|p| !p.is_empty()) {
+                let mut number = std::collections::BTreeMap::new();
+                for (patch, group) in cells.iter().zip(index.search.groups(cells.len())).filter(|c| *c.0 != NONE) {
+                    let fresh = next + number.len() as u32;
+                    parent[*patch as usize] = *number.entry(group).or_insert(fresh);
+                }
+                next += number.len() as u32;
+            }
+        }
+        parent
     }
 
     /// How many patches there are.

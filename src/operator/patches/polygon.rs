@@ -79,6 +79,24 @@ pub fn at(p: &[DVec3], u: f64, v: f64) -> (DVec3, f64) {
     }
 }
 
+/// Maps `[0, 1]²` onto the polygon with constant density, so that uniform numbers give uniform points.
+pub fn uniform(p: &[DVec3], u: f64, v: f64) -> DVec3 {
+    if let [a, b, c, d] = *p {
+        if (a - b + c - d).length_squared() <= 1e-20 * (c - a).length_squared() {
+            return a + u * (b - a) + v * (d - a);
+        }
+        // the fan of two triangles
+        let first = (b - a).cross(c - a).length();
+        let share = first / (first + (c - a).cross(d - a).length());
+        return if u < share {
+            at(&[a, b, c], u / share, v).0
+        } else {
+            at(&[a, c, d], (u - share) / (1.0 - share), v).0
+        };
+    }
+    at(p, u, v).0
+}
+
 /// The line perpendicular to the longest extent that leaves the share `share` of the area below it:
 /// `(axis, offset)` with the lower part at `axis·x ≤ offset`.
 ///
@@ -169,6 +187,10 @@ mod tests {
             }
             let area = area_vector(&p).length();
             assert!((one / (m * m) as f64 / area - 1.0).abs() < 1e-9);
+            let uniform: DVec3 = (0..m * m)
+                .map(|k| uniform(&p, ((k % m) as f64 + 0.5) / m as f64, ((k / m) as f64 + 0.5) / m as f64))
+                .sum();
+            assert!((uniform / (m * m) as f64 - centroid(&p)).length() < 2.0 / m as f64);
             // the fan jumps from triangle to triangle, which costs the midpoint rule an order
             assert!((x / one - centroid(&p)).length() < 2.0 / m as f64);
         }

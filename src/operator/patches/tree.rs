@@ -5,6 +5,7 @@
 //! bisect(cell, c):        ⌊c/2⌋ : ⌈c/2⌉ of the area, recursively, until c = 1
 //! ```
 
+use super::finder::{Finder, LEAF};
 use super::polygon::{area_vector, clip, equal_area_line, extent};
 use glam::DVec3;
 
@@ -44,13 +45,25 @@ impl Tree {
         self.nodes.len()
     }
 
-    /// The cell a point of the plane belongs to; points outside belong to the cell whose side of every line they share.
-    pub(super) fn locate(&self, p: DVec3) -> usize {
-        let mut at = 0;
-        while let Node::Split { axis, offset, children } = &self.nodes[at] {
-            at = children[usize::from(axis.dot(p) > *offset)] as usize;
-        }
-        at
+    /// The cells without their outlines, in the order of [`Tree::cells`].
+    pub(super) fn finder(&self) -> Finder {
+        let mut leaf = vec![0; self.nodes.len()];
+        self.cells().enumerate().for_each(|(ordinal, (node, _))| leaf[node] = ordinal as u32 | LEAF);
+        let mut finder = Finder::new(self.nodes.iter().find_map(|n| match n {
+            Node::Cell(p) => Some(p.as_slice()),
+            Node::Split { .. } => None,
+        }));
+        finder.root = self.copy(0, &leaf, &mut finder);
+        finder
+    }
+
+    /// Copies the lines below a node and returns its number in `to`.
+    fn copy(&self, node: usize, leaf: &[u32], to: &mut Finder) -> u32 {
+        let Node::Split { axis, offset, children } = &self.nodes[node] else { return leaf[node] };
+        let at = to.lines.len();
+        to.lines.push(to.line(*axis, *offset));
+        to.lines[at].children = children.map(|c| self.copy(c as usize, leaf, to));
+        at as u32
     }
 
     /// Splits every cell that the segment really crosses along the line of the segment. Returns whether any was.
@@ -173,7 +186,7 @@ mod tests {
                 let c = centroid(p) * m as f64 - 0.5;
                 assert!((c.x - c.x.round()).abs() < 1e-13 && (c.y - c.y.round()).abs() < 1e-13);
                 seen[c.y.round() as usize * m + c.x.round() as usize] = true;
-                assert_eq!(tree.locate(centroid(p)), i);
+                assert_eq!(tree.cells().nth(tree.finder().locate(centroid(p))).map(|c| c.0), Some(i));
             }
             assert!(seen.iter().all(|s| *s));
         }
@@ -191,7 +204,7 @@ mod tests {
             assert!(tree.cut(DVec3::Z, [inner[i], inner[(i + 1) % 4]]));
         }
         assert_eq!(tree.cells().count(), 5);
-        let (_, cell) = tree.cells().find(|(i, _)| *i == tree.locate(v(0.5, 0.5))).unwrap();
+        let (_, cell) = tree.cells().nth(tree.finder().locate(v(0.5, 0.5))).unwrap();
         assert!((area_vector(cell).length() - 0.09).abs() < 1e-15);
     }
 }

@@ -1,0 +1,125 @@
+//! What must hold for sampled rows, within the sampling error where it is sampled.
+//!
+//! ```text
+//! Fᵢⱼ ≥ 0,  Fᵢⱼ ≤ 1,  Σⱼ Fᵢⱼ = 1 (closed)            exactly, by counting
+//! ⟨f, F g⟩ = ⟨F f, g⟩ in the area inner product       within z standard errors, for smooth f and g
+//! ```
+//!
+//! f and g run over 1, x, y, z of the patch centres, measured from the middle of the scene. The standard error is that of
+//! independent rays, which is longer than that of Sobol points: a sound z stays well below 1.
+
+use super::{Half, Light};
+use glam::DVec3;
+
+/// The invariants as measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayChecks {
+    /// Smallest row sum.
+    pub row_sum_min: f64,
+    /// Largest row sum: 1 at most, by counting.
+    pub row_sum_max: f64,
+    /// Largest entry.
+    pub largest: f64,
+    /// Largest |⟨f, F g⟩ − ⟨F f, g⟩| relative to ‖f‖ ‖g‖.
+    pub reciprocity: f64,
+    /// The same in standard errors of independent rays.
+    pub reciprocity_z: f64,
+    /// Share of the rays that met a reflecting surface where no patch is.
+    pub lost: f64,
+}
+
+impl Light<'_> {
+    /// Measures them.
+    pub fn checks(&self) -> RayChecks {
+        let rays = self.rays;
+        let n = rays.per_row as f64;
+        let (mut least, mut most, mut largest) = (f64::INFINITY, 0.0f64, 0);
+        for i in 0..rays.n {
+            let mut met = 0;
+            for half in rays.row(i) {
+                met += half.partition_point(|h| *h != super::NOTHING);
+            }
+            (least, most) = (least.min(met as f64 / n), most.max(met as f64 / n));
+            largest = largest.max(largest_count(rays.row(i)));
+        }
+        let (reciprocity, reciprocity_z) = self.reciprocity();
+        RayChecks {
+            row_sum_min: least,
+            row_sum_max: most,
+            largest: largest as f64 / n,
+            reciprocity,
+            reciprocity_z,
+            lost: rays.lost as f64 / (n * rays.n as f64),
+        }
+    }
+
+    fn reciprocity(&self) -> (f64, f64) {
+        let area = &self.rays.area;
+        let whole: f64 = area.iter().sum();
+        let middle = self.patches.iter().map(|p| p.area * p.centre).sum::<DVec3>() / whole;
+        let place: Vec<DVec3> = self.patches.iter().map(|p| p.centre - middle).collect();
+        let one = vec![DVec3::ONE; place.len()];
+        let (f_place, f_one) = (self.arrive(&place), self.arrive(&one));
+        // second moments of what a row sees, for the standard error
+        let square = self.arrive(&place.iter().map(|p| *p * *p).collect::<Vec<_>>());
+        let of = |c: Option<usize>, x: &[DVec3], i: usize| c.map_or(1.0, |c| x[i][c]);
+        let (mut relative, mut z) = (0.0f64, 0.0f64);
+        let channels = [None, Some(0), Some(1), Some(2)];
+        for (a, f) in channels.into_iter().enumerate() {
+            for g in channels.into_iter().skip(a + 1) {
+                let (mut difference, mut variance, mut ff, mut gg) = (0.0, 0.0, 0.0, 0.0);
+                for i in 0..place.len() {
+                    let (x, y) = (of(f, &place, i), of(g, &place, i));
+                    let fx = f.map_or(f_one[i].x, |c| f_place[i][c]);
+                    let fy = g.map_or(f_one[i].x, |c| f_place[i][c]);
+                    difference += area[i] * (x * fy - fx * y);
+                    let spread =
+                        |c: Option<usize>, mean: f64| (c.map_or(f_one[i].x, |c| square[i][c]) - mean * mean).max(0.0);
+                    // |cov| ≤ root of the product: (a + b)² bounds it
+                    let error = x.abs() * spread(g, fy).sqrt() + y.abs() * spread(f, fx).sqrt();
+                    variance += (area[i] * error).powi(2) / self.rays.per_row as f64;
+                    (ff, gg) = (ff + area[i] * x * x, gg + area[i] * y * y);
+                }
+                relative = worst(relative, difference.abs() / (ff * gg).sqrt());
+                if variance > 0.0 {
+                    z = worst(z, difference.abs() / variance.sqrt());
+                }
+            }
+        }
+        (relative, z)
+    }
+
+    /// F x, without albedos.
+    fn arrive(&self, x: &[DVec3]) -> Vec<DVec3> {
+        self.gathered(x, Half::Both, |_| DVec3::ONE)
+    }
+}
+
+/// The larger of the two, and NaN if there is one.
+fn worst(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}
+
+/// How often the patch met most often was met.
+fn largest_count([a, b]: [&[u32]; 2]) -> usize {
+    let (mut i, mut j, mut largest) = (0, 0, 0);
+    while i < a.len() || j < b.len() {
+        let hit = match (a.get(i), b.get(j)) {
+            (Some(x), Some(y)) => *x.min(y),
+            (Some(x), None) | (None, Some(x)) => *x,
+            (None, None) => break,
+        };
+        if hit == super::NOTHING {
+            break;
+        }
+        let from = (i, j);
+        while a.get(i) == Some(&hit) {
+            i += 1;
+        }
+        while b.get(j) == Some(&hit) {
+            j += 1;
+        }
+        largest = largest.max(i - from.0 + j - from.1);
+    }
+    largest
+}

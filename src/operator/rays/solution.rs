@@ -1,0 +1,150 @@
+//! Light on the patches by stored rays, three channels at once.
+//!
+//! ```text
+//! T^0 E = E     T^1 E = D     T^{k+1} E = T (T^k E)          L = E + u,   u = D + T u = Σ_{k≥0} T^k D
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | D | T E with the direct light of far emitters by pairs of points | [`Rays::direct`] |
+//! | u | reflected light, L − E | [`Solved`] |
+//! | δ | (I − T)⁻¹ [D₁ − D₂ + (T₁ − T₂) u], to first order the difference of the halves' solutions | [`Light::noise`] |
+//!
+//! Gathering reads one 16-byte record per ray for all channels: only ρ differs between them.
+
+use super::{Half, NOTHING, Rays};
+use crate::operator::patches::Patches;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// A scene on its patches, by stored rays.
+#[derive(Clone, Copy, Debug)]
+pub struct Light<'a> {
+    /// The mesh.
+    pub patches: &'a Patches,
+    /// Its rows.
+    pub rays: &'a Rays,
+}
+
+/// L by the Neumann series.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solved {
+    /// L per patch.
+    pub radiance: Vec<DVec3>,
+    /// max |D − (I − T) u| per channel.
+    pub residual: DVec3,
+    /// Applications of T.
+    pub steps: usize,
+    /// The last term: close to the top mode of every channel.
+    pub last: Vec<DVec3>,
+}
+
+impl<'a> Light<'a> {
+    /// E.
+    pub fn emission(&self) -> Vec<DVec3> {
+        self.patches.iter().map(|p| p.emission).collect()
+    }
+
+    /// D.
+    pub fn direct(&self) -> Vec<DVec3> {
+        (0..self.rays.n).map(|i| self.rays.direct(i)).collect()
+    }
+
+    /// T x by the chosen rays.
+    pub fn bounce(&self, x: &[DVec3], half: Half) -> Vec<DVec3> {
+        self.gathered(x, half, |i| self.patches[i].reflectance)
+    }
+
+    /// diag(ρ) F x.
+    pub(super) fn gathered(&self, x: &[DVec3], half: Half, rho: impl Fn(usize) -> DVec3 + Sync) -> Vec<DVec3> {
+        let records: Vec<[f32; 4]> = x.iter().map(|x| [x.x as f32, x.y as f32, x.z as f32, 0.0]).collect();
+        let one = |i: usize| {
+            let [a, b] = self.rays.row(i);
+            let (rows, rays) = match half {
+                Half::Both => ([a, b], self.rays.per_row),
+                Half::First => ([a, &b[..0]], a.len()),
+                Half::Second => ([&a[..0], b], b.len()),
+            };
+            let sum = gather(&records, rows[0]) + gather(&records, rows[1]);
+            rho(i) * (sum / rays as f64)
+        };
+        (0..self.rays.n).into_par_iter().with_min_len(64).map(one).collect()
+    }
+
+    /// T^k E for k = 0 ..= `k_max`.
+    pub fn terms(&self, k_max: usize) -> Vec<Vec<DVec3>> {
+        let mut terms = vec![self.emission()];
+        for k in 1..=k_max {
+            terms.push(if k == 1 { self.direct() } else { self.bounce(&terms[k - 1], Half::Both) });
+        }
+        terms
+    }
+
+    /// L, summed until what is left of the series is below `tolerance` times the sum (norms over the patches by area), or
+    /// for `most` applications of T.
+    pub fn solve(&self, tolerance: f64, most: usize) -> Solved {
+        let direct = self.direct();
+        let (sum, last, steps) = self.sum(direct, tolerance, most);
+        let residual = last.iter().fold(DVec3::ZERO, |a, x| worst(a, x.abs()));
+        let radiance = sum.iter().zip(self.patches.iter()).map(|(u, p)| *u + p.emission).collect();
+        Solved { radiance, residual, steps, last }
+    }
+
+    /// Σ T^k x with the first term left out of it, and how many applications that took.
+    fn sum(&self, x: Vec<DVec3>, tolerance: f64, most: usize) -> (Vec<DVec3>, Vec<DVec3>, usize) {
+        let (mut sum, mut term) = (x.clone(), x);
+        let mut before = self.norm(&term);
+        for step in 1..=most {
+            term = self.bounce(&term, Half::Both);
+            let now = self.norm(&term);
+            let rate = now / before;
+            // a geometric tail of the last ratio; without one, the term itself
+            let left = DVec3::select(rate.cmplt(DVec3::ONE), now * rate / (1.0 - rate), now);
+            if now == DVec3::ZERO || left.cmple(tolerance * self.norm(&sum)).all() {
+                return (sum, term, step);
+            }
+            sum.iter_mut().zip(&term).for_each(|(s, t)| *s += *t);
+            before = now;
+        }
+        (sum, term, most)
+    }
+
+    /// Half of δ, per patch: as long as the error of a solution that contains u = L − E.
+    ///
+    /// Any output that is linear in L, applied to this, is an error bar of that output with one degree of freedom; the
+    /// norm of many patches is a reliable one.
+    pub fn noise(&self, radiance: &[DVec3]) -> Vec<DVec3> {
+        let u: Vec<DVec3> = radiance.iter().zip(self.patches.iter()).map(|(l, p)| *l - p.emission).collect();
+        let (a, b) = (self.bounce(&u, Half::First), self.bounce(&u, Half::Second));
+        let difference = (0..self.rays.n).map(|i| {
+            let direct = self.rays.direct_half(i, 0) - self.rays.direct_half(i, 1);
+            0.5 * (direct + a[i] - b[i])
+        });
+        // noise of neighbours cancels in T, so few terms do
+        self.sum(difference.collect(), 1e-2, 50).0
+    }
+
+    /// Root of Σ Aᵢ xᵢ², per channel.
+    pub fn norm(&self, x: &[DVec3]) -> DVec3 {
+        let square: DVec3 = x.iter().zip(&self.rays.area).map(|(x, a)| *a * *x * *x).sum();
+        square.powf(0.5)
+    }
+}
+
+fn gather(records: &[[f32; 4]], hits: &[u32]) -> DVec3 {
+    // what met nothing sorts last
+    let hits = &hits[..hits.partition_point(|h| *h != NOTHING)];
+    let mut sum = [0.0f64; 4];
+    for h in hits {
+        let record = &records[*h as usize];
+        for c in 0..4 {
+            sum[c] += f64::from(record[c]);
+        }
+    }
+    DVec3::new(sum[0], sum[1], sum[2])
+}
+
+/// The larger of the two per channel, and NaN if there is one.
+fn worst(a: DVec3, b: DVec3) -> DVec3 {
+    DVec3::select(b.cmple(a), a, b)
+}

@@ -1,0 +1,97 @@
+//! T_h in one of two forms: a dense matrix of deterministic form factors, or stored rays.
+//!
+//! | | dense | rays |
+//! |---|---|---|
+//! | F | [`FormFactors`](crate::operator::form_factor::FormFactors), n² numbers | [`Rays`], N hits a row |
+//! | good to | about 10⁴ patches | 10⁶ |
+//! | solve | LU | Neumann series |
+//! | error beside that of the mesh | visibility samples, not stated | the bar of the two halves, stated |
+
+use crate::operator::matrix::Spectral;
+use crate::operator::patches::Patches;
+use crate::operator::rays::{Light, RayChecks, Rays};
+use crate::solver::Radiosity;
+use glam::DVec3;
+
+/// Which form to use.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Factors {
+    /// The matrix.
+    #[default]
+    Dense,
+    /// So many rays a row.
+    Rays(u32),
+}
+
+/// T_h with its mesh.
+#[derive(Clone, Debug)]
+pub enum Realisation {
+    /// The matrix.
+    Dense(Radiosity),
+    /// Rays.
+    Rays(Patches, Rays),
+}
+
+impl Realisation {
+    /// The mesh.
+    pub fn patches(&self) -> &Patches {
+        match self {
+            Self::Dense(r) => &r.patches,
+            Self::Rays(patches, _) => patches,
+        }
+    }
+
+    /// The matrix, if it is one.
+    pub fn dense(&self) -> Option<&Radiosity> {
+        match self {
+            Self::Dense(r) => Some(r),
+            Self::Rays(..) => None,
+        }
+    }
+
+    /// The rays, if they are stored.
+    pub fn light(&self) -> Option<Light<'_>> {
+        match self {
+            Self::Dense(_) => None,
+            Self::Rays(patches, rays) => Some(Light { patches, rays }),
+        }
+    }
+
+    /// Rays traced: for visibility, or all.
+    pub fn rays(&self) -> u64 {
+        match self {
+            Self::Dense(r) => r.factors.rays,
+            Self::Rays(_, rays) => (rays.n * rays.per_row) as u64,
+        }
+    }
+
+    /// Σ Aᵢ xᵢ / A: the mean over all reflecting sides, with zero on what is covered.
+    pub fn surface_mean(&self, x: &[DVec3]) -> DVec3 {
+        let patches = self.patches();
+        patches.iter().zip(x).map(|(p, x)| p.area * *x).sum::<DVec3>() / patches.surface_area()
+    }
+}
+
+/// What is known about the sampling of stored rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// N.
+    pub per_row: usize,
+    /// Relative L² error bar of the reflected light u, per channel, from the halves of the rows.
+    pub noise: DVec3,
+    /// What must hold, as measured.
+    pub checks: RayChecks,
+    /// Applications of T that the solve took.
+    pub steps: usize,
+}
+
+/// Two realisations on one mesh, apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// ‖u_dense − u_rays‖ / ‖u_dense‖ over the patches by area, per channel.
+    pub of_u: DVec3,
+    /// Spectral radii of the rays, per channel.
+    pub spectral: [Spectral; 3],
+    /// The rays.
+    pub sampling: Sampling,
+}
