@@ -34,6 +34,9 @@ inflates the error rate: the e-value of a mean exceeds 1/α at any time ever wit
 Assumed: the mean of a batch is nearly normal. A batch has --batch samples of every pixel; where fewer
 than 400 events carry a mean nothing is rejected.";
 
+/// Width and height of a batch: means need samples, not pixels.
+const SMALL: u32 = 64;
+
 /// Arguments of `check bias`.
 #[derive(Clone, Debug, Args)]
 pub struct Bias {
@@ -124,7 +127,7 @@ struct Record<'a> {
 /// Watches.
 pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
     let started = Instant::now();
-    let loaded = args.common.load(&args.scene)?;
+    let loaded = args.common.load(&args.scene, SMALL)?;
     let scene = &loaded.scene;
     let [w, h] = loaded.description.camera.size;
     let spp = args.batch.unwrap_or_else(|| 4096u32.div_ceil(w * h));
@@ -152,7 +155,7 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
     let time = args.time.or(args.spp.is_none().then_some(Duration::from_secs(60)));
     // batches are short: one that is begun is finished, so that all are alike
     let (never, stop) = (AtomicBool::new(false), stop_flag());
-    let (mut curve, mut cost) = (vec![], [0u64; 3]);
+    let (mut curve, mut cost, mut found) = (vec![], [0u64; 3], None);
     let mut said = Instant::now();
     for i in 0..most {
         let a = first.batch(scene, "first", i, &never);
@@ -167,7 +170,12 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
             Against::Finished(series) => detector.push(&a, &series.functionals),
         }
         let n = detector.batches();
-        let decided = detector.outcome() != Outcome::Inconclusive;
+        // a bias that has been found is followed for as long again, so that one sees how large it is
+        let decided = match detector.outcome() {
+            Outcome::Inconclusive => false,
+            Outcome::Agrees => true,
+            Outcome::Differs => n >= 2 * *found.get_or_insert(n),
+        };
         let over = stop.load(Ordering::Relaxed) || time.is_some_and(|t| started.elapsed() >= t);
         let last = decided || over || i + 1 == most;
         if last || n as f64 >= 1.04 * curve.last().map_or(0.0, |g: &Glimpse| g.batches as f64) {
