@@ -60,8 +60,8 @@ proptest! {
         for (pixel, sample) in (0..2).flat_map(|p| (0..samples).map(move |s| (p, s))) {
             let rng = |v, purpose| Rng::at(key, pixel, sample, v, purpose);
             let (mut x, mut w, mut reach) = (pixel, Rgb::ONE, 1.0);
-            let (mut mean, mut chosen) = (vec![DVec3::ZERO; LONG + 1], None);
-            let mut ends = vec![false; LONG + 1];
+            let (mut mean, mut chosen) = ([DVec3::ZERO; LONG + 1], None);
+            let mut ends = [false; LONG + 1];
             for v in 0..=LONG {
                 let q = schedule.termination(v, w, walk.albedo(&x));
                 if q > 0.0 {

@@ -63,7 +63,10 @@ fn a_finished_run_of_another_scene_is_told_apart() {
     let series = "series furnace --size 16x16 --spp 64 --max-bounces 3 --worlds terms -q";
     assert_eq!(desk.run(&format!("{series} -o right")).code, 0);
     assert_eq!(desk.run(&format!("{series} --set materials.wall.reflectance=[0.7,0.7,0.7] -o wrong")).code, 0);
-    let bias = "check bias --scene furnace --size 16x16 --max-bounces 3 --spp 4096 -q --against";
+    // pixels of batches are those of the run, whose regions they are compared with
+    let said = desk.run("check bias --scene furnace --size 8x8 --against right");
+    assert!(said.code == 2 && said.err.contains("16×16"), "{}", said.err);
+    let bias = "check bias --scene furnace --max-bounces 3 --spp 4096 -q --against";
     let said = desk.run(&format!("{bias} right -o a"));
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
     let said = desk.run(&format!("{bias} wrong -o b"));

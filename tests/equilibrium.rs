@@ -68,7 +68,7 @@ fn verdict([surface, camera]: &[Vec<Balance>; 2], alpha: f64) -> Judgement {
 fn the_equation_holds_and_a_wrong_step_is_found() {
     let mut account = open("the_equation_holds_and_a_wrong_step_is_found");
     let scene = ball();
-    let settings = Settings { spp: 1 << 14, seed: account.seed(), path_roulette: END, ..Settings::default() };
+    let settings = Settings { spp: 1 << 13, seed: account.seed(), path_roulette: END, ..Settings::default() };
     // the whole judgement is one comparison for each way of estimating L
     for technique in [Technique::Scatter, Technique::Connect, Technique::Mis] {
         let settings = Settings { technique, ..settings.clone() };

@@ -149,7 +149,7 @@ fn margin() -> Stroke {
 fn narrowing(page: &Page, curve: &[Glimpse], paths: u64, delta: f64) -> Drawn {
     let x = |g: &Glimpse| (g.batches * paths) as f64;
     let known = || curve.iter().filter(|g| g.image.iter().any(|f| relative(f).is_some()));
-    let last = known().last().map_or(0.0, |g| {
+    let last = known().next_back().map_or(0.0, |g| {
         g.image.iter().filter_map(relative).flat_map(|b| [b[0].abs(), b[2].abs()]).fold(0.0, f64::max)
     });
     let reach = (300.0 * delta).max(1.5 * last);
