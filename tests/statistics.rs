@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::random::cases;
 use common::{Noise, assert_rate, assert_rate_at_most, open};
 use fredholm::stats::{
     Comparison, Criterion, Measured, Moments, Outcome, TermMeans, compare, critical, difference, estimate,
@@ -10,6 +11,7 @@ use fredholm::stats::{
 };
 use fredholm::terms::{Cost, Estimate, Functional, Series, World};
 use glam::DVec3;
+use proptest::prelude::*;
 
 /// How the estimates of one simulated result scatter.
 #[derive(Clone, Copy)]
@@ -243,4 +245,50 @@ fn variance_slopes_have_the_error_they_claim() {
     assert_variance(&mut account, "slope", &slopes, claimed);
     // ln χ² is skew, so the misfit is not quite χ²; it must still be of that size
     assert!(misfits < 150, "{misfits} of 3000 misfits at 1 %");
+}
+
+proptest! {
+    #![proptest_config(cases(256))]
+
+    /// Replicates may come in any order and in any parts: the moments are the same, to rounding.
+    #[test]
+    fn moments_do_not_depend_on_order_and_split(
+        rows in prop::collection::vec(prop::array::uniform3(-5.0..5.0f64), 2..60),
+        cuts in prop::collection::vec(any::<prop::sample::Index>(), 0..6),
+        seed in any::<u64>(),
+        offset in prop_oneof![Just(0.0), Just(1e5)],
+    ) {
+        let rows: Vec<[f64; 3]> = rows.into_iter().map(|r| r.map(|x| x + offset)).collect();
+        let whole = |rows: &[[f64; 3]]| {
+            let mut m = Moments::new(3);
+            rows.iter().for_each(|r| m.push(r));
+            m
+        };
+        let reference = whole(&rows);
+        // shuffled (Fisher and Yates), cut, and the parts merged in a random order
+        let mut rng = Noise(seed);
+        let mut shuffled = rows.clone();
+        (1..shuffled.len()).rev().for_each(|i| shuffled.swap(i, (rng.uniform() * (i + 1) as f64) as usize));
+        let mut at: Vec<usize> = cuts.iter().map(|c| c.index(rows.len() + 1)).collect();
+        at.extend([0, rows.len()]);
+        at.sort_unstable();
+        let mut parts: Vec<Moments> = at.windows(2).map(|w| whole(&shuffled[w[0]..w[1]])).collect();
+        let mut merged = Moments::new(3);
+        while !parts.is_empty() {
+            let i = (rng.uniform() * parts.len() as f64) as usize;
+            merged.merge(&parts.swap_remove(i));
+        }
+        prop_assert_eq!(merged.count(), rows.len() as u64);
+        for a in 0..3 {
+            prop_assert!((merged.mean()[a] - reference.mean()[a]).abs() < 1e-12 * (5.0 + offset));
+            for b in 0..3 {
+                let (x, y) = (merged.covariance()[(a, b)], reference.covariance()[(a, b)]);
+                prop_assert!((x - y).abs() < 1e-13 * (25.0 + 10.0 * offset), "{} {}", x, y);
+            }
+        }
+        let rgb = |rows: &[[f64; 3]]| rows.iter().map(|r| DVec3::from(*r)).collect::<Vec<_>>();
+        let (e, f) = (estimate(&rgb(&rows)), estimate(&rgb(&shuffled)));
+        prop_assert!((e.mean - f.mean).abs().max_element() < 1e-12 * (5.0 + offset));
+        prop_assert!((e.std_error - f.std_error).abs().max_element() < 1e-10 * (5.0 + offset));
+    }
 }

@@ -149,7 +149,7 @@ fn margin() -> Stroke {
 fn narrowing(page: &Page, curve: &[Glimpse], paths: u64, delta: f64) -> Drawn {
     let x = |g: &Glimpse| (g.batches * paths) as f64;
     let known = || curve.iter().filter(|g| g.image.iter().any(|f| relative(f).is_some()));
-    let last = known().last().map_or(0.0, |g| {
+    let last = known().next_back().map_or(0.0, |g| {
         g.image.iter().filter_map(relative).flat_map(|b| [b[0].abs(), b[2].abs()]).fold(0.0, f64::max)
     });
     let reach = (300.0 * delta).max(1.5 * last);
@@ -174,24 +174,20 @@ fn narrowing(page: &Page, curve: &[Glimpse], paths: u64, delta: f64) -> Drawn {
     let mut entries: Vec<Entry> = ["red", "green", "blue"]
         .iter()
         .zip(COLOURS)
-        .map(|(name, c)| {
-            Entry::new(Sample::Line(Stroke::solid(c, 2.2)), format!("{name}: estimate between its bounds"))
-        })
+        .map(|(name, c)| Entry::new(Sample::Line(Stroke::solid(c, 2.2)), format!("{name}: estimate, bounds")))
         .collect();
     entries.push(Entry::new(Sample::Line(margin()), format!("margin, ±{} %", significant(100.0 * delta, 2))));
-    page.legend((760.0, 80.0), 280.0, &entries)?;
+    page.legend((590.0, 80.0), 250.0, &entries)?;
     Ok(())
 }
 
 fn terms(page: &Page, findings: &[Finding], delta: f64) -> Drawn {
     let bounds: Vec<Option<[f64; 3]>> = findings.iter().map(relative).collect();
     let widest = bounds.iter().flatten().flat_map(|b| [b[0].abs(), b[2].abs()]).fold(0.0, f64::max);
-    let reach = (150.0 * delta).max(1.1 * widest).min(3000.0 * delta);
+    let reach = (150.0 * delta).max(1.1 * widest);
     let mut x = Axis::counts("term", findings.len().saturating_sub(1), findings.len());
     x.ticks = findings.iter().enumerate().map(|(i, f)| (i as f64, short(&f.name))).collect();
-    let width = (26.0 * findings.len() as f64).clamp(120.0, 400.0);
-    // few quantities leave their place to the legend
-    let frame = if findings.len() > 3 { [590.0, 218.0, width.min(440.0), 200.0] } else { [590.0, 218.0, 160.0, 200.0] };
+    let frame = [590.0, 218.0, (60.0 * findings.len() as f64).clamp(160.0, 440.0), 200.0];
     let panel = Panel::draw(page, "Every term at the end", frame, x, axis("% of the value", reach))?;
     margins(&panel, -0.5, findings.len() as f64, delta)?;
     for (i, (f, b)) in findings.iter().zip(&bounds).enumerate() {
@@ -209,7 +205,7 @@ fn terms(page: &Page, findings: &[Finding], delta: f64) -> Drawn {
     if !label.is_empty() {
         entries.push(Entry::new(Sample::Line(Stroke::solid(VERMILION, 2.0)), label));
     }
-    page.legend((590.0, 80.0), 160.0, &entries)?;
+    page.legend((850.0, 80.0), 190.0, &entries)?;
     Ok(())
 }
 

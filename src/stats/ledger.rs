@@ -73,6 +73,18 @@ pub const ENTRIES: &[Entry] = &[
     entry("watching_renders_raises_no_false_alarms", 2, 1e-8),
     entry("a_bias_of_one_percent_is_found_in_renders", 2, 1e-8),
     entry("watching_the_cornell_box_raises_no_false_alarms", 1, 1e-8),
+    // tests/calibration.rs
+    entry("the_fast_suite_passes", 64, 1e-8),
+    entry("p_values_are_uniform_over_fresh_seeds", 64, 1e-8),
+    entry("every_term_that_is_one_percent_off_is_found", 6, 1e-8),
+    entry("half_a_percent_on_any_term_is_found", 6, 1e-8),
+    // tests/equilibrium.rs
+    entry("both_sides_are_the_solution_on_a_matrix", 72, 1e-8),
+    entry("the_equation_holds_and_a_wrong_step_is_found", 9, 1e-8),
+    // tests/absorption.rs
+    entry("absorption_has_the_powers_of_the_matrix", 600, 1e-8),
+    entry("absorption_and_collision_agree_in_any_scene", 300, 1e-8),
+    entry("absorption_in_a_furnace_has_its_variance", 30, 1e-8),
     // tests/matrix_walk.rs
     entry("estimators_match_a_random_substochastic_matrix", 12_000, 2e-8),
     entry("estimators_match_two_plates", 4_000, 1e-8),

@@ -34,6 +34,9 @@ inflates the error rate: the e-value of a mean exceeds 1/α at any time ever wit
 Assumed: the mean of a batch is nearly normal. A batch has --batch samples of every pixel; where fewer
 than 400 events carry a mean nothing is rejected.";
 
+/// Width and height of a batch: means need samples, not pixels.
+const SMALL: u32 = 64;
+
 /// Arguments of `check bias`.
 #[derive(Clone, Debug, Args)]
 pub struct Bias {
@@ -124,13 +127,23 @@ struct Record<'a> {
 /// Watches.
 pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
     let started = Instant::now();
-    let loaded = args.common.load(&args.scene)?;
+    let finished = finished(args)?;
+    // regions are parts of an image of one size
+    let same = Common { size: finished.as_ref().map(|f| f.1).or(args.common.size), ..args.common.clone() };
+    let loaded = same.load(&args.scene, SMALL)?;
     let scene = &loaded.scene;
     let [w, h] = loaded.description.camera.size;
     let spp = args.batch.unwrap_or_else(|| 4096u32.div_ceil(w * h));
     let first = side(args, &args.estimator, args.technique, args.sampling, args.roulette.clone(), spp)?;
-    let against = against(args, spp)?;
-    check_sides(args, &loaded, &first, &against)?;
+    let against = match finished {
+        Some((series, _)) => Against::Finished(series),
+        None => {
+            let technique = args.against_technique.unwrap_or(args.technique);
+            let sampling = args.against_sampling.unwrap_or(args.sampling);
+            Against::Rendered(side(args, &args.against, technique, sampling, args.against_roulette.clone(), spp)?)
+        }
+    };
+    check_sides(&loaded, &first, &against)?;
     let folder = output::folder(
         args.common.out.as_deref(),
         &format!("bias-{}", loaded.description.name),
@@ -152,7 +165,7 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
     let time = args.time.or(args.spp.is_none().then_some(Duration::from_secs(60)));
     // batches are short: one that is begun is finished, so that all are alike
     let (never, stop) = (AtomicBool::new(false), stop_flag());
-    let (mut curve, mut cost) = (vec![], [0u64; 3]);
+    let (mut curve, mut cost, mut found) = (vec![], [0u64; 3], None);
     let mut said = Instant::now();
     for i in 0..most {
         let a = first.batch(scene, "first", i, &never);
@@ -167,7 +180,12 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
             Against::Finished(series) => detector.push(&a, &series.functionals),
         }
         let n = detector.batches();
-        let decided = detector.outcome() != Outcome::Inconclusive;
+        // a bias that has been found is followed for as long again, so that one sees how large it is
+        let decided = match detector.outcome() {
+            Outcome::Inconclusive => false,
+            Outcome::Agrees => true,
+            Outcome::Differs => n >= 2 * *found.get_or_insert(n),
+        };
         let over = stop.load(Ordering::Relaxed) || time.is_some_and(|t| started.elapsed() >= t);
         let last = decided || over || i + 1 == most;
         if last || n as f64 >= 1.04 * curve.last().map_or(0.0, |g: &Glimpse| g.batches as f64) {
@@ -274,20 +292,27 @@ fn side(
     Ok(Side { estimator, settings })
 }
 
-fn against(args: &Bias, spp: u32) -> Result<Against, Failure> {
+/// A result and the size of its image.
+type FinishedRun = (Box<Series>, [u32; 2]);
+
+/// The finished run that the other side is, if it is one, and the size of its image.
+fn finished(args: &Bias) -> Result<Option<FinishedRun>, Failure> {
     let path = PathBuf::from(&args.against);
     let file = if path.is_dir() { path.join("summary.json") } else { path };
     if !file.is_file() {
-        let technique = args.against_technique.unwrap_or(args.technique);
-        let sampling = args.against_sampling.unwrap_or(args.sampling);
-        return side(args, &args.against, technique, sampling, args.against_roulette.clone(), spp)
-            .map(Against::Rendered);
+        return Ok(None);
     }
-    let mut series = summary::read(&file)?.series;
+    let run = summary::read(&file)?;
+    let size = [run.width, run.height].map(|s| s as u32);
+    if args.common.size.is_some_and(|asked| asked != size) {
+        let [w, h] = size;
+        return Err(usage(&format!("the finished run has {w}×{h} pixels"), "leave --size out"));
+    }
+    let mut series = run.series;
     // terms if there are any, for they say more
     series.sort_by_key(|s| [World::Terms, World::Path, World::Radiosity].iter().position(|w| *w == s.world));
     match series.into_iter().next() {
-        Some(series) if series.world != World::Radiosity => Ok(Against::Finished(Box::new(series))),
+        Some(series) if series.world != World::Radiosity => Ok(Some((Box::new(series), size))),
         _ => {
             let help = "a matrix has a discretisation error that no number of batches knows: use `fredholm compare`";
             Err(usage(&format!("{} holds no sampled result", file.display()), help))
@@ -312,16 +337,11 @@ impl Against {
 }
 
 /// Refuses what could only end badly.
-fn check_sides(args: &Bias, loaded: &Loaded, first: &Side, against: &Against) -> Result<(), Failure> {
+fn check_sides(loaded: &Loaded, first: &Side, against: &Against) -> Result<(), Failure> {
     let size = loaded.description.camera.size;
     let rendered = match against {
         Against::Rendered(side) => Some(side),
-        Against::Finished(series) => {
-            if args.common.size.is_none() && series.functionals.is_empty() {
-                return Err(usage("the finished run holds no means", "render it again"));
-            }
-            None
-        }
+        Against::Finished(_) => None,
     };
     for side in [Some(first), rendered].into_iter().flatten() {
         let worlds = [if side.estimator.is_some() { args::WorldName::Terms } else { args::WorldName::Path }];

@@ -14,7 +14,7 @@ use fredholm::scene::bsdf::Sampling;
 use fredholm::stats::{Outcome, estimate};
 use fredholm::terms::TermImage;
 use fredholm::worlds::Settings;
-use fredholm::worlds::equilibrium::{self, Balance, From, Group, Judgement, judge};
+use fredholm::worlds::equilibrium::{self, Balance, EVENTS, Group, Judgement, Origin, judge};
 use serde_json::json;
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -23,7 +23,7 @@ use std::time::Instant;
 pub(super) const EXAMPLES: &str = "Examples:
   fredholm check equilibrium cornell
   fredholm check equilibrium cornell --break 1.02     a step that weighs 2 % too much, and is found
-  fredholm check equilibrium box.toml --points 256 --spp 65536
+  fredholm check equilibrium box.toml --points 256 --spp 262144
 
 L is estimated by the path tracer; E + T L by one step taken by hand and the path tracer from there,
 with numbers of its own. Half of the points are uniform on all surfaces with cosine-distributed
@@ -31,6 +31,9 @@ directions, half are what random pixels see. Tested at level α: every point (Ho
 half, and whether the p-values of all points are uniform.
 
 Blind to an error in T that both sides share: L' = E + 1.02 T L' holds, too.";
+
+/// Pixels of the picture on each side: few, with many samples each, so that the rare hits of a lamp make no pattern of their own.
+const PICTURE: u32 = 32;
 
 /// Arguments of `check equilibrium`.
 #[derive(Clone, Debug, Args)]
@@ -41,8 +44,8 @@ pub struct Equilibrium {
     /// Number of points
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(2..=65536))]
     points: u32,
-    /// Samples of each side at every point; the picture has 1/512 of them in every pixel
-    #[arg(long, value_name = "N", default_value_t = 32_768, value_parser = clap::value_parser!(u32).range(32..=1 << 28))]
+    /// Samples of each side at every point; the picture has 1/32 of them in every pixel
+    #[arg(long, value_name = "N", default_value_t = 131_072, value_parser = clap::value_parser!(u32).range(32..=1 << 28))]
     spp: u32,
     /// How L finds light: scatter, connect, mis, mis-power
     #[arg(long, default_value = "mis", value_parser = args::technique, value_name = "NAME")]
@@ -56,7 +59,7 @@ pub struct Equilibrium {
     /// Chance to reject the equation though it holds
     #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = fraction)]
     alpha: f64,
-    /// δ of the means over points, as a fraction of L
+    /// δ of the means over points, as a fraction of T L
     #[arg(long, value_name = "FRACTION", default_value_t = 0.02, value_parser = fraction)]
     delta: f64,
     /// Breaks the equation on purpose: the step by hand weighs FACTOR times what it should
@@ -80,7 +83,7 @@ struct Found<'a> {
 /// Tests the equation.
 pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
     let started = Instant::now();
-    let loaded = args.common.load(&args.scene)?;
+    let loaded = args.common.load(&args.scene, PICTURE)?;
     let settings = Settings {
         spp: args.spp,
         seed: args.common.seed,
@@ -113,8 +116,8 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
         let settings = Settings { seed, ..settings.clone() };
         equilibrium::at_points(&loaded.scene, &points, &settings, args.factor, &progress, stop)
     };
-    let groups = [("surface", at(From::Surface)), ("camera", at(From::Camera))];
-    let seen = Settings { spp: (args.spp / 512).max(16), ..settings.clone() };
+    let groups = [("surface", at(Origin::Surface)), ("camera", at(Origin::Camera))];
+    let seen = Settings { spp: (args.spp / 32).max(16), ..settings.clone() };
     let images = equilibrium::through_camera(&loaded.scene, &seen, args.factor, &progress, stop);
     progress.finish();
     let parts: Vec<(&str, &[Balance])> = groups.iter().map(|(n, b)| (*n, b.as_slice())).collect();
@@ -151,10 +154,11 @@ fn people(found: &Found, folder: &Path, files: &[String]) -> String {
     }
     let mut lines = vec![];
     for g in &j.groups {
-        let (value, difference) = (g.value.element_sum() / 3.0, g.difference.mean.element_sum() / 3.0);
-        let half = g.half.element_sum() / 3.0;
+        let c = worst(g);
+        let (value, difference, half) = (g.value[c], g.difference.mean[c], g.half[c]);
+        let channel = ["red", "green", "blue"][c];
         lines.push(format!(
-            "mean over {} {} points: L {}, L − (E + TL) {:+.2} ± {:.2} % (δ {} %), p = {}: {}",
+            "mean over {} {} points: T L {} ({channel}), L − (E + T L) {:+.2} ± {:.2} % of it (δ {} %), p = {}: {}",
             g.points,
             g.name,
             significant(value, 4),
@@ -185,6 +189,11 @@ fn people(found: &Found, folder: &Path, files: &[String]) -> String {
     };
     let files = format!("written to {}: {}", folder.display(), files.join(", "));
     paragraphs(&[head, lines.join("\n"), verdict.to_owned(), files])
+}
+
+/// The channel whose difference is bounded worst.
+fn worst(g: &Group) -> usize {
+    ((g.difference.mean.abs() + g.half) / g.value).max_position()
 }
 
 fn record(found: &Found) -> serde_json::Value {
@@ -226,7 +235,7 @@ fn write_all(folder: &Path, found: &Found, started: Instant) -> Result<Vec<Strin
             right: b.right.mean.element_sum() / 3.0,
             std_error: mean.std_error.x,
             replicates: mean.replicates,
-            p: b.p,
+            p: if b.events >= EVENTS { b.p } else { f64::NAN },
             rejected: found.judgement.rejected.contains(&i),
         }
     };
@@ -249,7 +258,7 @@ fn write_all(folder: &Path, found: &Found, started: Instant) -> Result<Vec<Strin
     let text = serde_json::to_string_pretty(&record(found))?;
     fredholm::report::write_atomically(&folder.join("points.json"), text.as_bytes())?;
     let verdict = |g: &Group| {
-        let c = (g.difference.mean.abs() / g.value).max_position();
+        let c = worst(g);
         let (effect, half) = (g.difference.mean[c], g.half[c]);
         summary::Verdict {
             name: format!("L − (E + T L), mean over {} points", g.name),

@@ -43,7 +43,7 @@ struct Common {
     /// Seed: same seed and same number of samples, same bits, for any number of threads
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// Image size in pixels [default: the scene's shape, at most 64 wide or high]
+    /// Image size in pixels [default: the scene's shape, small]
     #[arg(long, value_name = "WxH", value_parser = super::args::size)]
     size: Option<[u32; 2]>,
     /// Override a key of the scene
@@ -79,11 +79,8 @@ struct Loaded {
     hash: String,
 }
 
-/// Width and height of a check: means need samples, not pixels.
-const SMALL: u32 = 64;
-
 impl Common {
-    fn load(&self, name: &str) -> Result<Loaded, Failure> {
+    fn load(&self, name: &str, most: u32) -> Result<Loaded, Failure> {
         if let Some(n) = self.threads {
             rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
         }
@@ -91,19 +88,19 @@ impl Common {
         let loaded = load::scene(name, &options)?;
         loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
         let mut description = loaded.description;
-        description.camera.size = self.size.unwrap_or_else(|| small(description.camera.size));
+        description.camera.size = self.size.unwrap_or_else(|| small(description.camera.size, most));
         let hash = super::solve::scene_hash(&loaded.canonical);
         Ok(Loaded { command: output::canonical_command(), scene: Scene::new(&description), description, hash })
     }
 }
 
-/// The same shape with at most [`SMALL`] pixels on each side.
-fn small([w, h]: [u32; 2]) -> [u32; 2] {
+/// The same shape with at most so many pixels on each side.
+fn small([w, h]: [u32; 2], most: u32) -> [u32; 2] {
     let largest = w.max(h);
-    if largest <= SMALL {
+    if largest <= most {
         return [w, h];
     }
-    [w, h].map(|side| (f64::from(side * SMALL) / f64::from(largest)).round().max(1.0) as u32)
+    [w, h].map(|side| (f64::from(side) * f64::from(most) / f64::from(largest)).round().max(1.0) as u32)
 }
 
 /// A number above 0 and below 1.

@@ -14,7 +14,7 @@ use crate::terms::Estimate;
 use glam::DVec3;
 
 /// Events that a t-test at one point needs.
-const EVENTS: f64 = 400.0;
+pub const EVENTS: f64 = 400.0;
 
 /// The mean over some points.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub struct Group {
     pub name: String,
     /// How many points.
     pub points: usize,
-    /// Mean of L over them.
+    /// Mean of T L = L − E over them: E is exact and the same on both sides.
     pub value: DVec3,
     /// Mean of L − (E + T L).
     pub difference: Estimate,
@@ -54,7 +54,7 @@ pub struct Judgement {
     pub outcome: Outcome,
 }
 
-/// Judges groups of points at level `alpha`; δ is `of_term` of the mean radiance of a group.
+/// Judges groups of points at level `alpha`; δ is `of_term` of the mean of T L over a group.
 pub fn judge(groups: &[(&str, &[Balance])], alpha: f64, of_term: f64) -> Judgement {
     let third = alpha / 3.0;
     let all: Vec<&Balance> = groups.iter().flat_map(|g| g.1).collect();
@@ -94,7 +94,7 @@ fn quiet(p: f64) -> f64 {
 
 fn group(name: &str, balances: &[&Balance], (alpha, third, scalars): (f64, f64, usize), of_term: f64) -> Group {
     let difference = aggregate(balances);
-    let value = balances.iter().map(|b| b.left.mean).sum::<DVec3>() / balances.len() as f64;
+    let value = balances.iter().map(|b| b.left.mean - b.emission).sum::<DVec3>() / balances.len() as f64;
     let delta = of_term * value.abs();
     let measured = [0, 1, 2].map(|c| Measured::of(&difference, c));
     let half =

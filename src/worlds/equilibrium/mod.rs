@@ -16,13 +16,13 @@
 
 mod judge;
 
-pub use judge::{Group, Judgement, judge};
+pub use judge::{EVENTS, Group, Judgement, judge};
 
 use super::{Advance, Observer, Settings};
 use crate::estimator::render::{Amount, render};
 use crate::estimator::{Equilibrium, Plan};
 use crate::math::{Key, Purpose, Rng};
-use crate::operator::{SceneTransport, Sensor};
+use crate::operator::{SceneTransport, Sensor, Transport};
 use crate::scene::{Scene, SurfaceSensor, Vertex};
 use crate::stats::{Measured, estimate, two_sided_p};
 use crate::terms::{Estimate, TermFilm, TermImage};
@@ -46,7 +46,7 @@ impl Sensor<SceneTransport<'_>> for Fixed<'_> {
 
 /// Where the points come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum From {
+pub enum Origin {
     /// Uniform on all surfaces, with cosine-distributed directions.
     Surface,
     /// Seen by random pixels.
@@ -54,7 +54,7 @@ pub enum From {
 }
 
 /// `n` random points; fewer through a camera that sees almost nothing.
-pub fn points(scene: &Scene, from: From, n: u32, seed: u64) -> Vec<Vertex> {
+pub fn points(scene: &Scene, from: Origin, n: u32, seed: u64) -> Vec<Vertex> {
     let key = Key::new(seed, "points of equilibrium");
     let t = SceneTransport::new(scene);
     let [w, h] = scene.camera.size;
@@ -62,8 +62,8 @@ pub fn points(scene: &Scene, from: From, n: u32, seed: u64) -> Vec<Vertex> {
     let one = |i: u32| {
         let mut rng = Rng::at(key, i, from as u32, 0, Purpose::Start);
         match from {
-            From::Surface => Some(sensor.vertex(scene, &mut rng)),
-            From::Camera => {
+            Origin::Surface => Some(sensor.vertex(scene, &mut rng)),
+            Origin::Camera => {
                 let pixel = ((f64::from(rng.one()) * f64::from(w * h)) as u32).min(w * h - 1);
                 scene.camera.start(&t, pixel, &mut rng).filter(|x| x.on_surface())
             }
@@ -77,6 +77,8 @@ pub fn points(scene: &Scene, from: From, n: u32, seed: u64) -> Vec<Vertex> {
 pub struct Balance {
     /// Where.
     pub at: Vertex,
+    /// E, exactly.
+    pub emission: DVec3,
     /// L.
     pub left: Estimate,
     /// E + T L.
@@ -92,7 +94,7 @@ pub struct Balance {
 }
 
 impl Balance {
-    fn of(film: &TermFilm, pixel: usize, at: Vertex) -> Self {
+    fn of(film: &TermFilm, pixel: usize, at: Vertex, emission: DVec3) -> Self {
         let side = |slot: usize| -> Vec<DVec3> {
             (0..film.shape.replicates).map(|r| film.sum(pixel, r, slot) / film.count(pixel, r)).collect()
         };
@@ -108,6 +110,7 @@ impl Balance {
         let mean = estimate(&differences.iter().map(|d| DVec3::splat(d.element_sum() / 3.0)).collect::<Vec<_>>());
         Self {
             at,
+            emission,
             p: p(Measured::of(&mean, 0)),
             channels: [0, 1, 2].map(|c| p(Measured::of(&d, c))),
             events: events(0, &l).min(events(1, &r)),
@@ -137,7 +140,7 @@ pub fn at_points(
     let amount = Amount { spp: settings.spp, replicates: REPLICATES.min(settings.spp as usize), key };
     observer.begin("L and E + T L at points", at.len() as u64 * u64::from(settings.spp));
     let film = render(&t, &Fixed(at), &estimator(settings, factor), amount, &mut Advance(observer), stop);
-    at.iter().enumerate().map(|(i, &x)| Balance::of(&film, i, x)).collect()
+    at.iter().enumerate().map(|(i, &x)| Balance::of(&film, i, x, t.emission(&x).as_dvec3())).collect()
 }
 
 /// Both sides through the camera: images of L and of E + T L.
@@ -149,7 +152,7 @@ pub fn through_camera(
     stop: &AtomicBool,
 ) -> [TermImage; 2] {
     let t = SceneTransport { scene, sampling: settings.sampling };
-    let replicates = settings.spp.clamp(1, 16) as usize;
+    let replicates = REPLICATES.min(settings.spp as usize);
     let amount =
         Amount { spp: settings.spp, replicates, key: settings.key("equilibrium through the camera", replicates) };
     let [w, h] = scene.camera.size;
