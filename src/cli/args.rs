@@ -100,8 +100,9 @@ film as it fills. Written: variance.svg, variance.png, sweep.csv, summary.json.
 the prefixes of one path, at about the same rays: variance × cost, predicted by a pilot and measured.
 Written: split.csv, covariance.csv, covariance.svg, covariance.png, summary.json.
 
-All others. Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged
-over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for the same error.")]
+All others. Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one
+sample, averaged over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for the
+same error.")]
     Sweep(Sweep),
     /// Rebuilds a figure: data, pictures, and the command that makes them
     #[command(after_help = super::figure::EXAMPLES)]
@@ -296,7 +297,7 @@ impl std::fmt::Display for Over {
 /// Arguments of `sweep`.
 #[derive(Clone, Debug, Args)]
 pub struct Sweep {
-    /// branching, spp, technique, sampling, estimator, points, roulette or split
+    /// branching, spp, technique, sampling, estimator, points, roulette, split
     #[arg(long, value_enum, value_name = "SETTING", hide_possible_values = true)]
     pub over: Over,
     /// Its values, with commas
@@ -309,10 +310,10 @@ pub struct Sweep {
     /// Give every value the rays of the dearest, instead of the same spp
     #[arg(long)]
     pub equal_rays: bool,
-    /// With --over spp: squared error against a run's folder, or a render of so many samples
+    /// With --over spp: squared error against a run, or N samples
     ///
-    /// Its own variance is subtracted, so that the squared error is unbiased.
-    /// A render of its own has another stream.
+    /// DIR: the folder of a run with another seed; SPP: a render of so many samples from a stream
+    /// of its own. The variance of the reference is subtracted: the squared error is unbiased.
     #[arg(long, value_name = "DIR|SPP", verbatim_doc_comment)]
     pub reference: Option<String>,
     /// Samples of the pilot of --over split [default: a quarter of --spp]
