@@ -475,6 +475,7 @@ fn help_fits_the_screen_and_says_how_k_counts() {
       radiosity  The matrix alone: form factors, terms, solve
       compare    Two results: verdict per term, z map
       sweep      The terms for every value of one setting: cost beside gain
+      figure     Rebuilds a figure: data, pictures, and the command that makes them
       info       Scenes, materials, lights, bounds on the norm of T
       chapter    Runs a chapter of the book
       help       Print this message or the help of the given subcommand(s)

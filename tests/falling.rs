@@ -83,11 +83,14 @@ fn slopes_of_renders_cover_minus_one() {
     };
     let matrix = misses(1000, &|i| curve(&walk, &Rows(4), &estimator, amount(i), 0..5));
     let mis = Prefix(plan(2, Technique::Mis, &Roulette::Never));
-    let smooth = misses(400, &|i| curve(&t, &cornell.camera, &mis, amount(i), 2..3));
+    let direct = misses(400, &|i| curve(&t, &cornell.camera, &mis, amount(i), 1..2));
+    let indirect = misses(400, &|i| curve(&t, &cornell.camera, &mis, amount(i), 2..3));
     let edges = misses(400, &|i| curve(&t, &cornell.camera, &mis, amount(i), 0..4));
     common::assert_rate(&mut account, "matrix, scatter", matrix, 1000, 0.05);
-    common::assert_rate(&mut account, "Cornell box, T2", smooth, 400, 0.05);
-    // in 36 pixels the edge of the lamp is seen by a few: their fourth moment is all the error there is
+    common::assert_rate(&mut account, "Cornell box, T1", direct, 400, 0.05);
+    // in 36 pixels a few carry all the noise of T2 and of the lamp's edge, with fourth moments that 256 samples hardly know:
+    // the promise is then twice the rate
+    common::assert_rate_at_most(&mut account, "Cornell box, T2", indirect, 400, 0.1);
     common::assert_rate_at_most(&mut account, "Cornell box, all", edges, 400, 0.1);
 }
 

@@ -37,7 +37,7 @@ pub struct Figure {
     /// Make every figure, each in a folder of its own
     #[arg(long, conflicts_with = "list")]
     pub all: bool,
-    /// Output folder [default: fredholm-out/<ID>]; with --all the folder of all folders
+    /// Output folder [default: fredholm-out/<ID>]; with --all, of all
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Seed: same seed, same bits

@@ -23,6 +23,10 @@
 //! its error from the fits without one replicate each, which assume neither:
 //!
 //! `s_b² = (R−1)/R · Σ_i (b_(i) − b̄_(·))²`, with R − 1 degrees of freedom.
+//!
+//! **Limit:** the logarithm of a noisy variance is too small by half its relative variance, more so at small n where tails
+//! are heavy, so that slopes look a little too flat where few pixels carry all noise. In 6 × 6 pixels of the Cornell box the
+//! second term falls by −0.96 in the mean, and 12 % of the 95 % intervals miss −1; more pixels cure it.
 
 use super::line;
 use crate::terms::scatter::jackknife;
@@ -87,8 +91,8 @@ pub fn falling_slope(points: &[(f64, f64)], without: &[Vec<f64>]) -> Option<Slop
         let curve: Vec<_> = points.iter().zip(without).map(|(p, w)| (p.0, w[i])).collect();
         variance_slope(&curve, 2.0 / scatter).map(|s| s.slope)
     };
-    let slopes: Option<Vec<f64>> = (0..replicates).map(leave).collect();
-    Some(Slope { std_error: jackknife(slopes?.into_iter()), ..all })
+    let slopes = (0..replicates).map(leave).collect::<Option<Vec<f64>>>()?;
+    Some(Slope { std_error: jackknife(slopes.into_iter()), ..all })
 }
 
 #[cfg(test)]
