@@ -53,6 +53,59 @@ fn all_solvers_stand_in_one_table_and_one_file() {
     }
 }
 
+/// Extrapolation shows its error and its noise: the plain sum is not amplified, and a known rate helps most at first.
+#[test]
+fn the_series_is_extrapolated_beside_the_solvers() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["radiosity", "cornell", "--patches", "150", "--solver", "neumann", "--json", "-q"];
+    let run = fredholm(folder.path(), &args).assert().success();
+    let json: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    let rows = json["extrapolations"].as_array().unwrap();
+    assert_eq!(rows.iter().map(|r| r["terms"].as_u64().unwrap()).collect::<Vec<_>>(), [3, 5, 7, 9, 13]);
+    for row in rows {
+        let number = |i: usize, key: &str| row["methods"][i][key].as_f64();
+        assert!((number(0, "noise_gain").unwrap() - 1.0).abs() < 1e-12);
+        assert!((1..5).all(|i| number(i, "error").is_none_or(|e| e < number(0, "error").unwrap())), "{row}");
+    }
+    assert!(rows[0]["methods"][2]["error"].is_null(), "two steps need five terms");
+}
+
+/// Values, bounds, ratios and pictures of the modes.
+#[test]
+fn modes_are_named_outside_the_band_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let args =
+        ["radiosity", "cornell", "--patches", "150", "--modes", "10", "--size", "16x16", "--spp", "4", "-o", "out"];
+    let run = fredholm(folder.path(), &args).assert().success();
+    let printed = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+    assert!(printed.lines().all(|l| l.chars().count() <= 110), "{printed}");
+    let out = folder.path().join("out");
+    for file in ["modes.json", "modes.svg", "modes.png", "modes-painted.png", "summary.json"] {
+        assert!(out.join(file).is_file() && printed.contains(file), "{file}");
+    }
+    let again = fredholm(folder.path(), &[&args[..], &["--json", "-t", "1"]].concat()).assert().success();
+    let json: Value = serde_json::from_slice(&again.get_output().stdout).unwrap();
+    for channel in json["channels"].as_array().unwrap() {
+        let band = channel["band"].as_f64().unwrap();
+        let radius = ["at_least", "at_most"].map(|k| channel["spectral_radius"][k].as_f64().unwrap());
+        let modes = channel["modes"].as_array().unwrap();
+        assert_eq!(modes.len(), 10);
+        for m in modes {
+            let value = m["value"].as_f64().unwrap();
+            assert_eq!(m["outside_band"].as_bool().unwrap(), value.abs() > band);
+            assert!(printed.contains(&format!("{value:+.5}")), "{value} in\n{printed}");
+        }
+        let first = modes[0]["value"].as_f64().unwrap();
+        assert!(radius[0] - 1e-7 <= first && first <= radius[1] + 1e-7, "{first} and {radius:?}");
+        let ratios: Vec<f64> =
+            channel["weighted_ratios"].as_array().unwrap().iter().map(|r| r.as_f64().unwrap()).collect();
+        assert!(ratios.windows(2).all(|w| w[1] >= w[0] - 1e-7) && ratios.iter().all(|r| *r <= radius[1] + 1e-7));
+        let norms = ["norm_1", "norm_2", "norm_inf"].map(|k| channel[k].as_f64().unwrap());
+        assert!(norms.iter().all(|n| *n >= radius[0] - 1e-7));
+    }
+    assert!(printed.contains("in the band"));
+}
+
 #[test]
 fn one_solver_and_a_channel_can_be_chosen() {
     let folder = tempfile::tempdir().unwrap();
@@ -82,6 +135,14 @@ fn what_cannot_be_solved_is_refused() {
     assert!(status == Some(2) && text.contains("--solver"), "{text}");
     let (status, text) = code(&["radiosity", "cornell", "--solver", "newton"]);
     assert!(status == Some(2) && text.contains("newton"), "{text}");
+    for name in ["summary.json", "../h.csv", "folder/"] {
+        let (status, text) = code(&["radiosity", "cornell", "--solver", "cg", "--history", name]);
+        assert!(status == Some(2) && text.contains("not the name of a file"), "{text}");
+    }
+    let (status, text) = code(&["radiosity", "cornell", "--channel", "red"]);
+    assert!(status == Some(2) && text.contains("--modes"), "{text}");
+    let (status, text) = code(&["radiosity", "cornell", "--solver", "cg", "--modes", "4"]);
+    assert!(status == Some(2) && text.contains("cannot be used with"), "{text}");
     let (status, text) = code(&["radiosity", "veach-mis", "--solver", "all"]);
     assert!(status == Some(2) && text.contains("no radiosity matrix can hold this scene"), "{text}");
     let white =

@@ -171,7 +171,7 @@ impl<'a> Expression<'a> {
         if x.len() != self.area.len() {
             return Err(AlgebraError::Sizes { left: self.area.len(), right: x.len() });
         }
-        Ok(self.node.image(&self.area, x, false))
+        Ok(self.node.image(x, false))
     }
 
     fn boxed(&self) -> Box<Node<'a>> {
@@ -205,7 +205,7 @@ fn same_space(left: &[f64], right: &[f64]) -> Result<(), AlgebraError> {
 
 impl Node<'_> {
     /// T x, or T* x if `adjoint`.
-    fn image(&self, area: &[f64], x: &[f64], adjoint: bool) -> Vec<f64> {
+    fn image(&self, x: &[f64], adjoint: bool) -> Vec<f64> {
         match self {
             Node::Leaf(t) => {
                 let mut y = vec![0.0; x.len()];
@@ -219,18 +219,18 @@ impl Node<'_> {
             Node::Identity => x.to_vec(),
             Node::Diagonal(d) => x.iter().zip(d).map(|(x, d)| d * x).collect(),
             Node::Sum(s, t) => {
-                let mut y = s.image(area, x, adjoint);
-                y.iter_mut().zip(t.image(area, x, adjoint)).for_each(|(y, t)| *y += t);
+                let mut y = s.image(x, adjoint);
+                y.iter_mut().zip(t.image(x, adjoint)).for_each(|(y, t)| *y += t);
                 y
             }
-            Node::Scaled(c, t) => t.image(area, x, adjoint).into_iter().map(|y| c * y).collect(),
+            Node::Scaled(c, t) => t.image(x, adjoint).into_iter().map(|y| c * y).collect(),
             Node::Product(s, t) => {
                 let (first, second) = if adjoint { (s, t) } else { (t, s) };
-                second.image(area, &first.image(area, x, adjoint), adjoint)
+                second.image(&first.image(x, adjoint), adjoint)
             }
-            Node::Power(t, k) => (0..*k).fold(x.to_vec(), |x, _| t.image(area, &x, adjoint)),
-            Node::Resolvent(t) => neumann(|x| t.image(area, x, adjoint), x),
-            Node::Adjoint(t) => t.image(area, x, !adjoint),
+            Node::Power(t, k) => (0..*k).fold(x.to_vec(), |x, _| t.image(&x, adjoint)),
+            Node::Resolvent(t) => neumann(|x| t.image(x, adjoint), x),
+            Node::Adjoint(t) => t.image(x, !adjoint),
         }
     }
 }
@@ -246,7 +246,7 @@ fn neumann(apply: impl Fn(&[f64]) -> Vec<f64>, x: &[f64]) -> Vec<f64> {
         if t <= NEGLIGIBLE * s {
             return sum;
         }
-        if !(s < f64::MAX) {
+        if !s.is_finite() {
             break;
         }
     }
@@ -259,10 +259,10 @@ impl LinearOperator for Expression<'_> {
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64]) {
-        y.copy_from_slice(&self.node.image(&self.area, x, false));
+        y.copy_from_slice(&self.node.image(x, false));
     }
 
     fn apply_adjoint(&self, x: &[f64], y: &mut [f64]) {
-        y.copy_from_slice(&self.node.image(&self.area, x, true));
+        y.copy_from_slice(&self.node.image(x, true));
     }
 }

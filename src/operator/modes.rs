@@ -74,9 +74,12 @@ impl Modes {
     }
 }
 
-/// Eigenvalues of a symmetric matrix, and entry a of eigenvector j.
+/// Eigenvalues, and entry a of eigenvector j.
+type Eigen = (Vec<f64>, Box<dyn Fn(usize, usize) -> f64>);
+
+/// Of a symmetric matrix.
 #[cfg(feature = "faer")]
-fn symmetric_eigen(n: usize, entry: impl Fn(usize, usize) -> f64) -> (Vec<f64>, Box<dyn Fn(usize, usize) -> f64>) {
+fn symmetric_eigen(n: usize, entry: impl Fn(usize, usize) -> f64) -> Eigen {
     use faer::{Mat, Side};
     let matrix = Mat::from_fn(n, n, &entry);
     match matrix.self_adjoint_eigen(Side::Lower) {
@@ -89,11 +92,11 @@ fn symmetric_eigen(n: usize, entry: impl Fn(usize, usize) -> f64) -> (Vec<f64>, 
 }
 
 #[cfg(not(feature = "faer"))]
-fn symmetric_eigen(n: usize, entry: impl Fn(usize, usize) -> f64) -> (Vec<f64>, Box<dyn Fn(usize, usize) -> f64>) {
+fn symmetric_eigen(n: usize, entry: impl Fn(usize, usize) -> f64) -> Eigen {
     by_nalgebra(n, entry)
 }
 
-fn by_nalgebra(n: usize, entry: impl Fn(usize, usize) -> f64) -> (Vec<f64>, Box<dyn Fn(usize, usize) -> f64>) {
+fn by_nalgebra(n: usize, entry: impl Fn(usize, usize) -> f64) -> Eigen {
     let eigen = nalgebra::SymmetricEigen::new(nalgebra::DMatrix::from_fn(n, n, entry));
     (eigen.eigenvalues.iter().copied().collect(), Box::new(move |a, j| eigen.eigenvectors[(a, j)]))
 }

@@ -1,4 +1,5 @@
-//! Solvers side by side: a table, every step as CSV and JSON, and the error against the work.
+//! Solvers side by side: a table, every step as CSV and JSON, the error against the work, and what extrapolation makes of the
+//! first terms of the series.
 //!
 //! | column | meaning |
 //! |---|---|
@@ -16,7 +17,9 @@ use super::{
     table::{Side, aligned, significant},
     typeset::Caption,
 };
+use crate::solver::accelerate::{self, Accelerated, METHODS};
 use crate::solver::study::{History, Solver};
+use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
 
 /// Errors at which work and time are compared.
@@ -45,6 +48,50 @@ pub fn table(histories: &[History]) -> String {
     }
     let sides: Vec<Side> = (0..9).map(|i| if i == 0 { Side::Left } else { Side::Right }).collect();
     aligned(&rows, &sides)
+}
+
+/// What extrapolation makes of the first terms of a series.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extrapolated {
+    /// Terms used, k = 0 among them.
+    pub terms: usize,
+    /// Relative error and noise gain of every method of [`METHODS`]; none where it has nothing to work with.
+    pub methods: [Option<[f64; 2]>; 5],
+}
+
+impl Extrapolated {
+    /// From the first terms of a series with a known limit and spectral radius.
+    ///
+    /// The gain is √(Var(A)/Var(S_n)) for independent terms of equal relative error.
+    pub fn new(terms: &[f64], limit: f64, radius: f64) -> Self {
+        let noise = DMatrix::from_diagonal(&DVector::from_iterator(terms.len(), terms.iter().map(|t| t * t)));
+        let judge = |a: Accelerated| [(a.value / limit - 1.0).abs(), a.amplification(&noise)];
+        Self { terms: terms.len(), methods: accelerate::all(terms, radius).map(|a| a.map(judge)) }
+    }
+}
+
+/// A row per number of terms: the error of each method, and how much it amplifies noise.
+pub fn extrapolations(rows: &[Extrapolated]) -> String {
+    let mut header = vec!["terms".to_string()];
+    header.extend(METHODS.map(String::from));
+    let mut out = vec![header];
+    for r in rows {
+        let cell = |m: &Option<[f64; 2]>| m.map_or("–".into(), |[e, g]| format!("{e:.1e} ×{}", significant(g, 2)));
+        out.push(std::iter::once(r.terms.to_string()).chain(r.methods.iter().map(cell)).collect());
+    }
+    aligned(&out, &[Side::Right; 6])
+}
+
+/// The numbers of [`extrapolations`] for programs.
+pub fn machine_extrapolations(rows: &[Extrapolated]) -> Value {
+    let row = |r: &Extrapolated| {
+        let methods = METHODS.iter().zip(&r.methods).map(|(name, m)| {
+            let [error, gain] = [m.map(|m| m[0]), m.map(|m| m[1])];
+            json!({ "method": name, "error": error, "noise_gain": gain })
+        });
+        json!({ "terms": r.terms, "methods": methods.collect::<Vec<_>>() })
+    };
+    Value::Array(rows.iter().map(row).collect())
 }
 
 /// Whole numbers as they are, parts of a product with one decimal.

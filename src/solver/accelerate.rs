@@ -56,6 +56,14 @@ impl Accelerated {
     }
 }
 
+/// The names of what [`all`] returns.
+pub const METHODS: [&str; 5] = ["S_n", "Aitken", "two-step", "known rate", "Wynn"];
+
+/// The plain sum and every extrapolation of it; r is the rate that is held to be known.
+pub fn all(terms: &[f64], r: f64) -> [Option<Accelerated>; 5] {
+    [Some(plain(terms)), aitken(terms), two_step(terms), known_rate(terms, r), wynn(terms)]
+}
+
 /// Σ t_k, for comparison.
 pub fn plain(terms: &[f64]) -> Accelerated {
     Accelerated { value: terms.iter().sum(), gradient: vec![1.0; terms.len()] }

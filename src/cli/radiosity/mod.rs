@@ -32,8 +32,8 @@ pub struct Radiosity {
     /// Channel of --solver and of the pictures of --modes [default: that of the largest spectral radius]
     #[arg(long, value_enum, value_name = "NAME")]
     pub channel: Option<Channel>,
-    /// File for every step of every solver, as CSV, in the output folder
-    #[arg(long, value_name = "FILE", requires = "solver")]
+    /// File for every step of every solver, in the output folder: steps.csv
+    #[arg(long, value_name = "NAME.csv", requires = "solver", value_parser = csv_name)]
     pub history: Option<String>,
     /// Show the spectrum of T and its N leading modes instead of L
     #[arg(long, value_name = "N", conflicts_with = "solver", value_parser = clap::value_parser!(u16).range(1..=64))]
@@ -99,6 +99,11 @@ pub enum Channel {
 }
 
 const NAMES: [&str; 3] = ["red", "green", "blue"];
+
+fn csv_name(s: &str) -> Result<String, String> {
+    let plain = std::path::Path::new(s).file_name().is_some_and(|n| n == s) && s.ends_with(".csv");
+    if plain { Ok(s.into()) } else { Err(format!("`{s}` is not the name of a file such as history.csv")) }
+}
 
 /// Shows the matrix, solves it in every way, or takes it apart.
 pub fn run(args: &Radiosity) -> Result<Ending, Failure> {

@@ -4,7 +4,9 @@ use super::super::progress::{Progress, stop_flag};
 use super::super::{Ending, Failure, paragraphs, say, solve::scene_hash};
 use super::{Laboratory, NAMES, Radiosity, SolverName};
 use fredholm::operator::matrix::{LinearOperator, Rows};
-use fredholm::report::{solvers, write_atomically};
+use fredholm::report::solvers::{self, Extrapolated};
+use fredholm::report::write_atomically;
+use fredholm::solver::Neumann;
 use fredholm::solver::study::{History, Limits, System};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::Observer;
@@ -39,7 +41,9 @@ pub fn run(args: &Radiosity, name: SolverName) -> Result<Ending, Failure> {
     progress.finish();
     let files = write(args, &lab, &histories, channel)?;
     let [low, high] = [system.ends.smallest, system.ends.largest];
-    let record = record(args, &lab, channel, [low, high], solvers::machine(&histories));
+    let series = extrapolations(&system);
+    let mut record = record(args, &lab, channel, [low, high], solvers::machine(&histories));
+    record["extrapolations"] = solvers::machine_extrapolations(&series);
     write_atomically(&lab.folder.join("solvers.json"), serde_json::to_string_pretty(&record)?.as_bytes())?;
     if args.run.json {
         say(&serde_json::to_string_pretty(&record)?)?;
@@ -58,10 +62,24 @@ pub fn run(args: &Radiosity, name: SolverName) -> Result<Ending, Failure> {
             head += "\nno patch sees itself, so Jacobi is the Neumann series here";
         }
         let table = solvers::table(&histories);
+        let extrapolated = format!(
+            "the series itself, Σ Aᵢ xᵢ/A of the first terms: error ×noise, where the terms had independent errors\n{}",
+            solvers::extrapolations(&series)
+        );
         let written = format!("written to {}: {}", lab.folder.display(), files.join(", "));
-        say(&paragraphs(&[head, table, written]))?;
+        say(&paragraphs(&[head, table, extrapolated, written]))?;
     }
     Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })
+}
+
+/// What extrapolation makes of the first terms: their means over all patches.
+fn extrapolations(system: &System<'_>) -> Vec<Extrapolated> {
+    const TERMS: [usize; 5] = [3, 5, 7, 9, 13];
+    let t = system.operator;
+    let ones = vec![1.0; t.len()];
+    let mean = |x: &[f64]| t.inner(&ones, x) / t.inner(&ones, &ones);
+    let terms: Vec<f64> = Neumann::new(t, system.emission.clone()).take(TERMS[4]).map(|x| mean(&x)).collect();
+    TERMS.map(|n| Extrapolated::new(&terms[..n], mean(&system.light), system.ends.largest)).into()
 }
 
 fn record(args: &Radiosity, lab: &Laboratory, channel: usize, ends: [f64; 2], solvers: Value) -> Value {
