@@ -10,6 +10,7 @@
 
 pub mod adjoint;
 pub mod form_factor;
+pub mod guided;
 pub mod matrix;
 pub mod matrix_walk;
 pub mod patches;
@@ -18,6 +19,7 @@ pub mod scene_transport;
 pub mod transport;
 
 pub use adjoint::{Adjoint, Role};
+pub use guided::{Guide, GuidedTransport};
 pub use matrix_walk::MatrixWalk;
 pub use scene_transport::SceneTransport;
 pub use transport::{Samples, Seen, Sensor, Step, Transport, Wave};
