@@ -4,7 +4,9 @@ use super::solve::Found;
 use fredholm::report::summary;
 use fredholm::stats::{self, Comparison, TermMeans, observed_rate};
 use fredholm::terms::Series;
+use fredholm::operator::guided::warp::CELLS;
 use fredholm::worlds::discrete::Discrete;
+use fredholm::worlds::guided::Prepared;
 use fredholm::worlds::sampled::Estimator;
 
 /// One line: the outcome, and what would decide.
@@ -58,6 +60,18 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
         out += "\nT¹ through the camera reads E itself: it tests no matrix";
     }
     out
+}
+
+/// What is printed about a guide.
+pub fn guide(g: &Prepared) -> String {
+    let r = g.recipe;
+    format!(
+        "guide: radiosity of {} patches, {} rays each, in {:.2} s; {:.0} % of the directions by the cosine",
+        g.guide.len(),
+        r.fineness.rays * CELLS * CELLS,
+        g.time.as_secs_f64(),
+        100.0 * r.bsdf
+    )
 }
 
 /// What is printed about the decay.

@@ -5,11 +5,13 @@
 //! |---|---|---|
 //! | terms | every `T^k E` by its own estimator | [`sampled::terms`] |
 //! | path | Σ T^k E by the full path tracer | [`sampled::path`] |
+//! | guided | both, with the matrix as a guide | [`guided`] |
 //! | radiosity | `T_h^k E` and the solve, through the same camera | [`discrete::radiosity`] |
 //! | strategies | every way to find every term from both ends | [`pyramid::strategies`] |
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 
 pub mod discrete;
+pub mod guided;
 pub mod pyramid;
 pub mod sampled;
 pub mod surface;
@@ -20,12 +22,15 @@ use crate::estimator::{Plan, Roulette, Technique};
 use crate::math::{Key, Points};
 use crate::scene::bsdf::Sampling;
 use crate::terms::TermFilm;
+use std::time::Duration;
 
 /// What a run is made with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Samples per pixel.
     pub spp: u32,
+    /// How long a sampled world may take: passes are added while the next one is expected to end in time, and `spp` is a limit.
+    pub time: Option<Duration>,
     /// Seed of all random numbers.
     pub seed: u64,
     /// How the samples of a pixel lie to each other.
@@ -52,6 +57,7 @@ impl Default for Settings {
         let (max_bounces, end) = (8, Roulette::Albedo { from: 2 });
         Self {
             spp: 256,
+            time: None,
             seed: 0,
             points: Points::Independent,
             max_bounces,

@@ -15,6 +15,7 @@
 //! | u | reflected radiance | [`Incident::radiance`] |
 //! | W_ic | what cell c brings to patch i | [`Incident::weights`] |
 
+use super::warp::CELLS;
 use crate::math::direction::cosine_hemisphere;
 use crate::math::{Key, Purpose, Rgb, Rng};
 use crate::operator::patches::{Patch, Patches, polygon};
@@ -33,8 +34,6 @@ const STEPS: usize = 64;
 /// How fine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fineness {
-    /// M: cells along each axis of the square.
-    pub cells: usize,
     /// Rays in each cell.
     pub rays: usize,
     /// Connections for the direct light.
@@ -61,8 +60,8 @@ impl Incident {
         advance: &(dyn Fn() + Sync),
         stop: &AtomicBool,
     ) -> Option<Self> {
-        let Fineness { cells, rays, .. } = fineness;
-        let per_patch = cells * cells * rays;
+        let Fineness { rays, .. } = fineness;
+        let per_patch = CELLS * CELLS * rays;
         let mut hits = vec![NOTHING; patches.len() * per_patch];
         let row = |(i, row): (usize, &mut [u32])| {
             if stop.load(Ordering::Relaxed) {
@@ -73,8 +72,8 @@ impl Incident {
                 let u = Rng::at(key, i as u32, ray as u32, 0, Purpose::Scatter).four();
                 let at = vertex(&patches[i], [u[2], u[3]]);
                 let cell = ray / rays;
-                let place = |cell: usize, u: f32| (cell as f32 + u).min(((cell + 1) as f32).next_down()) / cells as f32;
-                let (direction, _) = cosine_hemisphere(at.n, [place(cell % cells, u[0]), place(cell / cells, u[1])]);
+                let place = |cell: usize, u: f32| (cell as f32 + u).min(((cell + 1) as f32).next_down()) / CELLS as f32;
+                let (direction, _) = cosine_hemisphere(at.n, [place(cell % CELLS, u[0]), place(cell / CELLS, u[1])]);
                 let seen = scene.scene.trace(scene.scene.lift(at.p, at.n), direction);
                 let patch = seen.and_then(|v| locate(patches, &v));
                 *hit = patch.map_or(NOTHING, |j| j as u32);

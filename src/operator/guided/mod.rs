@@ -22,6 +22,7 @@
 //! Guiding* (2017): there the guide is learned from paths, here it is a matrix.
 
 pub mod incident;
+mod places;
 mod stand_in;
 pub mod warp;
 
@@ -33,6 +34,7 @@ use crate::scene::bsdf::{Bsdf, Sampling, diffuse, diffuse::Diffuse};
 use crate::scene::{Camera, Scene, SceneError, Vertex, VertexWave, connection, numbers};
 use glam::Vec3;
 use incident::{Fineness, Incident};
+use places::{Found, Places};
 use std::sync::atomic::AtomicBool;
 pub use stand_in::stand_in;
 use warp::Warp;
@@ -52,8 +54,8 @@ pub struct Recipe {
 
 impl Default for Recipe {
     fn default() -> Self {
-        let fineness = Fineness { cells: 16, rays: 4, connections: 64 };
-        Self { patches: 1000, fineness, bsdf: 0.25, emission: false }
+        let fineness = Fineness { rays: 8, connections: 64 };
+        Self { patches: 1000, fineness, bsdf: 0.1, emission: false }
     }
 }
 
@@ -61,6 +63,7 @@ impl Default for Recipe {
 pub struct Guide {
     patches: Patches,
     warps: Vec<Option<Warp>>,
+    places: Places,
 }
 
 impl Guide {
@@ -89,8 +92,8 @@ impl Guide {
         if recipe.emission {
             light.iter_mut().zip(patches.iter()).for_each(|(u, p)| *u += p.emission.as_vec3());
         }
-        let warp = |i| Warp::new(recipe.fineness.cells, &incident.weights(i, &light), recipe.bsdf);
-        Ok(Some(Self { warps: (0..patches.len()).map(warp).collect(), patches }))
+        let warp = |i| Warp::new(&incident.weights(i, &light), recipe.bsdf);
+        Ok(Some(Self { warps: (0..patches.len()).map(warp).collect(), places: Places::new(&patches), patches }))
     }
 
     /// How many patches.
@@ -109,7 +112,12 @@ impl Guide {
         if !x.on_surface() {
             return None;
         }
-        self.warps[incident::locate(&self.patches, x)?].as_ref()
+        let patch = match self.places.find(x) {
+            Found::At(patch) => patch as usize,
+            Found::Nowhere => return None,
+            Found::Curved => incident::locate(&self.patches, x)?,
+        };
+        self.warps[patch].as_ref()
     }
 }
 
