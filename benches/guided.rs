@@ -32,17 +32,38 @@ struct Run {
     seconds: f64,
 }
 
-fn run<T: Transport>(t: &T, camera: &Camera, what: &str, spp: u32, seed: u64) -> Run
+/// Whether a transport knows what to expect.
+trait Expects {
+    fn expects(&self) -> bool;
+}
+
+impl Expects for SceneTransport<'_> {
+    fn expects(&self) -> bool {
+        false
+    }
+}
+
+impl Expects for GuidedTransport<'_> {
+    fn expects(&self) -> bool {
+        true
+    }
+}
+
+fn run<T: Transport + Expects>(t: &T, camera: &Camera, what: &str, spp: u32, seed: u64) -> Run
 where
     Camera: Sensor<T>,
 {
     let (stop, start) = (AtomicBool::new(false), worked());
     let plan = |roulette| Plan { max_bounces: 8, technique: Technique::Mis, roulette };
     let amount = Amount::new(spp, Key::new(seed, what));
-    let film = if what == "path" {
-        render(t, camera, &PathTracer(plan(Roulette::Albedo { from: 2 })), amount, &mut Unwatched, &stop)
-    } else {
-        render(t, camera, &Prefix(plan(Roulette::Albedo { from: 8 })), amount, &mut Unwatched, &stop)
+    let film = match what {
+        "path" => render(t, camera, &PathTracer(plan(Roulette::Albedo { from: 2 })), amount, &mut Unwatched, &stop),
+        // without a guide nobody knows what to expect, and this is roulette by albedo from vertex 2 on
+        "contribution" => {
+            let roulette = if t.expects() { Roulette::Contribution { from: 1 } } else { Roulette::Albedo { from: 2 } };
+            render(t, camera, &PathTracer(plan(roulette)), amount, &mut Unwatched, &stop)
+        }
+        _ => render(t, camera, &Prefix(plan(Roulette::Albedo { from: 8 })), amount, &mut Unwatched, &stop),
     };
     Run { film, seconds: worked() - start }
 }
@@ -93,12 +114,12 @@ fn main() {
         let [a, b] = halves.each_ref().map(|h| image(&h.film));
         let reference: Vec<DVec3> = a.iter().zip(&b).map(|(a, b)| 0.5 * (*a + *b)).collect();
         println!("{name}: {} patches prepared in {prepared:.2} s, {spp} spp", guide.len());
-        for what in ["prefix", "path"] {
+        for what in ["prefix", "path", "contribution"] {
             let [p, g] = [run(&plain, camera, what, spp, 1), run(&guided, camera, what, spp, 2)];
             let [ep, eg] = [&p, &g].map(|r| rel_mse(&r.film, &reference));
             let paths = p.film.shape.pixels() as f64 * f64::from(spp);
             println!(
-                "  {what:7} unguided {:5.0} ns, relMSE {ep:.3e}; guided {:5.0} ns, relMSE {eg:.3e}; equal samples {:.2}, equal time {:.2} (median pixel {:.2})",
+                "  {what:12} unguided {:5.0} ns, relMSE {ep:.3e}; guided {:5.0} ns, relMSE {eg:.3e}; equal samples {:.2}, equal time {:.2} (median pixel {:.2})",
                 1e9 * p.seconds / paths,
                 1e9 * g.seconds / paths,
                 ep / eg,

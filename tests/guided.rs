@@ -19,7 +19,7 @@ use fredholm::math::direction::Frame;
 use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::guided::{Guide, GuidedTransport, Recipe};
 use fredholm::operator::{SceneTransport, Sensor, Step, Transport};
-use fredholm::scene::description::Description;
+use fredholm::scene::description::{BsdfDescription, Colour, Description};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Camera, Scene, SurfaceSensor, Vertex, VertexWave};
 use fredholm::terms::functional::image_replicates;
@@ -46,12 +46,26 @@ fn lamps() -> Description {
     ])
 }
 
+/// The same with a glossy ball, which the guide takes for Lambertian.
+fn glossy() -> Description {
+    let mut d = lamps();
+    d.name = "glossy".into();
+    let rho = DVec3::new(0.1, 0.2, 0.4);
+    d.materials[1].bsdf =
+        BsdfDescription::Phong { reflectance: Colour::Uniform(rho), specular: DVec3::splat(0.5), exponent: 8.0 };
+    d
+}
+
 fn guide(description: &Description, recipe: Recipe) -> Guide {
     Guide::new(description, recipe, Key::new(1, "guide"), |_| (), &|| (), &AtomicBool::new(false)).unwrap().unwrap()
 }
 
-const COARSE: Recipe =
-    Recipe { patches: 300, fineness: fredholm::operator::guided::incident::Fineness { rays: 4, connections: 16 }, bsdf: 0.1, emission: false };
+const COARSE: Recipe = Recipe {
+    patches: 300,
+    fineness: fredholm::operator::guided::incident::Fineness { rays: 4, connections: 16 },
+    bsdf: 0.1,
+    emission: false,
+};
 
 fn guided<'a>(scene: &'a Scene, guide: &'a Guide) -> GuidedTransport<'a> {
     GuidedTransport { scene: SceneTransport::new(scene), guide }
@@ -115,7 +129,9 @@ fn guided_directions_have_the_density_they_claim() {
             let (d, rho) = (-s.state.omega, t.albedo(x));
             let p = density(d);
             strongest = strongest.max(warp.ratio(x.n, d));
-            assert!((s.weight * s.pdf * std::f32::consts::PI / d.dot(x.n) / rho - Vec3::ONE).abs().max_element() < 1e-3);
+            assert!(
+                (s.weight * s.pdf * std::f32::consts::PI / d.dot(x.n) / rho - Vec3::ONE).abs().max_element() < 1e-3
+            );
             off += usize::from((p / s.pdf - 1.0).abs() > 1e-3);
         }
         assert!(off <= 4, "{x:?}: {off} of 4096 steps have another density");
@@ -186,8 +202,9 @@ fn guided_terms_and_tail_sum_to_the_guided_path_tracer() {
     for d in [built_in("cornell", [12, 12]), built_in("cornell-spheres", [12, 12])] {
         let (scene, guide) = (Scene::new(&d), guide(&d, COARSE));
         let t = guided(&scene, &guide);
-        for technique in TECHNIQUES {
-            let (plan, key) = (plan(3, technique, &Roulette::Albedo { from: 1 }), Key::new(5, "sums"));
+        let roulettes = [Roulette::Albedo { from: 1 }, Roulette::Contribution { from: 1 }];
+        for (technique, roulette) in TECHNIQUES.into_iter().flat_map(|t| roulettes.each_ref().map(|r| (t, r))) {
+            let (plan, key) = (plan(3, technique, roulette), Key::new(5, "sums"));
             let terms = collect(&t, &scene.camera, &Prefix(plan.clone()), 16, 16, key);
             let paths = collect(&t, &scene.camera, &PathTracer(plan.clone()), 16, 16, key);
             let mut tails = 0.0;
@@ -219,15 +236,17 @@ where
 #[test]
 fn guided_terms_agree_with_the_others() {
     let mut jury = Jury::open("guided_terms_agree_with_the_others");
-    for (d, spp) in [(built_in("cornell", [16, 16]), 4096), (lamps(), 2048), (built_in("cornell-spheres", [12, 12]), 2048)] {
+    let (long, contribution) = (Roulette::Albedo { from: 4 }, Roulette::Contribution { from: 1 });
+    let ways = [(Kind::Prefix, &long), (Kind::Single, &long), (Kind::Prefix, &contribution)];
+    for (d, spp) in [(built_in("cornell", [16, 16]), 4096), (lamps(), 2048), (glossy(), 4096)] {
         let (scene, guide) = (Scene::new(&d), guide(&d, COARSE));
-        let plan = plan(4, Technique::Mis, &Roulette::Albedo { from: 4 });
+        let of = |roulette: &Roulette| plan(4, Technique::Mis, roulette);
         let key = Key::new(jury.seed(), "agree");
         let plain = SceneTransport::new(&scene);
-        let plain = means(&plain, &scene.camera, Kind::Prefix, &plan, spp, key.branch(0));
-        for (i, kind) in [Kind::Prefix, Kind::Single].into_iter().enumerate() {
+        let plain = means(&plain, &scene.camera, Kind::Prefix, &of(&long), spp, key.branch(0));
+        for (i, (kind, roulette)) in ways.into_iter().enumerate() {
             let t = guided(&scene, &guide);
-            let guided = means(&t, &scene.camera, kind, &plan, spp, key.branch(1 + i as u32));
+            let guided = means(&t, &scene.camera, kind, &of(roulette), spp, key.branch(1 + i as u32));
             let whole = plain[plain.len() - 1].mean;
             for (s, (a, b)) in guided.iter().zip(&plain).enumerate() {
                 let difference = Estimate {
@@ -237,7 +256,7 @@ fn guided_terms_agree_with_the_others() {
                 };
                 let delta = 0.01 * b.mean + 1e-4 * whole;
                 let visible = delta.max(0.5 * b.mean);
-                let what = format!("{}, {kind:?}, slot {s}", d.name);
+                let what = format!("{}, {kind:?}, {roulette}, slot {s}", d.name);
                 let judged = jury.judge(&what, &difference, DVec3::ZERO, delta, visible);
                 assert_ne!(judged, Judged::TooNoisy, "{what}: {difference:?} of {}", b.mean);
             }
@@ -256,7 +275,8 @@ fn guided_walks_have_the_terms_of_a_furnace() {
     let mut liar = d.clone();
     liar.shapes.iter_mut().for_each(|s| s.emission = DVec3::ZERO);
     let low = quad(DVec3::splat(0.2), DVec3::new(0.0, 0.0, 0.4), DVec3::new(0.4, 0.0, 0.0));
-    let lamp = fredholm::scene::description::Shape { name: "lamp".into(), geometry: low, material: 0, emission: DVec3::ONE };
+    let lamp =
+        fredholm::scene::description::Shape { name: "lamp".into(), geometry: low, material: 0, emission: DVec3::ONE };
     liar.shapes.push(lamp);
     let guide = guide(&liar, COARSE);
     let emission = d.shapes[0].emission;
@@ -317,9 +337,9 @@ fn a_guide_that_nobody_accounts_for_is_found() {
     let (scene, guide) = (Scene::new(&d), guide(&d, Recipe { emission: true, ..COARSE }));
     let (t, plan) = (guided(&scene, &guide), plan(1, Technique::Mis, &Roulette::Never));
     let key = Key::new(account.seed(), "found");
-    let plain = means(&SceneTransport::new(&scene), &scene.camera, Kind::Prefix, &plan, 4096, key.branch(0));
-    let right = means(&t, &scene.camera, Kind::Prefix, &plan, 4096, key.branch(1));
-    let wrong = film(&Forgetful(t), &Eye(&scene.camera), Kind::Prefix, &plan, 4096, key.branch(2));
+    let plain = means(&SceneTransport::new(&scene), &scene.camera, Kind::Prefix, &plan, 1 << 14, key.branch(0));
+    let right = means(&t, &scene.camera, Kind::Prefix, &plan, 1 << 14, key.branch(1));
+    let wrong = film(&Forgetful(t), &Eye(&scene.camera), Kind::Prefix, &plan, 1 << 14, key.branch(2));
     let wrong = image_replicates(&wrong).estimate(1..2);
     let less = |a: &Estimate, b: &Estimate| Estimate {
         mean: a.mean - b.mean,
@@ -328,4 +348,49 @@ fn a_guide_that_nobody_accounts_for_is_found() {
     };
     account.assert_equivalent("direct light", &less(&right[1], &plain[1]), DVec3::ZERO, 0.01 * plain[1].mean);
     account.assert_differs("direct light, weights that do not add up", &less(&wrong, &plain[1]), DVec3::ZERO);
+}
+
+/// A folder of its own, and what the program says there.
+fn fredholm(desk: &tempfile::TempDir, line: &str) -> (i32, String) {
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
+    let output = command.args(line.split_whitespace()).current_dir(desk.path()).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout) + &text(output.stderr))
+}
+
+/// `--time` decides how many samples there are and nothing else; so does a guide know only the seed.
+#[test]
+fn a_render_by_the_clock_is_one_of_so_many_samples() {
+    let desk = tempfile::TempDir::new().unwrap();
+    let read = |dir: &str| fredholm::report::summary::read(&desk.path().join(dir).join("summary.json")).unwrap();
+    for guide in ["bsdf", "radiosity --patches 200"] {
+        let line = format!("series cornell --worlds terms --size 8x8 --max-bounces 2 -q --force --guide {guide}");
+        let (code, text) = fredholm(&desk, &format!("{line} --time 1500ms -o clock"));
+        assert_eq!(code, 0, "{text}");
+        let clock = read("clock");
+        assert!(clock.spp >= 16 && clock.spp.is_multiple_of(16), "{} spp", clock.spp);
+        assert_eq!(text.contains("guide: radiosity"), guide != "bsdf", "{text}");
+        let (code, text) = fredholm(&desk, &format!("{line} --spp {} -o count", clock.spp));
+        assert_eq!(code, 0, "{text}");
+        let count = read("count");
+        assert_eq!(clock.spp, count.spp);
+        assert_eq!(clock.series[0].functionals, count.series[0].functionals, "{guide}");
+    }
+}
+
+#[test]
+fn what_a_guide_cannot_do_is_refused() {
+    let desk = tempfile::TempDir::new().unwrap();
+    for (line, why) in [
+        ("series cornell --guide radiosity --estimator light", "walks from the eye only"),
+        ("series cornell --guide radiosity --sampling uniform", "replaces the cosine"),
+        ("radiosity cornell --guide radiosity", "none are asked for"),
+        ("sweep cornell --over spp --guide radiosity", "has no part in a sweep"),
+        ("sweep cornell --over spp --time 1s", "has no part in a sweep"),
+        ("series cornell --time 1s --spp 4", "cannot be used with"),
+        ("series cornell --time soon", "is not a time such as 30s"),
+    ] {
+        let (code, text) = fredholm(&desk, line);
+        assert!(code == 2 && text.contains(why), "{line}: {code}, {text}");
+    }
 }

@@ -190,7 +190,14 @@ pub struct Run {
     /// the scene (--patches, default 1000) expects from them, mixed with the cosine; other
     /// surfaces scatter as before. The matrix is only a guide: it takes every surface for
     /// Lambertian and glass for black, and whatever it gets wrong costs noise, never a bias.
-    #[arg(long, value_enum, value_name = "NAME", default_value = "bsdf", hide_possible_values = true, verbatim_doc_comment)]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "NAME",
+        default_value = "bsdf",
+        hide_possible_values = true,
+        verbatim_doc_comment
+    )]
     pub guide: GuideName,
     /// How long each of the worlds with rays may take: 30s, 5m, instead of --spp
     ///
@@ -222,6 +229,8 @@ pub struct Run {
     ///   table:q0,q1,…        as listed, the last for all that follow
     ///   albedo[@V]           q = 1 − albedo from vertex V on (2)
     ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
+    ///   contribution[@V]     with --guide: q = 1 − expected of the rest/expected of the pixel,
+    ///                        at most 0.9, from vertex V on (1); elsewhere as albedo
     #[arg(long, value_name = "SCHEDULE", verbatim_doc_comment)]
     pub roulette: Option<Roulette>,
     /// Which worlds to solve, with commas: terms, path, radiosity

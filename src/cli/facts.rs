@@ -1,10 +1,10 @@
 //! What a run says beside its tables: the judgement, facts about the matrix and the decay, warnings.
 
 use super::solve::Found;
+use fredholm::operator::guided::warp::CELLS;
 use fredholm::report::summary;
 use fredholm::stats::{self, Comparison, TermMeans, observed_rate};
 use fredholm::terms::Series;
-use fredholm::operator::guided::warp::CELLS;
 use fredholm::worlds::discrete::Discrete;
 use fredholm::worlds::guided::Prepared;
 use fredholm::worlds::sampled::Estimator;

@@ -333,7 +333,11 @@ fn verdicts(found: &Found) -> Vec<summary::Verdict> {
 /// What a run prints: the settings, a table per world, what is known about the decay, the verdicts, the folder.
 fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     let s = &found.settings;
-    let spp = if s.time.is_none() && summary.spp < s.spp.into() { format!("{} of {}", summary.spp, s.spp) } else { summary.spp.to_string() };
+    let spp = if s.time.is_none() && summary.spp < s.spp.into() {
+        format!("{} of {}", summary.spp, s.spp)
+    } else {
+        summary.spp.to_string()
+    };
     let mut head =
         format!("{}\nseed {}, {spp} spp, {}×{} pixels", found.command, s.seed, summary.width, summary.height);
     if !found.terms.is_empty() || found.path.is_some() {

@@ -46,6 +46,11 @@ pub trait Transport: Sync {
     /// A bound on (T 1)(x).
     fn albedo(&self, at: &Self::State) -> Rgb;
 
+    /// About how much reflected light leaves a state, mean of the channels, where somebody knows: roulette may go by it.
+    fn expected(&self, _at: &Self::State) -> Option<f32> {
+        None
+    }
+
     /// Whether [`Transport::connect`] finds all of E from every state: no delta vertices, so that hits need not be looked at.
     fn connects_to_all(&self) -> bool {
         true

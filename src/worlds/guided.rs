@@ -6,8 +6,8 @@ use super::sampled::{self, Estimator, Sampled, annotated, spread};
 use super::{Observer, Settings};
 use crate::estimator::{Branching, PathTracer, Plan, Prefix, SingleTerm};
 use crate::math::Key;
-use crate::operator::guided::{Guide, GuidedTransport, Recipe};
 use crate::operator::SceneTransport;
+use crate::operator::guided::{Guide, GuidedTransport, Recipe};
 use crate::scene::{Description, Scene, SceneError};
 use crate::terms::World;
 use std::sync::atomic::AtomicBool;
@@ -77,7 +77,9 @@ impl Prepared {
         let name = (World::Terms, self.label(&estimator.to_string(), settings));
         let result = match estimator {
             Estimator::Prefix => sampled::sample(&t, camera, &Prefix(plan), &stream, name, settings, observer, stop),
-            Estimator::Single => sampled::sample(&t, camera, &SingleTerm(plan), &stream, name, settings, observer, stop),
+            Estimator::Single => {
+                sampled::sample(&t, camera, &SingleTerm(plan), &stream, name, settings, observer, stop)
+            }
             Estimator::Branching { children } => {
                 let tree = Branching { plan, children };
                 sampled::sample(&t, camera, &tree, &stream, name, settings, observer, stop)

@@ -117,8 +117,7 @@ impl Incident {
     pub fn radiance(&self) -> Vec<Rgb> {
         let mut u = self.direct.clone();
         for _ in 0..STEPS {
-            let next: Vec<Rgb> =
-                (0..self.len()).into_par_iter().map(|i| self.direct[i] + self.gather(i, &u)).collect();
+            let next: Vec<Rgb> = (0..self.len()).into_par_iter().map(|i| self.direct[i] + self.gather(i, &u)).collect();
             let change: f32 = next.iter().zip(&u).map(|(a, b)| (*a - *b).abs().element_sum()).sum();
             let all: f32 = next.iter().map(|a| a.element_sum()).sum();
             u = next;

@@ -15,6 +15,7 @@
 //! | L_h | radiance of the patches, from stored rays | [`incident`] |
 //! | r_i, β | density over that of the cosine, share of the BSDF | [`warp`] |
 //! | i(x) | the patch of a point | [`Guide::at`] |
+//! | u | reflected part of L_h, for roulette by expected contribution | [`Transport::expected`] |
 //! | f → ρ | what stands for surfaces that are not Lambertian, in the guide only | [`stand_in()`] |
 //!
 //! References: Lafortune and Willems, *A 5D tree to reduce the variance of Monte Carlo ray tracing* (1995); Vorba et al., *On-line
@@ -35,8 +36,8 @@ use crate::scene::{Camera, Scene, SceneError, Vertex, VertexWave, connection, nu
 use glam::Vec3;
 use incident::{Fineness, Incident};
 use places::{Found, Places};
-use std::sync::atomic::AtomicBool;
 pub use stand_in::stand_in;
+use std::sync::atomic::AtomicBool;
 use warp::Warp;
 
 /// How a guide is made.
@@ -54,8 +55,8 @@ pub struct Recipe {
 
 impl Default for Recipe {
     fn default() -> Self {
-        let fineness = Fineness { rays: 8, connections: 64 };
-        Self { patches: 1000, fineness, bsdf: 0.1, emission: false }
+        let fineness = Fineness { rays: 64, connections: 64 };
+        Self { patches: 1000, fineness, bsdf: 0.2, emission: false }
     }
 }
 
@@ -64,6 +65,8 @@ pub struct Guide {
     patches: Patches,
     warps: Vec<Option<Warp>>,
     places: Places,
+    /// Reflected radiance of each patch, mean of the channels.
+    reflected: Vec<f32>,
 }
 
 impl Guide {
@@ -89,11 +92,13 @@ impl Guide {
             return Ok(None);
         };
         let mut light = incident.radiance();
+        let reflected = light.iter().map(|u| u.element_sum() / 3.0).collect();
         if recipe.emission {
             light.iter_mut().zip(patches.iter()).for_each(|(u, p)| *u += p.emission.as_vec3());
         }
         let warp = |i| Warp::new(&incident.weights(i, &light), recipe.bsdf);
-        Ok(Some(Self { warps: (0..patches.len()).map(warp).collect(), places: Places::new(&patches), patches }))
+        let warps = (0..patches.len()).map(warp).collect();
+        Ok(Some(Self { warps, places: Places::new(&patches), patches, reflected }))
     }
 
     /// How many patches.
@@ -106,18 +111,22 @@ impl Guide {
         self.patches.is_empty()
     }
 
-    /// The density at a point of a Lambertian surface; nothing where the cosine is as good.
+    /// The density at a point of a surface; nothing where the cosine is as good.
     #[inline(always)]
     pub fn at(&self, x: &Vertex) -> Option<&Warp> {
+        self.warps[self.patch(x)?].as_ref()
+    }
+
+    #[inline(always)]
+    fn patch(&self, x: &Vertex) -> Option<usize> {
         if !x.on_surface() {
             return None;
         }
-        let patch = match self.places.find(x) {
-            Found::At(patch) => patch as usize,
-            Found::Nowhere => return None,
-            Found::Curved => incident::locate(&self.patches, x)?,
-        };
-        self.warps[patch].as_ref()
+        match self.places.find(x) {
+            Found::At(patch) => Some(patch as usize),
+            Found::Nowhere => None,
+            Found::Curved => incident::locate(&self.patches, x),
+        }
     }
 }
 
@@ -180,6 +189,12 @@ impl Transport for GuidedTransport<'_> {
 
     fn albedo(&self, at: &Vertex) -> Rgb {
         self.scene.albedo(at)
+    }
+
+    /// What the matrix says of a Lambertian surface; of others it knows nothing.
+    fn expected(&self, at: &Vertex) -> Option<f32> {
+        let lambertian = matches!(self.scene.scene.bsdf(at), Bsdf::Diffuse(_));
+        Some(self.guide.reflected[self.guide.patch(at).filter(|_| lambertian)?])
     }
 
     fn connects_to_all(&self) -> bool {

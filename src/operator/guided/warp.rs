@@ -209,7 +209,10 @@ mod tests {
             let (c, s) = cos_sin_turn(x);
             assert_eq!(sector(0.3 * c, 0.3 * s), (x * CELLS as f32) as usize, "{x}");
         }
-        assert_eq!([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 0.0)].map(|(x, y)| sector(x, y)), [0, 4, 8, 12, 0]);
+        assert_eq!(
+            [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 0.0)].map(|(x, y)| sector(x, y)),
+            [0, 4, 8, 12, 0]
+        );
     }
 
     #[test]
