@@ -22,6 +22,7 @@ use fredholm::operator::{SceneTransport, Sensor, Step, Transport};
 use fredholm::scene::description::{BsdfDescription, Colour, Description};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Camera, Scene, SurfaceSensor, Vertex, VertexWave};
+use fredholm::stats::Criterion;
 use fredholm::terms::functional::image_replicates;
 use fredholm::terms::{Estimate, TermFilm};
 use glam::{DVec3, Vec3};
@@ -232,13 +233,14 @@ where
 }
 
 /// Image means of every term, the tail and the whole, guided and not, in scenes with and without surfaces that the guide
-/// takes for Lambertian: equal within 1 % of the term + 10⁻⁴ of the image, or an error of half the term would have been seen.
+/// takes for Lambertian: equal within the δ of the program's own verdicts, or an error of half the term would have been seen.
 #[test]
 fn guided_terms_agree_with_the_others() {
     let mut jury = Jury::open("guided_terms_agree_with_the_others");
+    let criterion = Criterion::default();
     let (long, contribution) = (Roulette::Albedo { from: 4 }, Roulette::Contribution { from: 1 });
     let ways = [(Kind::Prefix, &long), (Kind::Single, &long), (Kind::Prefix, &contribution)];
-    for (d, spp) in [(built_in("cornell", [16, 16]), 4096), (lamps(), 2048), (glossy(), 4096)] {
+    for (d, spp) in [(built_in("cornell", [16, 16]), 8192), (lamps(), 8192), (glossy(), 8192)] {
         let (scene, guide) = (Scene::new(&d), guide(&d, COARSE));
         let of = |roulette: &Roulette| plan(4, Technique::Mis, roulette);
         let key = Key::new(jury.seed(), "agree");
@@ -254,7 +256,7 @@ fn guided_terms_agree_with_the_others() {
                     std_error: (a.std_error.powf(2.0) + b.std_error.powf(2.0)).map(f64::sqrt),
                     replicates: a.replicates.min(b.replicates),
                 };
-                let delta = 0.01 * b.mean + 1e-4 * whole;
+                let delta = criterion.of_term * b.mean + criterion.of_total * whole;
                 let visible = delta.max(0.5 * b.mean);
                 let what = format!("{}, {kind:?}, {roulette}, slot {s}", d.name);
                 let judged = jury.judge(&what, &difference, DVec3::ZERO, delta, visible);
