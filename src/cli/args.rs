@@ -184,12 +184,12 @@ pub struct Run {
     /// one scramble per replicate.
     #[arg(long, default_value = "independent", value_parser = points, value_name = "NAME", verbatim_doc_comment)]
     pub points: Points,
-    /// Where rays look: bsdf, or radiosity: where the matrix is bright
+    /// What tells rays where to look: bsdf, radiosity
     ///
-    /// radiosity: at Lambertian surfaces directions are drawn from what a radiosity solution of
-    /// the scene (--patches, default 1000) expects from them, mixed with the cosine; other
-    /// surfaces scatter as before. The matrix is only a guide: it takes every surface for
-    /// Lambertian and glass for black, and whatever it gets wrong costs noise, never a bias.
+    /// bsdf: the surface alone; radiosity: at Lambertian surfaces directions are drawn from what a
+    /// radiosity solution of the scene (--patches, default 1000) expects from them, mixed with
+    /// the cosine. Other surfaces scatter as before. The matrix is only a guide: it takes every
+    /// surface for Lambertian and glass for black; what it gets wrong costs noise, never a bias.
     #[arg(
         long,
         value_enum,
@@ -199,7 +199,7 @@ pub struct Run {
         verbatim_doc_comment
     )]
     pub guide: GuideName,
-    /// How long each of the worlds with rays may take: 30s, 5m, instead of --spp
+    /// Time for each world of rays, instead of --spp: 30s, 5m
     ///
     /// Passes are added while they are expected to end in time; a guide's preparation counts.
     /// The first pass, 16 samples per pixel, is always finished. The result is, bit for bit, that
