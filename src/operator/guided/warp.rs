@@ -176,14 +176,16 @@ mod tests {
     /// The direction of every sample lies in the cell that it was drawn from, whichever way the normal points.
     #[test]
     fn sampled_directions_have_the_ratio_they_claim() {
-        let (w, all) = (example(0.3), 1 << 18);
+        let (w, all) = (example(0.3), 1u32 << 18);
         let mut wrong = 0;
         for i in 0..all {
-            let u = [(i as f32 * 0.618_034).fract(), (i as f32 * 0.754_877_7).fract()];
+            // multiples of 2⁻²⁴, as the numbers of a walk; a product of floats would lie on edges too often
+            let u =
+                [0x9e37_79b1u32, 0x85eb_ca77].map(|m| (m.wrapping_mul(i + 1) >> 8) as f32 / Discrete::NUMBERS as f32);
             let n = Vec3::new((i % 7) as f32 - 3.0, (i % 5) as f32 - 2.0, (i % 3) as f32 - 1.5).normalize();
             let (u, ratio) = w.sample(u);
             assert!(u.iter().all(|x| (0.0..1.0).contains(x)));
-            wrong += usize::from(w.ratio(n, cosine_hemisphere(n, u).0) != ratio);
+            wrong += u32::from(w.ratio(n, cosine_hemisphere(n, u).0) != ratio);
         }
         // rounding moves a direction by 4·10⁻⁷ or less over one of 16 edges of each kind
         assert!(wrong <= all / 20_000, "{wrong} of {all}");
