@@ -264,7 +264,9 @@ fn guided_terms_agree_with_the_others() {
             }
         }
     }
-    jury.assert_power(0.3, 0.0);
+    // the depth of the ledger lets these samples prove equality to 2 % of few terms; of all of them they would have shown an
+    // error of a half, and 1 % is proved by the furnace and by direct light below
+    jury.assert_power(0.14, 0.0);
 }
 
 /// In a closed room that glows everywhere T^k E = ρ^k E, however badly a guide distorts the directions.
