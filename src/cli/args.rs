@@ -5,6 +5,7 @@ use fredholm::estimator::{Roulette, Technique};
 use fredholm::math::Points;
 use fredholm::scene::{Selection, bsdf::Sampling};
 use std::path::PathBuf;
+use std::time::Duration;
 
 const TOUR: &str = "The operator view of global illumination: L = E + T L = Σ T^k E, measured.
 
@@ -44,7 +45,7 @@ pub fn read() -> Cli {
     // the tour's options are explained by `fredholm tour --help`; here they would hide the commands
     let cli = Cli::command().mut_args(|arg| arg.hide(true));
     // nor does a sweep know matrices
-    let matrix = ["worlds", "patches", "factors", "rays", "read_patches", "orders", "verbose"];
+    let matrix = ["worlds", "patches", "factors", "rays", "read_patches", "orders", "verbose", "guide", "time"];
     let cli = cli.mut_subcommand("sweep", |c| matrix.iter().fold(c, |c, name| c.mut_arg(name, |arg| arg.hide(true))));
     let cli = cli.mut_subcommand("sweep", super::sweep_spp::several_values);
     let mut matches = cli.get_matches();
@@ -61,6 +62,7 @@ pub enum Command {
   fredholm series cornell --spp 256 --max-bounces 8 --size 128x128 --seed 1 -o a
   fredholm series furnace --technique scatter --sampling cosine --spp 64 --json
   fredholm series scene.obj --emit lamp=17,12,4
+  fredholm series veach-ajar --guide radiosity --time 30s --worlds terms
 
 How k counts: k is the number of applications of T, so k = 0 is emission seen directly, k = 1 direct
 light, k = 2 one bounce of indirect light. --max-bounces K keeps k = 0..=K; everything longer is the
@@ -217,6 +219,15 @@ pub enum EstimatorName {
     Bidirectional,
 }
 
+/// What decides where rays look.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum GuideName {
+    /// The surface alone
+    Bsdf,
+    /// The matrix over patches
+    Radiosity,
+}
+
 /// Arguments of everything that renders.
 #[derive(Clone, Debug, Args)]
 pub struct Run {
@@ -263,6 +274,28 @@ pub struct Run {
     /// one scramble per replicate.
     #[arg(long, default_value = "independent", value_parser = points, value_name = "NAME", verbatim_doc_comment)]
     pub points: Points,
+    /// What tells rays where to look: bsdf, radiosity
+    ///
+    /// bsdf: the surface alone; radiosity: at Lambertian surfaces directions are drawn from what a
+    /// radiosity solution of the scene (--patches, default 1000) expects from them, mixed with
+    /// the cosine. Other surfaces scatter as before. The matrix is only a guide: it takes every
+    /// surface for Lambertian and glass for black; what it gets wrong costs noise, never a bias.
+    #[arg(
+        long,
+        value_enum,
+        value_name = "NAME",
+        default_value = "bsdf",
+        hide_possible_values = true,
+        verbatim_doc_comment
+    )]
+    pub guide: GuideName,
+    /// Time for each world of rays, instead of --spp: 30s, 5m
+    ///
+    /// Passes are added while they are expected to end in time; a guide's preparation counts.
+    /// The first pass, 16 samples per pixel, is always finished. The result is, bit for bit, that
+    /// of --spp with the number of samples that was reached.
+    #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with = "spp", verbatim_doc_comment)]
+    pub time: Option<Duration>,
     /// How light is found: scatter, connect, mis, mis-power
     ///
     /// scatter: paths must hit it; connect: next-event estimation (and hits after a mirror);
@@ -286,6 +319,8 @@ pub struct Run {
     ///   table:q0,q1,…        as listed, the last for all that follow
     ///   albedo[@V]           q = 1 − albedo from vertex V on (2)
     ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
+    ///   contribution[@V]     with --guide: q = 1 − expected of the rest/expected of the pixel,
+    ///                        at most 0.9, from vertex V on (1); elsewhere as albedo
     ///   optimal              the table with the most efficiency, found by a pilot of 2^18 paths
     #[arg(long, value_name = "SCHEDULE", value_parser = schedule, verbatim_doc_comment)]
     pub roulette: Option<Schedule>,
@@ -482,6 +517,14 @@ pub fn size(s: &str) -> Result<[u32; 2], String> {
     let (w, h) = s.split_once('x').ok_or_else(wrong)?;
     let side = |s: &str| s.parse().ok().filter(|n| (1..=32768).contains(n)).ok_or_else(wrong);
     Ok([side(w)?, side(h)?])
+}
+
+/// `30s`, `1.5m`, `500ms`; a bare number is seconds.
+fn duration(s: &str) -> Result<Duration, String> {
+    let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+    let (number, unit) = units.iter().find_map(|(u, f)| Some((s.strip_suffix(u)?, *f))).unwrap_or((s, 1.0));
+    let seconds = number.parse().ok().map(|x: f64| x * unit).filter(|x| *x > 0.0 && *x <= 1e6);
+    seconds.map(Duration::from_secs_f64).ok_or(format!("`{s}` is not a time such as 30s, 1.5m or 500ms"))
 }
 
 fn fraction(s: &str) -> Result<f64, String> {

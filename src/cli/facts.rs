@@ -1,10 +1,12 @@
 //! What a run says beside its tables: the judgement, facts about the matrix and the decay, warnings.
 
 use super::solve::Found;
+use fredholm::operator::guided::warp::CELLS;
 use fredholm::report::summary;
 use fredholm::stats::{self, Comparison, TermMeans, observed_rate};
 use fredholm::terms::Series;
 use fredholm::worlds::discrete::Discrete;
+use fredholm::worlds::guided::Prepared;
 use fredholm::worlds::realisation::{Difference, Sampling};
 use fredholm::worlds::sampled::Estimator;
 
@@ -95,6 +97,18 @@ pub fn difference(d: &Difference) -> String {
         d.of_u.element_sum() / 3.0,
         d.spectral.each_ref().map(|s| format!("{:.5}", s.radius)).join(", "),
         sampling(&d.sampling)
+    )
+}
+
+/// What is printed about a guide.
+pub fn guide(g: &Prepared) -> String {
+    let r = g.recipe;
+    format!(
+        "guide: radiosity of {} patches, {} rays each, in {:.2} s; {:.0} % of the directions by the cosine",
+        g.guide.len(),
+        r.fineness.rays * CELLS * CELLS,
+        g.time.as_secs_f64(),
+        100.0 * r.bsdf
     )
 }
 

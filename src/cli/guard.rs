@@ -5,7 +5,7 @@ use super::args::{FactorsName, Run, WorldName};
 use fredholm::estimator::Technique;
 use fredholm::math::{Key, Purpose, Rng};
 use fredholm::operator::{SceneTransport, Transport};
-use fredholm::scene::{Description, Scene, SurfaceSensor};
+use fredholm::scene::{Description, Scene, SurfaceSensor, bsdf::Sampling};
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::MatrixError;
 use fredholm::worlds::realisation::Factors;
@@ -31,11 +31,38 @@ pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failu
     )))
 }
 
+/// A guide steers walks from the eye, at surfaces that scatter by the cosine.
+pub fn can_be_guided(
+    scene: &Scene,
+    estimators: &[Estimator],
+    settings: &Settings,
+    worlds: &[WorldName],
+) -> Result<(), Failure> {
+    let wrong = |what: &str, help: &str| Err(Failure::Usage(format!("error: {what}\nhelp: {help}")));
+    if estimators.iter().any(|e| matches!(e, Estimator::Light | Estimator::Bidirectional)) {
+        return wrong("a guide steers walks from the eye only", "use --estimator prefix, single or branching");
+    }
+    if !worlds.iter().any(|w| matches!(w, WorldName::Terms | WorldName::Path)) {
+        return wrong("--guide is for rays, and none are asked for", "leave --guide out, or use `fredholm series`");
+    }
+    if settings.sampling == Sampling::Uniform {
+        return wrong("a guide replaces the cosine, and --sampling uniform has none", "leave --sampling out");
+    }
+    let sides = (0..scene.sides()).filter(|&s| scene.takes_part(s)).count();
+    if sides > POSSIBLE {
+        let what = format!("{sides} sides make at least as many patches, more than the {POSSIBLE} a guide may have");
+        return wrong(&what, "leave --guide out");
+    }
+    Ok(())
+}
+
 /// N^K rays for every path grow beyond all patience long before they grow beyond memory.
 pub fn tree_can_be_walked(estimator: Estimator, settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
     const MOST: f64 = 1e11;
     let Estimator::Branching { children } = estimator else { return Ok(()) };
-    let paths = f64::from(w) * f64::from(h) * f64::from(settings.spp);
+    // of a render by the clock only the first pass must be possible
+    let spp = if settings.time.is_some() { settings.spp.min(16) } else { settings.spp };
+    let paths = f64::from(w) * f64::from(h) * f64::from(spp);
     let deepest = f64::from(children).powi(settings.max_bounces as i32) * paths;
     if deepest <= MOST {
         return Ok(());
@@ -91,6 +118,9 @@ pub fn light_is_seen(
     Ok(())
 }
 
+/// Most patches that a matrix or a guide may have.
+const POSSIBLE: usize = 20_000;
+
 /// A side of a primitive is at least one patch, and the matrix is dense. Where the radiosity was not asked for by name it is
 /// left out of scenes with many primitives; asked for by name it is refused beyond what any machine holds.
 pub fn fits_in_a_matrix(
@@ -100,7 +130,6 @@ pub fn fits_in_a_matrix(
     asked: bool,
 ) -> Result<(), Failure> {
     const COMFORTABLE: usize = 4000;
-    const POSSIBLE: usize = MOST_DENSE as usize;
     if let Factors::Rays(_) = factors {
         return Ok(());
     }

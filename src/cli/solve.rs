@@ -1,6 +1,6 @@
 //! `tour`, `series`, `render`, `radiosity`: load, solve in the worlds asked for, compare, write, print.
 
-use super::args::{EstimatorName, FactorsName, Run, Schedule, WorldName};
+use super::args::{EstimatorName, FactorsName, GuideName, Run, Schedule, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, facts, guard, output, write};
 use fredholm::estimator::Roulette;
@@ -13,6 +13,7 @@ use fredholm::stats::{Criterion, compare, discretisation};
 use fredholm::terms::functional::Replicates;
 use fredholm::terms::{Recorded, Series};
 use fredholm::worlds::discrete::{self, Discrete, Matrix, MatrixError};
+use fredholm::worlds::guided::{self, Prepared};
 use fredholm::worlds::pyramid::{self, Strategy};
 use fredholm::worlds::realisation::Difference;
 use fredholm::worlds::roulette::Radii;
@@ -35,6 +36,8 @@ pub struct Found {
     /// The first is the one whose images are shown.
     pub terms: Vec<Sampled>,
     pub path: Option<Sampled>,
+    /// What guided both, if anything did.
+    pub guide: Option<Prepared>,
     pub radiosity: Option<Discrete>,
     /// How far stored rays are from the matrix, where both were asked for.
     pub by_rays: Option<Difference>,
@@ -120,7 +123,8 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let asked = given(run.roulette.as_ref());
     let patches = run.patches.unwrap_or(default.patches);
     let settings = Settings {
-        spp: run.spp.unwrap_or(256),
+        spp: run.spp.unwrap_or(if run.time.is_some() { 1 << 24 } else { 256 }),
+        time: run.time,
         seed: run.seed,
         points: run.points,
         max_bounces,
@@ -158,6 +162,9 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         let help = "add --estimator bidirectional";
         return Err(Failure::Usage(format!("error: only the bidirectional estimator has strategies\nhelp: {help}")));
     }
+    if run.guide != GuideName::Bsdf {
+        guard::can_be_guided(&scene, &estimators, &settings, &worlds)?;
+    }
     guard::light_is_seen(&scene, &estimators, &settings, &worlds)?;
     guard::fits_in_memory(&settings, description.camera.size)?;
     if worlds.contains(&WorldName::Radiosity) {
@@ -181,6 +188,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         started,
         terms: vec![],
         path: None,
+        guide: None,
         radiosity: None,
         by_rays: None,
         orders: vec![],
@@ -196,11 +204,21 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     {
         (found.settings.roulette, found.settings.path_roulette) = (best.roulette.clone(), best.roulette);
     }
-
+    if run.guide == GuideName::Radiosity {
+        let patches = run.patches.map_or(guided::PATCHES, |n| n as usize);
+        found.guide = guided::prepare(&found.description, patches, &found.settings, &progress, stop)?;
+        // without its guide the run would not be the one that was asked for
+        if found.guide.is_none() {
+            progress.finish();
+            return Ok(nothing_to_save(&found));
+        }
+    }
     // the quick estimator first, so that there is something to see
     for &estimator in estimators.iter().rev() {
         if !stopped() {
-            let result = sampled::terms(&found.scene, estimator, &found.settings, &progress, stop);
+            let (scene, settings) = (&found.scene, &found.settings);
+            let guided = found.guide.as_ref().and_then(|g| g.terms(scene, estimator, settings, &progress, stop));
+            let result = guided.unwrap_or_else(|| sampled::terms(scene, estimator, settings, &progress, stop));
             found.terms.insert(0, result);
         }
     }
@@ -208,7 +226,11 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         found.strategies = pyramid::strategies(&found.scene, &found.settings, &progress, stop);
     }
     if worlds.contains(&WorldName::Path) && !stopped() {
-        found.path = Some(sampled::path(&found.scene, &found.settings, &progress, stop));
+        let (scene, settings) = (&found.scene, &found.settings);
+        found.path = Some(match &found.guide {
+            Some(guide) => guide.path(scene, settings, &progress, stop),
+            None => sampled::path(scene, settings, &progress, stop),
+        });
     }
     if worlds.contains(&WorldName::Radiosity) && !stopped() {
         match discrete::radiosity(&found.description, &found.scene, &found.settings, &progress, stop) {
@@ -224,7 +246,8 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         }
     }
     if !estimators.is_empty() {
-        let paths = found.settings.spp.saturating_mul(1024).min(1 << 22);
+        let reached = found.terms.iter().map(|t| t.spp).min().unwrap_or(0);
+        let paths = reached.min(found.settings.spp).max(1).saturating_mul(1024).min(1 << 22);
         for estimator in [Estimator::Single, Estimator::Prefix] {
             if !stopped() {
                 let norms = surface::norms(&found.scene, estimator, paths, &found.settings, &progress, stop);
@@ -238,9 +261,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     progress.finish();
 
     if found.terms.is_empty() && found.path.is_none() && found.radiosity.is_none() {
-        super::note("nothing to save yet");
-        let _ = std::fs::remove_dir(&found.folder); // only if it is empty
-        return Ok(Ending::Interrupted);
+        return Ok(nothing_to_save(&found));
     }
     found.radii = radii(&found);
     found.verdicts = verdicts(&found);
@@ -256,6 +277,13 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     }
     let differs = found.verdicts.iter().any(|v| v.outcome == summary::Outcome::Differs);
     Ok(if differs { Ending::Failed } else { Ending::Ok })
+}
+
+/// Interrupted before anything was found.
+fn nothing_to_save(found: &Found) -> Ending {
+    super::note("nothing to save yet");
+    let _ = std::fs::remove_dir(&found.folder); // only if it is empty
+    Ending::Interrupted
 }
 
 /// Whether the variance of the path tracer is finite can be known from the matrix; a coarse one will do. Where there is none,
@@ -368,7 +396,11 @@ fn verdicts(found: &Found) -> Vec<summary::Verdict> {
 /// What a run prints: the settings, a table per world, what is known about the decay, the verdicts, the folder.
 fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     let s = &found.settings;
-    let spp = if summary.spp < s.spp.into() { format!("{} of {}", summary.spp, s.spp) } else { s.spp.to_string() };
+    let spp = if s.time.is_none() && summary.spp < s.spp.into() {
+        format!("{} of {}", summary.spp, s.spp)
+    } else {
+        summary.spp.to_string()
+    };
     let mut head =
         format!("{}\nseed {}, {spp} spp, {}×{} pixels", found.command, s.seed, summary.width, summary.height);
     if !found.terms.is_empty() || found.path.is_some() {
@@ -380,6 +412,10 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     let roulette: Vec<_> = used.iter().filter(|r| r.0).map(|(_, who, r)| format!("{who} {r}")).collect();
     if !roulette.is_empty() {
         head += &format!("\nroulette: {} (q ends a path, survivors weigh 1/(1−q))", roulette.join(", "));
+    }
+    if let Some(guide) = &found.guide {
+        head += "\n";
+        head += &facts::guide(guide);
     }
     let mut blocks = vec![head];
     let world = |s: &Sampled, rays: &[u64]| table::series(&s.series.label, s.series.image(), rays);

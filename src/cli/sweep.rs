@@ -151,6 +151,8 @@ fn refuse_what_has_no_part(args: &args::Sweep) -> Result<(), Failure> {
         ("--read-patches", run.read_patches),
         ("--orders", run.orders),
         ("--strategies", run.strategies),
+        ("--guide", run.guide != args::GuideName::Bsdf),
+        ("--time", run.time.is_some()),
     ];
     if let Some((name, _)) = given.iter().find(|g| g.1) {
         return Err(usage(&format!("{name} has no part in a sweep, which renders the terms"), "leave it out"));

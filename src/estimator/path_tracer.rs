@@ -32,6 +32,7 @@ impl PathTracer {
         // emission counts at the eye, whatever the technique
         let mut colour = t.emission(&start);
         let (mut alpha, mut x) = (Rgb::ONE, start);
+        let expected = t.expected(&start).unwrap_or(0.0);
         let mut rays = 0;
         for vertex in 0.. {
             if last(vertex) {
@@ -51,7 +52,7 @@ impl PathTracer {
                 break;
             }
             // roulette: q is the probability of termination
-            let q = roulette.termination(vertex, alpha, t.albedo(&x));
+            let q = roulette.q(t, vertex, alpha, &x, expected);
             if q > 0.0 {
                 if numbers(vertex, Purpose::Roulette).one() < q {
                     break;

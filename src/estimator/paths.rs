@@ -53,6 +53,8 @@ pub struct Paths<W> {
     pub sample: Vec<u32>,
     /// What the last batched call gave back.
     pub samples: Samples,
+    /// What was expected of each path at its start, 0 where nobody knows.
+    expected: Vec<f32>,
     key: Option<Key>,
     alive: Vec<u32>,
 }
@@ -68,6 +70,7 @@ impl<W> Paths<W> {
             self.state.resize(n);
             (self.through, self.samples) = (Columns::new(n), Samples::new(n));
             (self.pixel, self.sample) = (vec![0; n], vec![0; n]);
+            self.expected = vec![0.0; n];
         }
     }
 
@@ -87,6 +90,9 @@ impl<W> Paths<W> {
         sensor.start_wave(t, &mut self.state, streams, &mut self.alive);
         self.through.fill(self.n, Rgb::ONE);
         self.compact();
+        for i in 0..self.n {
+            self.expected[i] = t.expected(&self.state.get(i)).unwrap_or(0.0);
+        }
     }
 
     /// Copies of the paths of a wave, which go on with the numbers of another stream and throughput α · `share`.
@@ -98,6 +104,7 @@ impl<W> Paths<W> {
         (self.n, self.key) = (parents.n, Some(key));
         self.pixel[..self.n].copy_from_slice(&parents.pixel[..self.n]);
         self.sample[..self.n].copy_from_slice(&parents.sample[..self.n]);
+        self.expected[..self.n].copy_from_slice(&parents.expected[..self.n]);
         for i in 0..self.n {
             self.state.set(i, parents.state.get(i));
             self.through.set(i, parents.through.get(i) * share);
@@ -142,7 +149,7 @@ impl<W> Paths<W> {
         for i in 0..self.n {
             let streams = streams(key, &self.pixel[..self.n], &self.sample[..self.n], v, Purpose::Roulette);
             let through = self.through.get(i);
-            let q = schedule.termination(v, through, t.albedo(&self.state.get(i)));
+            let q = schedule.q(t, v, through, &self.state.get(i), self.expected[i]);
             if streams.rng(i).one() >= q {
                 self.through.set(i, through * (1.0 / (1.0 - q)));
                 self.alive.push(i as u32);
@@ -180,6 +187,7 @@ impl<W> Paths<W> {
             self.through.keep(alive);
             columns::keep(&mut self.pixel, alive);
             columns::keep(&mut self.sample, alive);
+            columns::keep(&mut self.expected, alive);
             columns::keep(&mut self.samples.pdf, alive);
             columns::keep(&mut self.samples.other_pdf, alive);
             self.n = alive.len();

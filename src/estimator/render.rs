@@ -33,9 +33,10 @@ impl Amount {
 pub trait Watch: Sync {
     /// Called after every block with the number of paths it took.
     fn paths(&self, _paths: u64) {}
-    /// The next number of samples per pixel, beyond `done`, at which a pass must end, whatever doubling says.
-    fn stop(&self, _done: u32) -> Option<u32> {
-        None
+    /// Asked between passes: how many samples per pixel there shall be after the next one, which is planned to end at `planned`.
+    /// No more than `done`: no further pass.
+    fn until(&self, _done: u32, planned: u32) -> u32 {
+        planned
     }
     /// Called with the film after every complete pass.
     fn pass(&mut self, _film: &TermFilm) {}
@@ -58,7 +59,7 @@ impl TermSink for FilmBlock<'_> {
     }
 }
 
-/// Renders into a new film. When `stop` is set, what has been done so far comes back: every pixel then holds some number of
+/// Renders into a new film. A render that `watch` ends early is the same, bit for bit, as one of the samples it has reached. When `stop` is set, what has been done so far comes back: every pixel then holds some number of
 /// samples, and all means are still unbiased.
 pub fn render<T: Transport>(
     t: &T,
@@ -72,9 +73,13 @@ pub fn render<T: Transport>(
     let mut film = TermFilm::new(shape);
     let mut done = 0;
     while done < amount.spp && !(done > 0 && stop.load(Ordering::Relaxed)) {
-        let until = if done == 0 { amount.replicates as u32 } else { 2 * done }.min(amount.spp);
-        let until =
-            watch.stop(done).filter(|&n| n > done).map_or(until, |n| until.min(n.max(amount.replicates as u32)));
+        let until = match done {
+            0 => (amount.replicates as u32).min(amount.spp),
+            _ => watch.until(done, done.saturating_mul(2).min(amount.spp)).min(amount.spp),
+        };
+        if until <= done {
+            break;
+        }
         pass(t, sensor, estimator, amount.key, done..until, &mut film, &*watch, stop);
         done = until;
         if !stop.load(Ordering::Relaxed) {

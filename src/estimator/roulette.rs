@@ -5,8 +5,12 @@
 //! whatever the schedule. How large q may be is another matter: with constant survival s the variance is finite only where
 //! the spectral radius of ρ²F/s is below 1 (`q < 1 − ρ²` in a furnace), and the *measured* variance can be trusted only
 //! where the fourth moment is finite (`ρ⁴ < (1 − q)³`).
+//!
+//! Reference for roulette by expected contribution: Vorba and Křivánek, *Adjoint-Driven Russian Roulette and Splitting in Light
+//! Transport Simulation* (2016).
 
 use crate::math::Rgb;
+use crate::operator::Transport;
 use std::{fmt, str::FromStr};
 
 /// From this vertex on roulette by albedo ends every path, with at least this probability: an albedo may be a bound that is 1
@@ -38,7 +42,17 @@ pub enum Roulette {
         /// First vertex with roulette.
         from: usize,
     },
+    /// 0 before `from`, then q = 1 − (what is still expected of the path)/(what was expected of it at its start), at least 0 and at
+    /// most 0.9: adjoint-driven roulette. The transport must know what to expect ([`Transport::expected`]); where it does not, as
+    /// [`Self::Albedo`].
+    Contribution {
+        /// First vertex with roulette.
+        from: usize,
+    },
 }
+
+/// Survivors of roulette by contribution weigh no more than ten times what they did.
+const LEAST_SURVIVAL: f32 = 0.1;
 
 impl Roulette {
     /// The lecture's schedule: none at the first two vertices, then 0.5.
@@ -57,7 +71,7 @@ impl Roulette {
                 }
             }
             Self::Table(q) => q.get(v).or(q.last()).map_or(0.0, |&q| q as f32),
-            Self::Albedo { from } => {
+            Self::Albedo { from } | Self::Contribution { from } => {
                 if v < *from {
                     0.0
                 } else {
@@ -81,7 +95,7 @@ impl Roulette {
             Self::Never => Some(0.0),
             Self::Constant { from, q } => Some(if v < *from { 0.0 } else { *q }),
             Self::Table(q) => Some(q.get(v).or(q.last()).copied().unwrap_or(0.0)),
-            Self::Albedo { .. } | Self::Throughput { .. } => None,
+            Self::Albedo { .. } | Self::Throughput { .. } | Self::Contribution { .. } => None,
         }
     }
 
@@ -91,13 +105,28 @@ impl Roulette {
         before.map(|table| Self::Table(table.into_iter().chain([q]).collect()))
     }
 
+    /// q at vertex `v` of a path that stands at a state with this throughput; `start` is what was expected of the path at its start, 0
+    /// if nobody knew.
+    #[inline(always)]
+    pub fn q<T: Transport>(&self, t: &T, v: usize, throughput: Rgb, at: &T::State, start: f32) -> f32 {
+        if let Self::Contribution { from } = self
+            && v >= *from
+            && v < AT_LAST.0
+            && start > 0.0
+            && let Some(expected) = t.expected(at)
+        {
+            return 1.0 - (throughput.element_sum() * expected / (3.0 * start)).clamp(LEAST_SURVIVAL, 1.0);
+        }
+        self.termination(v, throughput, t.albedo(at))
+    }
+
     /// Whether q is 0 at vertex `v` on every path: nothing to draw.
     pub fn sleeps(&self, v: usize) -> bool {
         match self {
             Self::Never => true,
             Self::Constant { from, q } => v < *from || *q == 0.0,
             Self::Table(q) => q.get(v).or(q.last()).is_none_or(|&q| q == 0.0),
-            Self::Albedo { from } | Self::Throughput { from } => v < *from,
+            Self::Albedo { from } | Self::Throughput { from } | Self::Contribution { from } => v < *from,
         }
     }
 
@@ -107,7 +136,7 @@ impl Roulette {
             Self::Never => false,
             Self::Constant { q, .. } => *q > 0.0,
             Self::Table(q) => q.last().is_some_and(|&q| q > 0.0),
-            Self::Albedo { .. } | Self::Throughput { .. } => true,
+            Self::Albedo { .. } | Self::Throughput { .. } | Self::Contribution { .. } => true,
         }
     }
 
@@ -119,6 +148,7 @@ impl Roulette {
             Self::Constant { from, q } => Self::Constant { from: from.max(v), q },
             Self::Albedo { from } => Self::Albedo { from: from.max(v) },
             Self::Throughput { from } => Self::Throughput { from: from.max(v) },
+            Self::Contribution { from } => Self::Contribution { from: from.max(v) },
             Self::Table(mut q) => {
                 let last = q.last().copied().unwrap_or(0.0);
                 q.resize(q.len().max(v + 1), last);
@@ -138,16 +168,17 @@ impl fmt::Display for Roulette {
             Self::Table(q) => write!(f, "table:{}", q.iter().map(f64::to_string).collect::<Vec<_>>().join(",")),
             Self::Albedo { from } => write!(f, "albedo@{from}"),
             Self::Throughput { from } => write!(f, "throughput@{from}"),
+            Self::Contribution { from } => write!(f, "contribution@{from}"),
         }
     }
 }
 
-/// `none`, `lecture`, `constant:Q@V`, `table:q0,q1,…`, `albedo[@V]`, `throughput[@V]`.
+/// `none`, `lecture`, `constant:Q@V`, `table:q0,q1,…`, `albedo[@V]`, `throughput[@V]`, `contribution[@V]`.
 impl FromStr for Roulette {
     type Err = String;
 
     fn from_str(s: &str) -> Result<Self, String> {
-        let grammar = "none, lecture, constant:Q@V, table:q0,q1,…, albedo[@V] or throughput[@V]";
+        let grammar = "none, lecture, constant:Q@V, table:q0,q1,…, albedo[@V], throughput[@V] or contribution[@V]";
         let (head, from) = match s.split_once('@') {
             Some((head, v)) => (head, Some(v.parse().map_err(|_| format!("`{v}` is not a vertex number; {grammar}"))?)),
             None => (s, None),
@@ -162,6 +193,7 @@ impl FromStr for Roulette {
                 "lecture" => Ok(Self::LECTURE),
                 "albedo" => Ok(Self::Albedo { from: from.unwrap_or(2) }),
                 "throughput" => Ok(Self::Throughput { from: from.unwrap_or(2) }),
+                "contribution" => Ok(Self::Contribution { from: from.unwrap_or(1) }),
                 _ => Err(format!("unknown roulette `{s}`; {grammar}")),
             },
             Some(("constant", value)) => Ok(Self::Constant { from: from.unwrap_or(2), q: q(value)? }),
@@ -179,7 +211,7 @@ mod tests {
 
     #[test]
     fn grammar_round_trips() {
-        for s in ["none", "lecture", "constant:0.25@3", "table:0,0,0.5", "albedo@2", "throughput@0"] {
+        for s in ["none", "lecture", "constant:0.25@3", "table:0,0,0.5", "albedo@2", "throughput@0", "contribution@1"] {
             assert_eq!(s.parse::<Roulette>().map(|r| r.to_string()), Ok(s.to_string()));
         }
         for s in ["half", "constant:1@0", "table:0.1,x", "constant:-0.1", "lecture:2"] {

@@ -12,6 +12,7 @@ pub mod adjoint;
 pub mod algebra;
 pub mod edges;
 pub mod form_factor;
+pub mod guided;
 pub mod guided_walk;
 pub mod matrix;
 pub mod matrix_walk;
@@ -23,6 +24,7 @@ pub mod scene_transport;
 pub mod transport;
 
 pub use adjoint::{Adjoint, Role};
+pub use guided::{Guide, GuidedTransport};
 pub use guided_walk::GuidedWalk;
 pub use matrix_walk::MatrixWalk;
 pub use scene_transport::SceneTransport;

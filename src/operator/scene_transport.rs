@@ -110,7 +110,7 @@ impl SceneTransport<'_> {
 
     /// The step that a ray from `from` makes when it arrives at `state`.
     #[inline(always)]
-    fn step(&self, from: Vec3, state: Vertex, weight: Rgb, pdf: f32, delta: bool) -> Step<Vertex> {
+    pub(super) fn step(&self, from: Vec3, state: Vertex, weight: Rgb, pdf: f32, delta: bool) -> Step<Vertex> {
         let other_pdf = if delta { 0.0 } else { self.scene.light_pdf(from, &state) };
         Step { state, weight, pdf, other_pdf }
     }
@@ -217,9 +217,32 @@ impl Transport for SceneTransport<'_> {
         if !self.scene.in_packets() {
             return transport::connect_one_by_one(self, wave, streams, out);
         }
-        let n = streams.len();
         numbers(streams, &mut wave.rays.u);
-        self.scene.light_points(&mut wave.rays, n);
+        self.scene.light_points(&mut wave.rays, streams.len());
+        self.connect_packets(wave, streams.len(), out, |_, _| 1.0);
+    }
+
+    /// Random numbers in bulk and rays in packets, where the scene is small and flat; the same bits.
+    fn scatter_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
+        if !self.scene.in_packets() || self.sampling == Sampling::Uniform {
+            return transport::scatter_one_by_one(self, wave, streams, out, alive);
+        }
+        numbers(streams, &mut wave.rays.u);
+        self.scatter_packets(wave, streams.len(), out, alive, |_, _| 1.0);
+    }
+}
+
+impl SceneTransport<'_> {
+    /// Connections of a wave to the light points in `wave.rays`, in packets. `ratio(out, i)` is the density of scattering in the
+    /// direction of light i over that of the cosine.
+    #[inline(always)]
+    pub(super) fn connect_packets(
+        &self,
+        wave: &mut VertexWave,
+        n: usize,
+        out: &mut Samples,
+        ratio: impl Fn(&Samples, usize) -> f32,
+    ) {
         connections(&wave.p, &wave.n, self.scene.offset(), &mut wave.rays, out, n);
         let mut shadow = 0;
         for i in 0..n {
@@ -227,7 +250,7 @@ impl Transport for SceneTransport<'_> {
             let factor = wave.rays.t[i];
             if factor > 0.0 && albedo != Rgb::ZERO {
                 out.value.set(i, albedo * factor * self.scene.emission(2 * wave.rays.prim[i]));
-                out.other_pdf[i] = self.sampling.pdf(wave.rays.cosine[i]);
+                out.other_pdf[i] = self.sampling.pdf(wave.rays.cosine[i]) * ratio(out, i);
                 wave.rays.list[shadow] = i as u32;
                 shadow += 1;
             } else {
@@ -242,13 +265,17 @@ impl Transport for SceneTransport<'_> {
         }
     }
 
-    /// Random numbers in bulk and rays in packets, where the scene is small and flat; the same bits.
-    fn scatter_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
-        if !self.scene.in_packets() || self.sampling == Sampling::Uniform {
-            return transport::scatter_one_by_one(self, wave, streams, out, alive);
-        }
-        let n = streams.len();
-        numbers(streams, &mut wave.rays.u);
+    /// Scatters a wave by the numbers in `wave.rays.u`, in packets. `ratio(out, i)` is the density of number pair i over that of
+    /// the cosine.
+    #[inline(always)]
+    pub(super) fn scatter_packets(
+        &self,
+        wave: &mut VertexWave,
+        n: usize,
+        out: &mut Samples,
+        alive: &mut Vec<u32>,
+        ratio: impl Fn(&Samples, usize) -> f32,
+    ) {
         let VertexWave { p, n: normals, omega, side, rays } = wave;
         cosine_directions(normals, &rays.u, &mut rays.d, &mut rays.cosine, n);
         for i in 0..n {
@@ -258,7 +285,8 @@ impl Transport for SceneTransport<'_> {
         self.scene.trace_packets(rays, n, |i, state| {
             let albedo = self.scene.albedo(side[i]);
             if albedo != Rgb::ZERO {
-                let s = self.step(p.get(i), state, albedo, self.sampling.pdf(cosine[i]), false);
+                let ratio = ratio(out, i);
+                let s = self.step(p.get(i), state, albedo * (1.0 / ratio), self.sampling.pdf(cosine[i]) * ratio, false);
                 p.set(i, state.p);
                 normals.set(i, state.n);
                 omega.set(i, state.omega);

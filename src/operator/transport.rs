@@ -51,6 +51,11 @@ pub trait Transport: Sync {
         None
     }
 
+    /// About how much reflected light leaves a state, mean of the channels, where somebody knows: roulette may go by it.
+    fn expected(&self, _at: &Self::State) -> Option<f32> {
+        None
+    }
+
     /// Whether [`Transport::connect`] finds all of E from every state: no delta vertices, so that hits need not be looked at.
     fn connects_to_all(&self) -> bool {
         true

@@ -190,6 +190,11 @@ pub const ENTRIES: &[Entry] = &[
     entry("a_million_directions_have_the_density_they_claim", 1_000, 1e-8),
     entry("wrong_densities_are_found", 25, 1e-8),
     entry("weights_average_to_the_albedo", 3_000, 1e-8),
+    // tests/guided.rs
+    entry("guided_directions_have_the_density_they_claim", 100, 1e-8),
+    entry("a_guide_that_nobody_accounts_for_is_found", 12, 1e-8),
+    entry("guided_terms_agree_with_the_others", 300, 1e-8),
+    entry("guided_walks_have_the_terms_of_a_furnace", 200, 1e-8),
     entry("a_million_weights_average_to_the_albedo", 3_000, 1e-8),
     // tests/diagnosis.rs
     entry("right_renderers_are_called_correct", 44, 1e-8),

@@ -5,6 +5,7 @@
 //! |---|---|---|
 //! | terms | every `T^k E` by its own estimator | [`sampled::terms`] |
 //! | path | Σ T^k E by the full path tracer | [`sampled::path`] |
+//! | guided | both, with the matrix as a guide | [`guided`] |
 //! | radiosity | `T_h^k E` and the solve, through the same camera | [`discrete::radiosity`] |
 //! | batches | the same, small and one after another, for what is watched while it grows | [`batches::Side`] |
 //! | equilibrium | both sides of L = E + T L, point by point and through the camera | [`equilibrium`] |
@@ -21,6 +22,7 @@ pub mod batches;
 pub mod discrete;
 pub mod equilibrium;
 pub mod falling;
+pub mod guided;
 pub mod pyramid;
 pub mod realisation;
 pub mod refine;
@@ -38,12 +40,15 @@ use crate::estimator::{Plan, Roulette, Technique};
 use crate::math::{Key, Points};
 use crate::scene::bsdf::Sampling;
 use crate::terms::TermFilm;
+use std::time::Duration;
 
 /// What a run is made with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Samples per pixel.
     pub spp: u32,
+    /// How long a sampled world may take: passes are added while the next one is expected to end in time, and `spp` is a limit.
+    pub time: Option<Duration>,
     /// Seed of all random numbers.
     pub seed: u64,
     /// How the samples of a pixel lie to each other.
@@ -72,6 +77,7 @@ impl Default for Settings {
         let (max_bounces, end) = (8, Roulette::Albedo { from: 2 });
         Self {
             spp: 256,
+            time: None,
             seed: 0,
             points: Points::Independent,
             max_bounces,

@@ -14,8 +14,8 @@ use crate::terms::norms::{SquaredNorm, squared_norm};
 use crate::terms::variance::{Snapshot, snapshot};
 use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, World};
 use std::fmt;
-use std::sync::atomic::AtomicBool;
-use std::time::Instant;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 /// Which estimator of the terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,15 +82,26 @@ pub fn terms(
 ) -> Sampled {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let amount = amount(settings, &estimator.to_string());
-    let mut run = Run::new(&format!("terms, {estimator}"), scene.camera.size, settings.spp, observer);
+    let mut run = Run::new(&format!("terms, {estimator}"), scene.camera.size, settings, observer);
     let film = film(&t, &scene.camera, estimator, settings.plan(), amount, &mut run, stop);
     // a walk from the light has no use for a technique
     let technique = if estimator == Estimator::Light { String::new() } else { format!(", {}", settings.technique) };
     let label = format!("{estimator}{technique}{}", spread(settings.points));
-    let mut result = run.finish(&film, World::Terms, label);
-    result.series.unseen = unseen(scene, Some(estimator), settings.technique);
-    result.series.by_luck = by_luck(scene, Some(estimator));
-    if !settings.roulette.ends() {
+    let result = run.finish(&film, World::Terms, label);
+    annotated(result, scene, Some(estimator), settings)
+}
+
+/// A result with what its estimator (`None` for the path tracer) cannot find in the scene, and where its paths are cut.
+pub(super) fn annotated(
+    mut result: Sampled,
+    scene: &Scene,
+    estimator: Option<Estimator>,
+    settings: &Settings,
+) -> Sampled {
+    result.series.unseen = unseen(scene, estimator, settings.technique);
+    result.series.by_luck = by_luck(scene, estimator);
+    let roulette = if estimator.is_some() { &settings.roulette } else { &settings.path_roulette };
+    if !roulette.ends() {
         cut(&mut result.series, settings);
     }
     result
@@ -121,15 +132,12 @@ pub fn path(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &
     let t = SceneTransport { scene, sampling: settings.sampling };
     let Settings { technique, path_roulette, points, .. } = settings;
     let label = format!("path tracer, {technique}, roulette {path_roulette}{}", spread(*points));
-    let mut result =
-        sample(&t, &scene.camera, &PathTracer(plan), "path", (World::Path, label), settings, observer, stop);
-    result.series.unseen = unseen(scene, None, settings.technique);
-    result.series.by_luck = by_luck(scene, None);
-    if !settings.path_roulette.ends() {
-        cut(&mut result.series, settings);
-    }
-    result
+    let result = sample(&t, &scene.camera, &PathTracer(plan), "path", (World::Path, label), settings, observer, stop);
+    annotated(result, scene, None, settings)
 }
+
+/// Replicates of a render of many samples.
+const REPLICATES: u32 = 16;
 
 /// The usual amount, from the stream of that name.
 pub(super) fn amount(settings: &Settings, stream: &str) -> Amount {
@@ -138,7 +146,7 @@ pub(super) fn amount(settings: &Settings, stream: &str) -> Amount {
 }
 
 /// What a label says of points that are not the usual ones.
-fn spread(points: Points) -> &'static str {
+pub(super) fn spread(points: Points) -> &'static str {
     if points == Points::Sobol { ", Sobol points" } else { "" }
 }
 
@@ -161,7 +169,7 @@ pub(crate) fn sample<T: Transport>(
     stop: &AtomicBool,
 ) -> Sampled {
     let amount = amount(settings, stream);
-    let mut run = Run::new(stream, sensor.size(), settings.spp, observer);
+    let mut run = Run::new(stream, sensor.size(), settings, observer);
     let film = render(t, sensor, estimator, amount, &mut run, stop);
     run.finish(&film, world, label)
 }
@@ -171,12 +179,16 @@ pub(super) struct Run<'a> {
     observer: &'a dyn Observer,
     started: Instant,
     snapshots: Vec<Snapshot>,
+    /// How long it may take, and how many milliseconds of that have been reported.
+    time: Option<(Duration, AtomicU64)>,
 }
 
 impl<'a> Run<'a> {
-    pub(super) fn new(what: &str, size: [u32; 2], spp: u32, observer: &'a dyn Observer) -> Self {
-        observer.begin(what, u64::from(size[0]) * u64::from(size[1]) * u64::from(spp));
-        Self { observer, started: Instant::now(), snapshots: vec![] }
+    pub(super) fn new(what: &str, size: [u32; 2], settings: &Settings, observer: &'a dyn Observer) -> Self {
+        let paths = u64::from(size[0]) * u64::from(size[1]) * u64::from(settings.spp);
+        observer.begin(what, settings.time.map_or(paths, |t| t.as_millis() as u64));
+        let time = settings.time.map(|t| (t, AtomicU64::new(0)));
+        Self { observer, started: Instant::now(), snapshots: vec![], time }
     }
 
     pub(super) fn finish(self, film: &TermFilm, world: World, label: String) -> Sampled {
@@ -206,10 +218,24 @@ impl<'a> Run<'a> {
 
 impl Watch for Run<'_> {
     fn paths(&self, paths: u64) {
-        self.observer.advance(paths);
+        match &self.time {
+            None => self.observer.advance(paths),
+            Some((_, reported)) => {
+                let now = self.started.elapsed().as_millis() as u64;
+                self.observer.advance(now.saturating_sub(reported.fetch_max(now, Ordering::Relaxed)));
+            }
+        }
     }
-    fn stop(&self, done: u32) -> Option<u32> {
-        self.observer.stop(done)
+    /// As many samples of whole replicates as fit into the time at the speed so far; the decision does not look at any value, so that
+    /// means stay unbiased, and every pixel gets the same number.
+    fn until(&self, done: u32, planned: u32) -> u32 {
+        let planned = self.observer.stop(done).filter(|&n| n > done).map_or(planned, |n| planned.min(n));
+        let Some((time, _)) = &self.time else { return planned };
+        let each = self.started.elapsed().as_secs_f64() / f64::from(done);
+        let fits = (time.as_secs_f64() / each) as u32;
+        // a pass that would leave less than a quarter for the last one takes it along
+        let until = if f64::from(fits) < 1.25 * f64::from(planned) { fits } else { planned };
+        until / REPLICATES * REPLICATES
     }
     fn pass(&mut self, film: &TermFilm) {
         self.observer.preview(film);

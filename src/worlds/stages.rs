@@ -143,8 +143,8 @@ impl Watch for Keeper<'_> {
     fn paths(&self, paths: u64) {
         self.advance.paths(paths);
     }
-    fn stop(&self, done: u32) -> Option<u32> {
-        self.at.iter().copied().find(|&n| n > done)
+    fn until(&self, done: u32, planned: u32) -> u32 {
+        self.at.iter().copied().find(|&n| n > done).map_or(planned, |n| planned.min(n))
     }
     fn pass(&mut self, film: &TermFilm) {
         let paths = film.least_samples();

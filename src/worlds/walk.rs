@@ -78,7 +78,7 @@ pub fn walk(
     let n = matrix.radiosity.patches.len();
     let rows = Rows(n as u32);
     let amount = sampled::amount(settings, &format!("walk {walker}"));
-    let mut run = Run::new(&format!("walk, {walker}"), [n as u32, 1], settings.spp, observer);
+    let mut run = Run::new(&format!("walk, {walker}"), [n as u32, 1], settings, observer);
     let plan = settings.plan();
     let (film, ends) = match walker {
         Walker::Terms(estimator) => {

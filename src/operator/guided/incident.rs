@@ -1,0 +1,152 @@
+//! What arrives at every patch, by direction: one set of stored rays is the matrix, and the guide.
+//!
+//! ```text
+//! T_ij = ρ_i · (rays of i that hit j)/(rays of i)        u = T E + T u        W_ic = mean of u over the rays of i in cell c
+//! ```
+//!
+//! Each patch sends the same number of rays through each of the M × M cells of the [cosine square](super::warp), so that all
+//! weigh the same in its row of T. Direct light T E is estimated by connections and split off: rays miss small lamps. u is
+//! light that has been reflected; where connections find the lamps it is all that a ray has to look for.
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | hits | the patch that each ray of a row meets, [`NOTHING`] if none | [`Incident::hits`] |
+//! | T E | direct light | [`Incident::direct`] |
+//! | u | reflected radiance | [`Incident::radiance`] |
+//! | W_ic | what cell c brings to patch i | [`Incident::weights`] |
+
+use super::warp::CELLS;
+use crate::math::direction::cosine_hemisphere;
+use crate::math::{Key, Purpose, Rgb, Rng};
+use crate::operator::patches::{Patch, Patches, polygon};
+use crate::operator::{SceneTransport, Transport};
+use crate::scene::Vertex;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A ray that meets no patch.
+pub const NOTHING: u32 = u32::MAX;
+
+/// Rays of the fixed-point iteration's last step may change u by this much of its mean.
+const CHANGE: f32 = 1e-3;
+const STEPS: usize = 64;
+
+/// How fine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fineness {
+    /// Rays in each cell.
+    pub rays: usize,
+    /// Connections for the direct light.
+    pub connections: usize,
+}
+
+/// Stored rays, and the light they carry.
+pub struct Incident {
+    fineness: Fineness,
+    /// Patch by patch, cell by cell.
+    pub hits: Vec<u32>,
+    /// T E per patch.
+    pub direct: Vec<Rgb>,
+    reflectance: Vec<Rgb>,
+}
+
+impl Incident {
+    /// Sends the rays. `scene` must be the one that was meshed. `advance` is called once per patch. Nothing when stopped.
+    pub fn new(
+        scene: &SceneTransport<'_>,
+        patches: &Patches,
+        fineness: Fineness,
+        key: Key,
+        advance: &(dyn Fn() + Sync),
+        stop: &AtomicBool,
+    ) -> Option<Self> {
+        let Fineness { rays, .. } = fineness;
+        let per_patch = CELLS * CELLS * rays;
+        let mut hits = vec![NOTHING; patches.len() * per_patch];
+        let row = |(i, row): (usize, &mut [u32])| {
+            if stop.load(Ordering::Relaxed) {
+                return Rgb::ZERO;
+            }
+            advance();
+            for (ray, hit) in row.iter_mut().enumerate() {
+                let u = Rng::at(key, i as u32, ray as u32, 0, Purpose::Scatter).four();
+                let at = vertex(&patches[i], [u[2], u[3]]);
+                let cell = ray / rays;
+                let place = |cell: usize, u: f32| (cell as f32 + u).min(((cell + 1) as f32).next_down()) / CELLS as f32;
+                let (direction, _) = cosine_hemisphere(at.n, [place(cell % CELLS, u[0]), place(cell / CELLS, u[1])]);
+                let seen = scene.scene.trace(scene.scene.lift(at.p, at.n), direction);
+                let patch = seen.and_then(|v| locate(patches, &v));
+                *hit = patch.map_or(NOTHING, |j| j as u32);
+            }
+            let connection = |c: usize| {
+                let u = Rng::at(key, i as u32, c as u32, 0, Purpose::Start).four();
+                let at = vertex(&patches[i], [u[2], u[3]]);
+                let found = scene.connect(&at, &mut Rng::at(key, i as u32, c as u32, 0, Purpose::Connect));
+                found.map_or(Rgb::ZERO, |s| s.weight * scene.emission(&s.state))
+            };
+            (0..fineness.connections).map(connection).sum::<Rgb>() / fineness.connections.max(1) as f32
+        };
+        let direct = hits.par_chunks_mut(per_patch).with_max_len(1).enumerate().map(row).collect();
+        let reflectance = patches.iter().map(|p| p.reflectance.as_vec3()).collect();
+        (!stop.load(Ordering::Relaxed)).then_some(Self { fineness, hits, direct, reflectance })
+    }
+
+    /// Number of patches.
+    pub fn len(&self) -> usize {
+        self.direct.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.direct.is_empty()
+    }
+
+    fn row(&self, i: usize) -> &[u32] {
+        let n = self.hits.len() / self.len();
+        &self.hits[i * n..(i + 1) * n]
+    }
+
+    /// (T u)_i.
+    fn gather(&self, i: usize, u: &[Rgb]) -> Rgb {
+        let row = self.row(i);
+        let sum: Rgb = row.iter().filter(|&&j| j != NOTHING).map(|&j| u[j as usize]).sum();
+        self.reflectance[i] * sum / row.len() as f32
+    }
+
+    /// u = T E + T u, as far as a guide needs it: until a step changes it by 10⁻³ of its mean, or 64 steps.
+    pub fn radiance(&self) -> Vec<Rgb> {
+        let mut u = self.direct.clone();
+        for _ in 0..STEPS {
+            let next: Vec<Rgb> = (0..self.len()).into_par_iter().map(|i| self.direct[i] + self.gather(i, &u)).collect();
+            let change: f32 = next.iter().zip(&u).map(|(a, b)| (*a - *b).abs().element_sum()).sum();
+            let all: f32 = next.iter().map(|a| a.element_sum()).sum();
+            u = next;
+            if change <= CHANGE * all {
+                break;
+            }
+        }
+        u
+    }
+
+    /// W_i over the cells: root mean square over the rays of a cell of the mean channel. The square, because a cell that is dark here
+    /// and bright there needs more samples than its mean says.
+    pub fn weights(&self, i: usize, u: &[Rgb]) -> Vec<f64> {
+        let value = |&j: &u32| if j == NOTHING { 0.0 } else { f64::from(u[j as usize].element_sum()) / 3.0 };
+        let cell = |rays: &[u32]| (rays.iter().map(|j| value(j).powi(2)).sum::<f64>() / rays.len() as f64).sqrt();
+        self.row(i).chunks(self.fineness.rays).map(cell).collect()
+    }
+}
+
+/// The patch of a vertex.
+pub(super) fn locate(patches: &Patches, at: &Vertex) -> Option<usize> {
+    patches.locate((at.side / 2) as usize, at.side & 1 == 0, at.p.as_dvec3())
+}
+
+/// A point of a patch, seen along the normal.
+fn vertex(patch: &Patch, u: [f32; 2]) -> Vertex {
+    let (p, _) = polygon::at(&patch.polygon, f64::from(u[0]), f64::from(u[1]));
+    let point = patch.lift(p);
+    let n = point.normal.as_vec3();
+    let side = 2 * patch.primitive as u32 + u32::from(!patch.front);
+    Vertex { p: point.position.as_vec3(), n, omega: n, side }
+}

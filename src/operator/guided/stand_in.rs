@@ -1,0 +1,32 @@
+//! The scene that the guide believes in: every surface Lambertian, of one colour.
+//!
+//! `ρ = ∫ f cos θ dω` at normal incidence, the mean of an image where there is one; glass is black, because what lies behind it is not
+//! where a Lambertian surface would send light. The stand-in decides where to look, never what is seen: the estimate keeps the true
+//! scene's f, and an error here costs variance alone.
+
+use crate::scene::Description;
+use crate::scene::bsdf::Bsdf;
+use crate::scene::description::{BsdfDescription, Colour, Material};
+use glam::{DVec3, Vec3};
+
+/// The same shapes and lights with Lambertian surfaces.
+pub fn stand_in(description: &Description) -> Description {
+    let materials = description.materials.iter().map(|m| Material::diffuse(m.name.clone(), albedo(&m.bsdf), m.sides));
+    Description { materials: materials.collect(), ..description.clone() }
+}
+
+fn albedo(bsdf: &BsdfDescription) -> DVec3 {
+    let mean = match bsdf {
+        BsdfDescription::Dielectric { .. } => return DVec3::ZERO,
+        BsdfDescription::Diffuse { reflectance }
+        | BsdfDescription::Plastic { reflectance, .. }
+        | BsdfDescription::Phong { reflectance, .. } => match reflectance {
+            Colour::Uniform(rho) => Some(*rho),
+            Colour::Texture(image) => Some(image.mean()),
+        },
+        BsdfDescription::Mirror { .. } | BsdfDescription::Conductor { .. } => None,
+    };
+    let scatters = Bsdf::new(bsdf, false);
+    let scatters = mean.map_or(scatters, |rho| scatters.with_reflectance(rho.as_vec3()));
+    scatters.albedo(Vec3::Z).as_dvec3().clamp(DVec3::ZERO, DVec3::ONE)
+}

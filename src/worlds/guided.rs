@@ -1,0 +1,102 @@
+//! The continuous world with the discrete one as its guide: the same terms, from directions that know where the light is.
+//!
+//! `L_h → p(ω) → T^k E`: the matrix of some hundred patches decides where rays look, the scene decides what they see.
+
+use super::sampled::{self, Estimator, Sampled, annotated, spread};
+use super::{Observer, Settings};
+use crate::estimator::{Branching, PathTracer, Plan, Prefix, SingleTerm};
+use crate::math::Key;
+use crate::operator::SceneTransport;
+use crate::operator::guided::{Guide, GuidedTransport, Recipe};
+use crate::scene::{Description, Scene, SceneError};
+use crate::terms::World;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// Patches of a guide unless told otherwise.
+pub const PATCHES: usize = 1000;
+
+/// A guide, and what it cost.
+pub struct Prepared {
+    /// Where to look.
+    pub guide: Guide,
+    /// How it was made.
+    pub recipe: Recipe,
+    /// How long that took.
+    pub time: Duration,
+}
+
+/// Makes the guide of a scene from about so many patches; nothing when stopped. Its numbers have a stream of their own, so it depends
+/// on the seed alone.
+///
+/// # Errors
+/// If the scene cannot be meshed.
+pub fn prepare(
+    description: &Description,
+    patches: usize,
+    settings: &Settings,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Result<Option<Prepared>, SceneError> {
+    let started = Instant::now();
+    // where nothing connects to the lamps, rays must find them
+    let recipe = Recipe { patches, emission: !settings.technique.connects(), ..Recipe::default() };
+    let key = Key::new(settings.seed, "guide");
+    let begin = |n: usize| observer.begin(&format!("guide, {n} patches"), n as u64);
+    let guide = Guide::new(description, recipe, key, begin, &|| observer.advance(1), stop)?;
+    Ok(guide.map(|guide| Prepared { guide, recipe, time: started.elapsed() }))
+}
+
+impl Prepared {
+    /// The guided walk in a scene.
+    pub fn transport<'a>(&'a self, scene: &'a Scene, settings: &Settings) -> GuidedTransport<'a> {
+        GuidedTransport { scene: SceneTransport { scene, sampling: settings.sampling }, guide: &self.guide }
+    }
+
+    /// The settings with the time that is left after the guide's preparation.
+    fn rest(&self, settings: &Settings) -> Settings {
+        Settings { time: settings.time.map(|t| t.saturating_sub(self.time)), ..settings.clone() }
+    }
+
+    fn label(&self, name: &str, settings: &Settings) -> String {
+        let patches = self.guide.len();
+        format!("{name}, {}{}, guided by {patches} patches", settings.technique, spread(settings.points))
+    }
+
+    /// Every term by its own estimator; nothing for one that walks from the light.
+    pub fn terms(
+        &self,
+        scene: &Scene,
+        estimator: Estimator,
+        settings: &Settings,
+        observer: &dyn Observer,
+        stop: &AtomicBool,
+    ) -> Option<Sampled> {
+        let (t, settings) = (self.transport(scene, settings), &self.rest(settings));
+        let (plan, camera, stream) = (settings.plan(), &scene.camera, format!("guided {estimator}"));
+        let name = (World::Terms, self.label(&estimator.to_string(), settings));
+        let result = match estimator {
+            Estimator::Prefix => sampled::sample(&t, camera, &Prefix(plan), &stream, name, settings, observer, stop),
+            Estimator::Single => {
+                sampled::sample(&t, camera, &SingleTerm(plan), &stream, name, settings, observer, stop)
+            }
+            Estimator::Branching { children } => {
+                let tree = Branching { plan, children };
+                sampled::sample(&t, camera, &tree, &stream, name, settings, observer, stop)
+            }
+            Estimator::Light | Estimator::Bidirectional => return None,
+        };
+        Some(annotated(result, scene, Some(estimator), settings))
+    }
+
+    /// The full path tracer.
+    pub fn path(&self, scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &AtomicBool) -> Sampled {
+        let (t, settings) = (self.transport(scene, settings), &self.rest(settings));
+        let plan = Plan { roulette: settings.path_roulette.clone(), ..settings.plan() };
+        let label = self.label("path tracer", settings) + &format!(", roulette {}", settings.path_roulette);
+        let name = (World::Path, label);
+        let path = PathTracer(plan);
+        let result = sampled::sample(&t, &scene.camera, &path, "guided path", name, settings, observer, stop);
+        annotated(result, scene, None, settings)
+    }
+}

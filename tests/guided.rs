@@ -1,0 +1,400 @@
+//! The matrix as a guide: it may change where rays look, and nothing else.
+//!
+//! ```text
+//! p(ω) = cos θ/π · r(ω),  ∫ p dω = 1        E[X_k] = T^k E with the guide and without it        β = 1: the same bits
+//! ```
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
+
+#[path = "bsdf/chi_square.rs"]
+#[allow(dead_code, unreachable_pub)]
+mod chi_square;
+mod common;
+
+use chi_square::{Cells, Chart, p_value, together};
+use common::judge::{Judged, Jury, at};
+use common::sampling::{Kind, TECHNIQUES, collect, film, plan};
+use common::scenes::{description, quad, room, sphere};
+use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, Technique};
+use fredholm::math::direction::Frame;
+use fredholm::math::{Key, Purpose, Rgb, Rng};
+use fredholm::operator::guided::{Guide, GuidedTransport, Recipe};
+use fredholm::operator::{SceneTransport, Sensor, Step, Transport};
+use fredholm::scene::description::{BsdfDescription, Colour, Description};
+use fredholm::scene::load::{self, Options};
+use fredholm::scene::{Camera, Scene, SurfaceSensor, Vertex, VertexWave};
+use fredholm::stats::Criterion;
+use fredholm::terms::functional::image_replicates;
+use fredholm::terms::{Estimate, TermFilm};
+use glam::{DVec3, Vec3};
+use std::sync::atomic::AtomicBool;
+
+fn built_in(name: &str, size: [u32; 2]) -> Description {
+    let mut d = load::scene(name, &Options::default()).unwrap().description;
+    d.camera.size = size;
+    d
+}
+
+/// A closed room with a ball and a lamp that shines at the ceiling.
+fn lamps() -> Description {
+    description(&[
+        (room(DVec3::splat(-1.0), DVec3::ONE, 0.0), DVec3::new(0.8, 0.7, 0.6), DVec3::ZERO),
+        (sphere(DVec3::new(0.4, -0.6, -0.5), 0.35, false), DVec3::new(0.2, 0.5, 0.9), DVec3::ZERO),
+        (
+            quad(DVec3::new(-0.6, 0.5, -0.6), DVec3::new(0.0, 0.0, 0.4), DVec3::new(0.4, 0.0, 0.0)),
+            DVec3::splat(0.5),
+            DVec3::new(9.0, 7.0, 5.0),
+        ),
+    ])
+}
+
+/// The same with a glossy ball, which the guide takes for Lambertian.
+fn glossy() -> Description {
+    let mut d = lamps();
+    d.name = "glossy".into();
+    let rho = DVec3::new(0.1, 0.2, 0.4);
+    d.materials[1].bsdf =
+        BsdfDescription::Phong { reflectance: Colour::Uniform(rho), specular: DVec3::splat(0.5), exponent: 8.0 };
+    d
+}
+
+fn guide(description: &Description, recipe: Recipe) -> Guide {
+    Guide::new(description, recipe, Key::new(1, "guide"), |_| (), &|| (), &AtomicBool::new(false)).unwrap().unwrap()
+}
+
+const COARSE: Recipe = Recipe {
+    patches: 300,
+    fineness: fredholm::operator::guided::incident::Fineness { rays: 4, connections: 16 },
+    bsdf: 0.1,
+    emission: false,
+};
+
+fn guided<'a>(scene: &'a Scene, guide: &'a Guide) -> GuidedTransport<'a> {
+    GuidedTransport { scene: SceneTransport::new(scene), guide }
+}
+
+/// Every sum of a film.
+fn bits(film: &TermFilm) -> Vec<u64> {
+    let s = film.shape;
+    let all = (0..s.pixels()).flat_map(|p| (0..s.replicates).flat_map(move |r| (0..s.slots).map(move |k| (p, r, k))));
+    all.flat_map(|(p, r, k)| film.sum(p, r, k).to_array()).map(f64::to_bits).collect()
+}
+
+/// Vertices anywhere on the surfaces.
+fn vertices(scene: &Scene, n: usize) -> Vec<Vertex> {
+    let sensor = SurfaceSensor::new(scene);
+    let rng = |i: usize| Rng::at(Key::new(9, "vertices"), i as u32, 0, 0, Purpose::Start);
+    (0..n).map(|i| sensor.vertex(scene, &mut rng(i))).collect()
+}
+
+/// p-values of 2¹⁶ directions from x at two resolutions, and how much of the density is missing. Cells never cross the edges of
+/// the table, where the density jumps.
+fn p_values(x: &Vertex, draw: impl Fn(u32) -> Vec3, density: impl Fn(Vec3) -> f32) -> ([f64; 2], f64) {
+    let (frame, chart) = (Frame::new(x.n), Chart::about(Vec3::X));
+    let cuts: Vec<f64> = (0..=16).map(|i| (1.0 - f64::from(i) / 16.0).sqrt()).collect();
+    let found: Vec<[f64; 2]> = (0..1 << 16).map(|i| chart.at(frame.local(draw(i)))).collect();
+    let cells = Cells::new(&mut found[..1 << 14].to_vec(), 8, &cuts);
+    let f = |z: f64, phi: f64| DVec3::splat(f64::from(density(frame.world(chart.direction(z, phi)))));
+    let expected: Vec<f64> = cells.integrals(f, 1e-4).iter().map(|v| v.x).collect();
+    let mut counts = vec![0u64; expected.len()];
+    // the pilot has chosen the cells and is not counted
+    found[1 << 14..].iter().for_each(|&d| counts[cells.find(d)] += 1);
+    let missing = 1.0 - expected.iter().sum::<f64>();
+    let p = [128, 512].map(|count| {
+        let (observed, expected) = together(&counts, &expected, count);
+        p_value(&observed, &expected)
+    });
+    (p, missing)
+}
+
+#[test]
+fn guided_directions_have_the_density_they_claim() {
+    let mut account = common::open("guided_directions_have_the_density_they_claim");
+    let d = lamps();
+    let (scene, guide) = (Scene::new(&d), guide(&d, COARSE));
+    let t = guided(&scene, &guide);
+    let (mut tested, mut strongest) = (0, 1.0f32);
+    for (i, x) in vertices(&scene, 24).iter().enumerate() {
+        let Some(warp) = guide.at(x) else { continue };
+        let key = Key::new(account.seed(), "directions").branch(i as u32);
+        let density = |d: Vec3| d.dot(x.n).max(0.0) * std::f32::consts::FRAC_1_PI * warp.ratio(x.n, d);
+        let step = |j: u32| t.scatter(x, &mut Rng::at(key, j, 0, 0, Purpose::Scatter));
+        // the room is closed: something is always hit, and it looks back along the ray
+        let draw = |j: u32| -step(j).unwrap().state.omega;
+        let (p, missing) = p_values(x, draw, density);
+        assert!(missing.abs() < 1e-3, "{x:?}: the density adds up to 1 − {missing}");
+        let level = account.spend(2);
+        assert!(p[0] > level && p[1] > level, "{x:?}: p = {p:?}, level {level:e}");
+        // weight and density of every step are those of the direction, but for the few within rounding of an edge
+        let mut off = 0;
+        for s in (0..4096).filter_map(step) {
+            let (d, rho) = (-s.state.omega, t.albedo(x));
+            let p = density(d);
+            strongest = strongest.max(warp.ratio(x.n, d));
+            assert!(
+                (s.weight * s.pdf * std::f32::consts::PI / d.dot(x.n) / rho - Vec3::ONE).abs().max_element() < 1e-3
+            );
+            off += usize::from((p / s.pdf - 1.0).abs() > 1e-3);
+        }
+        assert!(off <= 4, "{x:?}: {off} of 4096 steps have another density");
+        tested += 1;
+    }
+    assert!(tested >= 16 && strongest > 3.0, "{tested} vertices, largest ratio {strongest}");
+    // the same judge must see that the cosine alone is another density
+    let x = vertices(&scene, 24).into_iter().find(|x| guide.at(x).is_some()).unwrap();
+    let key = Key::new(account.seed(), "wrong");
+    let draw = |j: u32| -t.scatter(&x, &mut Rng::at(key, j, 0, 0, Purpose::Scatter)).unwrap().state.omega;
+    let (p, _) = p_values(&x, draw, |d| d.dot(x.n).max(0.0) * std::f32::consts::FRAC_1_PI);
+    let level = account.spend(2);
+    assert!(p[0] < level && p[1] < level, "the cosine passes for the guide: {p:?}");
+}
+
+const KINDS: [Kind; 3] = [Kind::Prefix, Kind::Single, Kind::Path];
+
+fn of<T: Transport>(t: &T, camera: &Camera, kind: Kind, technique: Technique) -> Vec<u64>
+where
+    Camera: Sensor<T>,
+{
+    bits(&film(t, camera, kind, &plan(5, technique, &Roulette::LECTURE), 256, Key::new(2, "bits")))
+}
+
+#[test]
+fn a_guide_that_leaves_all_to_the_bsdf_changes_no_bit() {
+    for d in [built_in("cornell", [8, 8]), built_in("cornell-spheres", [8, 8]), lamps()] {
+        let scene = Scene::new(&d);
+        let (none, some) = (guide(&d, Recipe { bsdf: 1.0, ..COARSE }), guide(&d, COARSE));
+        for technique in TECHNIQUES {
+            for kind in KINDS {
+                let plain = of(&SceneTransport::new(&scene), &scene.camera, kind, technique);
+                assert!(of(&guided(&scene, &none), &scene.camera, kind, technique) == plain, "{}, {kind:?}", d.name);
+                assert!(of(&guided(&scene, &some), &scene.camera, kind, technique) != plain, "{}, {kind:?}", d.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn guided_packets_give_the_bits_of_single_rays() {
+    let d = built_in("cornell", [16, 16]);
+    let (packets, single, guide) = (Scene::new(&d), Scene::new(&d).one_by_one(), guide(&d, COARSE));
+    for technique in TECHNIQUES {
+        for kind in [Kind::Prefix, Kind::Single] {
+            let [a, b] = [&packets, &single].map(|s| of(&guided(s, &guide), &s.camera, kind, technique));
+            assert!(a == b, "{technique}, {kind:?}");
+        }
+    }
+}
+
+#[test]
+fn guides_do_not_depend_on_the_number_of_threads() {
+    let d = built_in("cornell", [8, 8]);
+    let scene = Scene::new(&d);
+    let [one, three] = [1, 3].map(|n| {
+        rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap().install(|| {
+            let guide = guide(&d, COARSE);
+            of(&guided(&scene, &guide), &scene.camera, Kind::Prefix, Technique::Mis)
+        })
+    });
+    assert!(one == three);
+}
+
+/// Σ_k X_k + tail of the prefix estimator is the sample of the independent path tracer, path by path, with a guide as without.
+#[test]
+fn guided_terms_and_tail_sum_to_the_guided_path_tracer() {
+    for d in [built_in("cornell", [12, 12]), built_in("cornell-spheres", [12, 12])] {
+        let (scene, guide) = (Scene::new(&d), guide(&d, COARSE));
+        let t = guided(&scene, &guide);
+        let roulettes = [Roulette::Albedo { from: 1 }, Roulette::Contribution { from: 1 }];
+        for (technique, roulette) in TECHNIQUES.into_iter().flat_map(|t| roulettes.each_ref().map(|r| (t, r))) {
+            let (plan, key) = (plan(3, technique, roulette), Key::new(5, "sums"));
+            let terms = collect(&t, &scene.camera, &Prefix(plan.clone()), 16, 16, key);
+            let paths = collect(&t, &scene.camera, &PathTracer(plan.clone()), 16, 16, key);
+            let mut tails = 0.0;
+            for (i, (terms, path)) in terms.paths().zip(paths.paths()).enumerate() {
+                let sum: DVec3 = terms.iter().sum();
+                tails += terms[4].element_sum();
+                let scale = 1e-5 * path[0].abs().max(DVec3::splat(1e-6));
+                assert!((sum - path[0]).abs().cmple(scale).all(), "{}, {technique}, {i}: {sum}, {}", d.name, path[0]);
+            }
+            assert!(tails > 0.0);
+        }
+    }
+}
+
+/// Means of the image, slot by slot, and of all of it.
+fn means<T: Transport>(t: &T, camera: &Camera, kind: Kind, plan: &Plan, spp: u32, key: Key) -> Vec<Estimate>
+where
+    Camera: Sensor<T>,
+{
+    let film = film(t, camera, kind, plan, spp, key);
+    let (r, slots) = (image_replicates(&film), film.shape.slots);
+    let mut all: Vec<Estimate> = (0..slots).map(|s| r.estimate(s..s + 1)).collect();
+    all.push(r.estimate(0..slots));
+    all
+}
+
+/// Image means of every term, the tail and the whole, guided and not, in scenes with and without surfaces that the guide
+/// takes for Lambertian: equal within the δ of the program's own verdicts, or an error of half the term would have been seen.
+#[test]
+fn guided_terms_agree_with_the_others() {
+    let mut jury = Jury::open("guided_terms_agree_with_the_others");
+    let criterion = Criterion::default();
+    let (long, contribution) = (Roulette::Albedo { from: 4 }, Roulette::Contribution { from: 1 });
+    let ways = [(Kind::Prefix, &long), (Kind::Single, &long), (Kind::Prefix, &contribution)];
+    for (d, spp) in [(built_in("cornell", [16, 16]), 8192), (lamps(), 8192), (glossy(), 8192)] {
+        let (scene, guide) = (Scene::new(&d), guide(&d, COARSE));
+        let of = |roulette: &Roulette| plan(4, Technique::Mis, roulette);
+        let key = Key::new(jury.seed(), "agree");
+        let plain = SceneTransport::new(&scene);
+        let plain = means(&plain, &scene.camera, Kind::Prefix, &of(&long), spp, key.branch(0));
+        for (i, (kind, roulette)) in ways.into_iter().enumerate() {
+            let t = guided(&scene, &guide);
+            let guided = means(&t, &scene.camera, kind, &of(roulette), spp, key.branch(1 + i as u32));
+            let whole = plain[plain.len() - 1].mean;
+            for (s, (a, b)) in guided.iter().zip(&plain).enumerate() {
+                let difference = Estimate {
+                    mean: a.mean - b.mean,
+                    std_error: (a.std_error.powf(2.0) + b.std_error.powf(2.0)).map(f64::sqrt),
+                    replicates: a.replicates.min(b.replicates),
+                };
+                let delta = criterion.of_term * b.mean + criterion.of_total * whole;
+                let visible = delta.max(0.5 * b.mean);
+                let what = format!("{}, {kind:?}, {roulette}, slot {s}", d.name);
+                let judged = jury.judge(&what, &difference, DVec3::ZERO, delta, visible);
+                assert_ne!(judged, Judged::TooNoisy, "{what}: {difference:?} of {}", b.mean);
+            }
+        }
+    }
+    // the depth of the ledger lets these samples prove equality to 2 % of few terms; of all of them they would have shown an
+    // error of a half, and 1 % is proved by the furnace and by direct light below
+    jury.assert_power(0.14, 0.0);
+}
+
+/// In a closed room that glows everywhere T^k E = ρ^k E, however badly a guide distorts the directions.
+#[test]
+fn guided_walks_have_the_terms_of_a_furnace() {
+    let mut jury = Jury::open("guided_walks_have_the_terms_of_a_furnace");
+    let d = built_in("furnace", [4, 4]);
+    let (scene, rho) = (Scene::new(&d), 0.5f64);
+    // the guide believes that only one lamp glows, so that its tables are far from even
+    let mut liar = d.clone();
+    liar.shapes.iter_mut().for_each(|s| s.emission = DVec3::ZERO);
+    let low = quad(DVec3::splat(0.2), DVec3::new(0.0, 0.0, 0.4), DVec3::new(0.4, 0.0, 0.0));
+    let lamp =
+        fredholm::scene::description::Shape { name: "lamp".into(), geometry: low, material: 0, emission: DVec3::ONE };
+    liar.shapes.push(lamp);
+    let guide = guide(&liar, COARSE);
+    let emission = d.shapes[0].emission;
+    let albedo = d.materials[d.shapes[0].material].lambertian().unwrap();
+    assert!(d.shapes.len() == 1 && albedo == DVec3::splat(rho), "{d:?}");
+    let t = guided(&scene, &guide);
+    for technique in [Technique::Scatter, Technique::Mis] {
+        let plan = plan(4, technique, &Roulette::Never);
+        let film = film(&t, &scene.camera, Kind::Prefix, &plan, 1 << 14, Key::new(jury.seed(), "furnace"));
+        let whole: DVec3 = (0..=4).map(|k| emission * rho.powi(k)).sum();
+        for pixel in [0, 5, 15] {
+            for k in 0..=4usize {
+                let what = format!("{technique}, pixel {pixel}, k = {k}");
+                let judged = jury.part(&what, &at(&film, pixel, k..k + 1), emission * rho.powi(k as i32), whole);
+                assert_ne!(judged, Judged::TooNoisy, "{what}");
+            }
+        }
+    }
+    jury.assert_power(0.2, 0.0);
+}
+
+/// Connections with the density of the cosine although rays are guided: the weights of a path no longer add up to one.
+struct Forgetful<'a>(GuidedTransport<'a>);
+
+impl Transport for Forgetful<'_> {
+    type State = Vertex;
+    type Wave = VertexWave;
+    fn emission(&self, at: &Vertex) -> Rgb {
+        self.0.emission(at)
+    }
+    fn scatter(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
+        self.0.scatter(at, rng)
+    }
+    fn connect(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
+        self.0.scene.connect(at, rng)
+    }
+    fn albedo(&self, at: &Vertex) -> Rgb {
+        self.0.albedo(at)
+    }
+}
+
+impl Sensor<Forgetful<'_>> for Eye<'_> {
+    fn size(&self) -> [u32; 2] {
+        self.0.size
+    }
+    fn start(&self, t: &Forgetful<'_>, pixel: u32, rng: &mut Rng) -> Option<Vertex> {
+        self.0.start(&t.0.scene, pixel, rng)
+    }
+}
+
+struct Eye<'a>(&'a Camera);
+
+#[test]
+fn a_guide_that_nobody_accounts_for_is_found() {
+    let mut account = common::open("a_guide_that_nobody_accounts_for_is_found");
+    let d = built_in("cornell", [16, 16]);
+    // rays look for the lamp, too: there the two densities meet
+    let (scene, guide) = (Scene::new(&d), guide(&d, Recipe { emission: true, ..COARSE }));
+    let (t, plan) = (guided(&scene, &guide), plan(1, Technique::Mis, &Roulette::Never));
+    let key = Key::new(account.seed(), "found");
+    let plain = means(&SceneTransport::new(&scene), &scene.camera, Kind::Prefix, &plan, 1 << 14, key.branch(0));
+    let right = means(&t, &scene.camera, Kind::Prefix, &plan, 1 << 14, key.branch(1));
+    let wrong = film(&Forgetful(t), &Eye(&scene.camera), Kind::Prefix, &plan, 1 << 14, key.branch(2));
+    let wrong = image_replicates(&wrong).estimate(1..2);
+    let less = |a: &Estimate, b: &Estimate| Estimate {
+        mean: a.mean - b.mean,
+        std_error: (a.std_error.powf(2.0) + b.std_error.powf(2.0)).map(f64::sqrt),
+        replicates: a.replicates,
+    };
+    account.assert_equivalent("direct light", &less(&right[1], &plain[1]), DVec3::ZERO, 0.01 * plain[1].mean);
+    account.assert_differs("direct light, weights that do not add up", &less(&wrong, &plain[1]), DVec3::ZERO);
+}
+
+/// A folder of its own, and what the program says there.
+fn fredholm(desk: &tempfile::TempDir, line: &str) -> (i32, String) {
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
+    let output = command.args(line.split_whitespace()).current_dir(desk.path()).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout) + &text(output.stderr))
+}
+
+/// `--time` decides how many samples there are and nothing else; so does a guide know only the seed.
+#[test]
+fn a_render_by_the_clock_is_one_of_so_many_samples() {
+    let desk = tempfile::TempDir::new().unwrap();
+    let read = |dir: &str| fredholm::report::summary::read(&desk.path().join(dir).join("summary.json")).unwrap();
+    for guide in ["bsdf", "radiosity --patches 200"] {
+        let line = format!("series cornell --worlds terms --size 8x8 --max-bounces 2 -q --force --guide {guide}");
+        let (code, text) = fredholm(&desk, &format!("{line} --time 1500ms -o clock"));
+        assert_eq!(code, 0, "{text}");
+        let clock = read("clock");
+        assert!(clock.spp >= 16 && clock.spp.is_multiple_of(16), "{} spp", clock.spp);
+        assert_eq!(text.contains("guide: radiosity"), guide != "bsdf", "{text}");
+        let (code, text) = fredholm(&desk, &format!("{line} --spp {} -o count", clock.spp));
+        assert_eq!(code, 0, "{text}");
+        let count = read("count");
+        assert_eq!(clock.spp, count.spp);
+        assert_eq!(clock.series[0].functionals, count.series[0].functionals, "{guide}");
+    }
+}
+
+#[test]
+fn what_a_guide_cannot_do_is_refused() {
+    let desk = tempfile::TempDir::new().unwrap();
+    for (line, why) in [
+        ("series cornell --guide radiosity --estimator light", "walks from the eye only"),
+        ("series cornell --guide radiosity --sampling uniform", "replaces the cosine"),
+        ("radiosity cornell --guide radiosity", "none are asked for"),
+        ("sweep cornell --over spp --guide radiosity", "has no part in a sweep"),
+        ("sweep cornell --over spp --time 1s", "has no part in a sweep"),
+        ("series cornell --time 1s --spp 4", "cannot be used with"),
+        ("series cornell --time soon", "is not a time such as 30s"),
+    ] {
+        let (code, text) = fredholm(&desk, line);
+        assert!(code == 2 && text.contains(why), "{line}: {code}, {text}");
+    }
+}
