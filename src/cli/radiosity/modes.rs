@@ -48,7 +48,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     // the modes of one channel, as the camera sees them
     let channel = lab.channel(args.channel);
     let shown: Vec<usize> =
-        (0..all[channel].leading.len()).filter(|&i| spectra[channel].modes[i].value != 0.0).collect();
+        (0..all[channel].leading.len()).filter(|&i| spectra[channel].modes[i].value.abs() > modes::ROUNDING).collect();
     let fields: Vec<Vec<f64>> = shown.iter().map(|&i| all[channel].leading[i].vector.clone()).collect();
     let images = lab.matrix.paint(&lab.scene, &fields, &settings, &progress, stop_flag());
     progress.finish();
