@@ -19,7 +19,7 @@ fn all_solvers_stand_in_one_table_and_one_file() {
     let args = ["radiosity", "cornell", "--patches", "150", "--solver", "all", "--history", "h.csv", "-o", "out"];
     let run = fredholm(folder.path(), &args).assert().success();
     let printed = String::from_utf8(run.get_output().stdout.clone()).unwrap();
-    assert!(printed.lines().all(|l| l.chars().count() <= 120), "{printed}");
+    assert!(printed.lines().skip(1).all(|l| l.chars().count() <= 100), "{printed}");
     for name in ALL {
         assert!(printed.lines().any(|l| l.starts_with(name)), "{name} in\n{printed}");
     }
@@ -46,7 +46,7 @@ fn all_solvers_stand_in_one_table_and_one_file() {
         assert_eq!(csv.lines().filter(|l| l.split(',').next() == Some(name)).count(), steps.len());
         let last = solver["reaches"][2]["products"].as_f64().unwrap();
         let whole = if last.fract() == 0.0 { format!("{last:.0}") } else { format!("{last:.1}") };
-        let row = printed.lines().find(|l| l.starts_with(name)).unwrap();
+        let row = printed.lines().rev().find(|l| l.starts_with(name)).unwrap();
         assert!(row.split_whitespace().any(|word| word == whole), "{whole} in {row}");
         let errors: Vec<f64> = steps.iter().map(|s| s["error"].as_f64().unwrap()).collect();
         assert!(errors[errors.len() - 1] <= 1e-12, "{name}: {errors:?}");
@@ -78,7 +78,7 @@ fn modes_are_named_outside_the_band_only() {
         ["radiosity", "cornell", "--patches", "150", "--modes", "10", "--size", "16x16", "--spp", "4", "-o", "out"];
     let run = fredholm(folder.path(), &args).assert().success();
     let printed = String::from_utf8(run.get_output().stdout.clone()).unwrap();
-    assert!(printed.lines().all(|l| l.chars().count() <= 110), "{printed}");
+    assert!(printed.lines().skip(1).all(|l| l.chars().count() <= 100), "{printed}");
     let out = folder.path().join("out");
     for file in ["modes.json", "modes.svg", "modes.png", "modes-painted.png", "summary.json"] {
         assert!(out.join(file).is_file() && printed.contains(file), "{file}");

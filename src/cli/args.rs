@@ -80,8 +80,8 @@ tail. (Elsewhere the same images are Mitsuba's max_depth = K + 1 and pbrt's maxd
   fredholm radiosity cornell --solver southwell --channel green --json
   fredholm radiosity cornell --modes 8 --size 128x128
 
-With --solver nothing is rendered. Written: solvers.json, solvers.svg, solvers.png, summary.json, and
-the file of --history. A product is one application of T; LU counts as n/3 of them.
+With --solver nothing is rendered. Written: solvers.json, solvers.svg, solvers.png, summary.json,
+and the file of --history. A product is one application of T; LU counts as n/3 of them.
 
 With --modes the dense eigenproblem of every channel is solved. Written: modes.json, modes.svg,
 modes.png, modes-painted.png, summary.json. Eigenvalues inside the band of the edges get no name:

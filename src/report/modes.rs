@@ -52,10 +52,13 @@ pub struct Spectrum {
     pub unweighted: Vec<f64>,
 }
 
+/// An eigenvalue below this is zero, as far as form factors in single precision can tell.
+pub const ROUNDING: f64 = 1e-6;
+
 impl Spectrum {
     /// Whether an eigenvalue stands outside the band, and so belongs to the scene rather than to the mesh.
     pub fn outside(&self, value: f64) -> bool {
-        value.abs() > self.band
+        value.abs() > self.band.max(ROUNDING)
     }
 
     fn share(&self, row: &Row) -> f64 {
@@ -97,7 +100,11 @@ pub fn table(s: &Spectrum) -> String {
             format!("{:.2} %", 100.0 * s.share(m)),
             at(4),
             at(8),
-            if outside { String::new() } else { "in the band: belongs to the mesh".into() },
+            match outside {
+                true => String::new(),
+                false if m.value.abs() <= ROUNDING => "zero to rounding".into(),
+                false => "in the band: belongs to the mesh".into(),
+            },
         ]);
     }
     let sides = [Side::Right, Side::Right, Side::Right, Side::Right, Side::Right, Side::Right, Side::Left];

@@ -48,12 +48,12 @@ pub struct Step {
 ///
 /// ```
 /// use fredholm::operator::{form_factor::FormFactors, matrix::PatchOperator};
-/// use fredholm::solver::{PartialSums, Watched};
+/// use fredholm::solver::{Iteration, PartialSums, Watched};
 /// let plates = FormFactors { n: 2, f: vec![0.0, 1.0, 1.0, 0.0], area: vec![1.0, 1.0], rays: 0 };
 /// let (t, light) = (PatchOperator::new(&plates, vec![0.5, 0.5]), [1.0, 0.0]);
 /// let mut watched = Watched::new(&t, &light, || PartialSums::new(&t, &light));
 /// let last = watched.by_ref().take(60).take_while(|s| s.residual > 1e-12).last();
-/// assert!(last.is_some_and(|s| s.step == 39)); // ‖T^{n+1} E‖ = 2^−(n+1)
+/// assert!(last.is_some_and(|s| s.step == 38)); // ‖T^{n+1} E‖ = 2^−(n+1)
 /// assert!((watched.iteration().iterate()[0] - 4.0 / 3.0).abs() < 1e-11);
 /// ```
 #[derive(Debug)]

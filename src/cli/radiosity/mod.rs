@@ -21,18 +21,20 @@ use std::path::PathBuf;
 /// Arguments of `radiosity`.
 #[derive(Clone, Debug, Args)]
 pub struct Radiosity {
-    /// Solve (I − T) L = E step by step instead of showing L: all, or the name of one solver
+    /// Solve (I − T) L = E step by step instead: all, neumann, cg, …
     ///
-    /// neumann: partial sums of Σ TᵏE. jacobi: the same unless patches are curved and see themselves.
-    /// gauss-seidel, sor: patch by patch. southwell: progressive shooting, the brightest first.
-    /// chebyshev: needs the ends of the spectrum. cg: conjugate gradients in the weight 1/ρ. gmres.
-    /// lu: the direct solve that all others are held against.
+    /// neumann: partial sums of Σ TᵏE; jacobi: the same unless patches see themselves;
+    /// gauss-seidel, sor: patch by patch; southwell: progressive shooting, brightest first;
+    /// chebyshev: needs the ends of the spectrum; cg: conjugate gradients in the weight 1/ρ;
+    /// gmres; lu: the direct solve that all others are held against.
     #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
     pub solver: Option<SolverName>,
-    /// Channel of --solver and of the pictures of --modes [default: that of the largest spectral radius]
-    #[arg(long, value_enum, value_name = "NAME")]
+    /// red, green or blue, for --solver and --modes [default: the slowest]
+    ///
+    /// The slowest is that of the largest spectral radius.
+    #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true)]
     pub channel: Option<Channel>,
-    /// File for every step of every solver, in the output folder: steps.csv
+    /// Also write every step of every solver, into the output folder
     #[arg(long, value_name = "NAME.csv", requires = "solver", value_parser = csv_name)]
     pub history: Option<String>,
     /// Show the spectrum of T and its N leading modes instead of L

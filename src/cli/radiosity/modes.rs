@@ -48,7 +48,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     // the modes of one channel, as the camera sees them
     let channel = lab.channel(args.channel);
     let shown: Vec<usize> =
-        (0..all[channel].leading.len()).filter(|&i| spectra[channel].modes[i].value != 0.0).collect();
+        (0..all[channel].leading.len()).filter(|&i| spectra[channel].modes[i].value.abs() > modes::ROUNDING).collect();
     let fields: Vec<Vec<f64>> = shown.iter().map(|&i| all[channel].leading[i].vector.clone()).collect();
     let images = lab.matrix.paint(&lab.scene, &fields, &settings, &progress, stop_flag());
     progress.finish();
@@ -98,7 +98,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
         ];
         if let Some(band) = bands.iter().find(|b| b.other > 0) {
             blocks.push(format!(
-                "note: {} pairs of patches meet at an angle other than 90°: their band is not known and not drawn",
+                "note: {} pairs of patches meet at another angle than 90°: their band is not known",
                 band.other
             ));
         }
@@ -111,7 +111,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
         }
         let s = &spectra[channel];
         blocks.push(format!("{}: ‖Tᵏ⁺¹E‖/‖TᵏE‖ in two norms\n{}", s.channel, modes::ratio_table(s)));
-        blocks.push(format!("written to {}: {}", lab.folder.display(), files.join(", ")));
+        blocks.push(format!("written to {}:\n{}", lab.folder.display(), files.join(", ")));
         say(&paragraphs(&blocks))?;
     }
     Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })

@@ -52,7 +52,7 @@ pub fn run(args: &Radiosity, name: SolverName) -> Result<Ending, Failure> {
         let mut head = format!(
             "{}\n{} patches, {} channel: eigenvalues {low:.5} to {high:.5}\n\
              products with T, then seconds, until ‖x − L‖/‖L‖ in the weight A/ρ is below 1e-3, 1e-6, 1e-10\n\
-             the reference is LU, which counts as n/3 products; Chebyshev and SOR spend {} on the spectrum first",
+             LU counts as n/3 products; Chebyshev and SOR spend {} on the spectrum first",
             lab.command,
             lab.patches(),
             NAMES[channel],
@@ -63,10 +63,11 @@ pub fn run(args: &Radiosity, name: SolverName) -> Result<Ending, Failure> {
         }
         let table = solvers::table(&histories);
         let extrapolated = format!(
-            "the series itself, Σ Aᵢ xᵢ/A of the first terms: error ×noise, where the terms had independent errors\n{}",
+            "the series itself, Σ Aᵢ xᵢ/A of the first terms: error ×noise gain,\n\
+             the latter if the terms had independent errors of equal relative size\n{}",
             solvers::extrapolations(&series)
         );
-        let written = format!("written to {}: {}", lab.folder.display(), files.join(", "));
+        let written = format!("written to {}:\n{}", lab.folder.display(), files.join(", "));
         say(&paragraphs(&[head, table, extrapolated, written]))?;
     }
     Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })
