@@ -12,6 +12,7 @@
 
 mod common;
 
+use common::judge::{Judged, Jury};
 use common::sampling::{TECHNIQUES, collect, plan};
 use fredholm::estimator::record::record;
 use fredholm::estimator::render::{Amount, Unwatched};
@@ -36,7 +37,12 @@ fn never() -> AtomicBool {
 }
 
 fn scene(name: &str, side: u32) -> (Description, Scene) {
-    let options = Options { set: vec![format!("camera.size=[{side},{side}]")], ..Options::default() };
+    let mut set = vec![format!("camera.size=[{side},{side}]")];
+    // not into the lamp: its rim would be all the noise there is
+    if name == "cornell" {
+        set.extend(["camera.origin=[0,0.6,0.9]", "camera.target=[0,-0.9,-0.5]"].map(String::from));
+    }
+    let options = Options { set, ..Options::default() };
     let description = load::scene(name, &options).unwrap().description;
     let scene = Scene::new(&description);
     (description, scene)
@@ -138,14 +144,14 @@ fn exact(channel: usize, j: usize, k: usize, u: &[f64], square: &[f64]) -> Vec<f
 #[test]
 fn recorded_moments_are_those_of_the_matrix() {
     const K: usize = 3;
-    let mut account = common::open("recorded_moments_are_those_of_the_matrix");
+    let mut jury = Jury::open("recorded_moments_are_those_of_the_matrix");
     let t = walk();
     let e = |c: usize| -> Vec<f64> { emission().iter().map(|e| f64::from(e[c])).collect() };
     let average = |x: Vec<f64>| x.iter().sum::<f64>() / N as f64;
     for (stream, technique) in [Technique::Scatter, Technique::Connect].into_iter().enumerate() {
         let plan = plan(K, technique, &"constant:0.2@3".parse().unwrap());
-        let key = Key::new(account.seed(), "moments").branch(stream as u32);
-        let amount = Amount { spp: 1 << 16, replicates: 256, key };
+        let key = Key::new(jury.seed(), "moments").branch(stream as u32);
+        let amount = Amount { spp: 1 << 19, replicates: 256, key };
         let r = record(&t, &Rows(N as u32), &Vertices(plan), amount, &Unwatched, &never()).unwrap();
         // hits score E at every vertex; connections score one of two lamps, weight ρ F · 2 E, after the hit at the eye
         let (slot, vertices): (fn(usize) -> usize, usize) =
@@ -186,11 +192,15 @@ fn recorded_moments_are_those_of_the_matrix() {
                 assert!((got - second).abs().cmple(1e-6 * second).all(), "{got} {second}");
                 continue;
             }
-            let (what, margin) = (format!("{technique}, vertices {j} and {k}"), 0.05);
-            account.assert_equivalent(&format!("M, {what}"), &estimate(|m| &m.second), second, margin * second);
-            account.assert_equivalent(&format!("m, {what}"), &estimate(|m| &m.product), product, margin * product);
+            let what = format!("{technique}, vertices {j} and {k}");
+            let mut judge = |what: &str, e: &Estimate, truth: DVec3| {
+                assert_ne!(jury.judge(what, e, truth, 0.05 * truth, 0.2 * truth), Judged::TooNoisy, "{what}: {e:?}");
+            };
+            judge(&format!("M, {what}"), &estimate(|m| &m.second), second);
+            judge(&format!("m, {what}"), &estimate(|m| &m.product), product);
         }
     }
+    jury.assert_power(0.7, 0.0);
 }
 
 // ------------------------------------------------------------------------------------------------ against rendering
@@ -243,7 +253,8 @@ fn compare(test: &str, scenes: &[(&str, u32)], schedules: &[&str], paths: u32) -
         assert!(radii.fourth < 0.95, "{name} at q = {LARGEST}: {radii:?}");
         let settings = Settings { max_bounces: 12, seed: account.seed(), ..Settings::default() };
         let spp = paths / (side * side);
-        let recorded = roulette::pilot(&scene, &settings, spp, &Unobserved, &never()).unwrap();
+        // all predictions share its error: four times the paths
+        let recorded = roulette::pilot(&scene, &settings, 4 * spp, &Unobserved, &never()).unwrap();
         let (mut errors, mut beyond, mut largest, mut all) = (vec![], 0, 0.0_f64, 0);
         for text in schedules {
             let schedule: Roulette = text.parse().unwrap();
@@ -262,6 +273,8 @@ fn compare(test: &str, scenes: &[(&str, u32)], schedules: &[&str], paths: u32) -
             }
             let z = (m.all.value - p.all.value) / m.all.std_error.hypot(p.all.std_error);
             let ratio = m.all.value / p.all.value;
+            let error = m.all.std_error.hypot(p.all.std_error) / p.all.value;
+            assert!(error < 0.04, "{name}, {text}: a ratio known to {error} proves little");
             eprintln!(
                 "{name:>12} {text:<24} predicted {:.5} ± {:.5} measured {:.5} ± {:.5} ratio {ratio:.4} z {z:+.2}",
                 p.all.value, p.all.std_error, m.all.value, m.all.std_error
@@ -285,16 +298,14 @@ fn compare(test: &str, scenes: &[(&str, u32)], schedules: &[&str], paths: u32) -
 #[test]
 fn predicted_variances_are_measured() {
     let schedules: Vec<&str> = SCHEDULES.into_iter().step_by(4).collect();
-    let found = compare("predicted_variances_are_measured", &[("cornell", 16)], &schedules, 1 << 17);
-    // six values of about 3 % each
-    assert!(found[0].0 < 0.1, "{found:?}");
+    compare("predicted_variances_are_measured", &[("cornell", 16)], &schedules, 1 << 16);
 }
 
 #[test]
 #[ignore = "nightly: 66 renders"]
 fn predicted_variances_are_measured_at_length() {
     let scenes = [("cornell", 32), ("sphere", 32), ("shells", 32)];
-    let found = compare("predicted_variances_are_measured_at_length", &scenes, &SCHEDULES, 1 << 20);
+    let found = compare("predicted_variances_are_measured_at_length", &scenes, &SCHEDULES, 1 << 18);
     assert!(found.iter().all(|f| f.0 < 0.03), "{found:?}");
 }
 
