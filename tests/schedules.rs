@@ -37,11 +37,13 @@ fn never() -> AtomicBool {
 }
 
 fn scene(name: &str, side: u32) -> (Description, Scene) {
-    let mut set = vec![format!("camera.size=[{side},{side}]")];
-    // not into the lamp: its rim would be all the noise there is
-    if name == "cornell" {
-        set.extend(["camera.origin=[0,0.6,0.9]", "camera.target=[0,-0.9,-0.5]"].map(String::from));
-    }
+    seen(name, side, &[])
+}
+
+/// The same with other keys.
+fn seen(name: &str, side: u32, set: &[&str]) -> (Description, Scene) {
+    let size = format!("camera.size=[{side},{side}]");
+    let set = set.iter().map(|s| (*s).to_owned()).chain([size]).collect();
     let options = Options { set, ..Options::default() };
     let description = load::scene(name, &options).unwrap().description;
     let scene = Scene::new(&description);
@@ -247,7 +249,9 @@ fn compare(test: &str, scenes: &[(&str, u32)], schedules: &[&str], paths: u32) -
     let mut account = common::open(test);
     let mut medians = vec![];
     for &(name, side) in scenes {
-        let (description, scene) = scene(name, side);
+        // not into the lamp: its rim would be all the noise there is
+        let floor = ["camera.origin=[0,0.6,0.9]", "camera.target=[0,-0.9,-0.5]"];
+        let (description, scene) = seen(name, side, if name == "cornell" { &floor } else { &[] });
         let matrix = discrete::matrix(&description, &scene, 100, 0, &Unobserved, &never()).unwrap();
         let radii = Radii::new(Some(&matrix.radiosity), &scene, LARGEST);
         assert!(radii.fourth < 0.95, "{name} at q = {LARGEST}: {radii:?}");
@@ -310,14 +314,16 @@ fn predicted_variances_are_measured_at_length() {
 }
 
 /// The optimum of each scene, found by a pilot, against the lecture's schedule and against albedo roulette, all used as the
-/// path tracer uses them: from vertex 0 on.
+/// path tracer uses them: from vertex 0 on. Albedo roulette knows more, because it depends on the path, and may win: it
+/// does inside the Cornell box, looking at its floor. On the sphere the two are 2 % apart, too close to prove.
 #[test]
 #[ignore = "nightly: 16 renders"]
 fn the_best_schedule_is_the_most_efficient() {
     let mut account = common::open("the_best_schedule_is_the_most_efficient");
     let level = account.spend(8);
     let mut won = 0;
-    for name in ["cornell", "sphere", "shells", "many-lights"] {
+    // the lecture's variance is infinite in the Cornell box: more samples, for an error bar that means little
+    for (name, spp) in [("cornell", 2048), ("sphere", 512), ("shells", 512), ("many-lights", 512)] {
         let (_, scene) = scene(name, 32);
         let settings = Settings { seed: account.seed(), max_bounces: 16, ..Settings::default() };
         let best = roulette::optimal(&scene, &settings, &Unobserved, &never()).unwrap();
@@ -326,7 +332,7 @@ fn the_best_schedule_is_the_most_efficient() {
         let measured: Vec<(Noise, u64)> = schedules
             .iter()
             .map(|s| {
-                let r: Recorded = roulette::measure(&scene, &settings, s, 512, &Unobserved, &never()).unwrap();
+                let r: Recorded = roulette::measure(&scene, &settings, s, spp, &Unobserved, &never()).unwrap();
                 (Noise::measured(&r), r.replicates())
             })
             .collect();
