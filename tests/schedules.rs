@@ -12,6 +12,7 @@
 
 mod common;
 
+use common::Account;
 use common::judge::{Judged, Jury};
 use common::sampling::{TECHNIQUES, collect, plan};
 use fredholm::estimator::record::record;
@@ -23,7 +24,6 @@ use fredholm::operator::{MatrixWalk, SceneTransport, Sensor, Transport};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
 use fredholm::stats::Noise;
-use fredholm::stats::ledger;
 use fredholm::terms::cross_moments::{CrossMoments, Value};
 use fredholm::terms::{Estimate, Recorded};
 use fredholm::worlds::discrete;
@@ -233,7 +233,7 @@ const SCHEDULES: [&str; 21] = [
 ];
 const LARGEST: f64 = 0.2;
 
-fn equal(what: &str, predicted: &[Value; 3], measured: &[Value; 3], replicates: u64, account: &mut ledger::Account) {
+fn equal(what: &str, predicted: &[Value; 3], measured: &[Value; 3], replicates: u64, account: &mut Account) {
     let of = |f: &dyn Fn(usize) -> f64| DVec3::from_array(std::array::from_fn(f));
     let difference = Estimate {
         mean: of(&|i| measured[i].value - predicted[i].value),
@@ -245,8 +245,7 @@ fn equal(what: &str, predicted: &[Value; 3], measured: &[Value; 3], replicates: 
 
 /// Predictions of every schedule against renders of their own streams: the whole image, T1, T2, T3, T5 and the tail. The
 /// median of |measured/predicted − 1| over the schedules comes back for each scene, with the largest |z| of the whole image.
-fn compare(test: &str, scenes: &[(&str, u32)], schedules: &[&str], paths: u32) -> Vec<(f64, f64)> {
-    let mut account = common::open(test);
+fn compare(mut account: Account, scenes: &[(&str, u32)], schedules: &[&str], paths: u32) -> Vec<(f64, f64)> {
     let mut medians = vec![];
     for &(name, side) in scenes {
         // not into the lamp: its rim would be all the noise there is
@@ -302,14 +301,14 @@ fn compare(test: &str, scenes: &[(&str, u32)], schedules: &[&str], paths: u32) -
 #[test]
 fn predicted_variances_are_measured() {
     let schedules: Vec<&str> = SCHEDULES.into_iter().step_by(4).collect();
-    compare("predicted_variances_are_measured", &[("cornell", 16)], &schedules, 1 << 16);
+    compare(common::open("predicted_variances_are_measured"), &[("cornell", 16)], &schedules, 1 << 16);
 }
 
 #[test]
 #[ignore = "nightly: 66 renders"]
 fn predicted_variances_are_measured_at_length() {
     let scenes = [("cornell", 32), ("sphere", 32), ("shells", 32)];
-    let found = compare("predicted_variances_are_measured_at_length", &scenes, &SCHEDULES, 1 << 18);
+    let found = compare(common::open("predicted_variances_are_measured_at_length"), &scenes, &SCHEDULES, 1 << 18);
     assert!(found.iter().all(|f| f.0 < 0.03), "{found:?}");
 }
 
