@@ -191,7 +191,7 @@ pub fn warnings(found: &Found) -> Vec<String> {
     }
     if let Some(what) = found.radii.and_then(|r| r.warning()) {
         out.push(format!(
-            "the path tracer under roulette {} {what}; --roulette albedo or optimal is safe",
+            "the path tracer under roulette {} {what};\n--roulette albedo or optimal is safe",
             found.settings.path_roulette
         ));
     }

@@ -156,9 +156,12 @@ pub fn draw(rows: &[Row], title: &str, caption: &Caption) -> Result<Figure, Repo
     figure("roulette", 1120, 880, caption, |page| panels(page, rows, title))
 }
 
+/// A number of a schedule.
+type Reading = fn(&Noise) -> Value;
+
 fn panels(page: &Page, rows: &[Row], title: &str) -> Drawn {
     page.text(title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
-    let curves = |of: &dyn Fn(&Noise) -> Value| -> [Curve; 2] {
+    let curves = |of: Reading| -> [Curve; 2] {
         let points = |noise: &dyn Fn(&Row) -> Option<Noise>| -> Vec<Point> {
             let point = |(i, r): (usize, &Row)| {
                 let v = of(&noise(r)?);
@@ -176,15 +179,16 @@ fn panels(page: &Page, rows: &[Row], title: &str) -> Drawn {
         axis.ticks = (1..=rows.len()).map(|i| (i as f64, i.to_string())).collect();
         axis
     };
-    let work = |n: &Noise| {
+    let work: Reading = |n| {
         let (value, e) = (1.0 / n.efficiency.value, n.efficiency);
         Value { value, std_error: value * e.std_error / e.value }
     };
-    let of_all: [(&str, &str, [f64; 4], &dyn Fn(&Noise) -> Value); 3] = [
-        ("Variance V of one sample of the whole image", "V   (W² sr⁻² m⁻⁴)", [84.0, 72.0, 372.0, 320.0], &|n| n.all),
-        ("Cost", "rays per path", [552.0, 72.0, 372.0, 320.0], &|n| n.rays),
-        ("V · rays: lower is better", "V · rays", [84.0, 486.0, 372.0, 320.0], &work),
-    ];
+    let of_all: [(&str, &str, [f64; 4], Reading); 3] =
+        [
+            ("Variance V of one sample of the whole image", "V   (W² sr⁻² m⁻⁴)", [84.0, 72.0, 372.0, 320.0], |n| n.all),
+            ("Cost", "rays per path", [552.0, 72.0, 372.0, 320.0], |n| n.rays),
+            ("V · rays: lower is better", "V · rays", [84.0, 486.0, 372.0, 320.0], work),
+        ];
     let mut drawn = [false; 2];
     for (heading, unit, frame, of) in of_all {
         let curves = curves(of);
@@ -215,7 +219,7 @@ fn panels(page: &Page, rows: &[Row], title: &str) -> Drawn {
         .collect();
     steps.iter().try_for_each(|c| panel.curve(c, 0.0, true))?;
 
-    let labels = curves(&|n| n.all);
+    let labels = curves(|n| n.all);
     let mut entries: Vec<Entry> =
         labels.iter().zip(drawn).filter(|(_, d)| *d).map(|(c, _)| Entry::new(Sample::Mark(c.look), &c.label)).collect();
     entries.push(Entry::new(Sample::Heading, "bars: 95 %"));

@@ -170,7 +170,7 @@ pub fn cross_moments(recorded: &Recorded, beyond: f64) -> serde_json::Value {
     let last = m.slots.saturating_sub(1);
     let kind = |a: usize| match a {
         _ if a == last => "tail",
-        _ if a % 2 == 0 => "hit",
+        _ if a.is_multiple_of(2) => "hit",
         _ => "connect",
     };
     let slot =

@@ -169,7 +169,7 @@ pub(super) mod tests {
         // hits stand at even slots; the tail at the odd last one, without what roulette would do to it
         let mean = |a: usize| match a {
             _ if a == slots - 1 => rho.powi(last as i32 + 1) / (1.0 - rho),
-            _ if a % 2 == 0 => rho.powi(a as i32 / 2),
+            _ if a.is_multiple_of(2) => rho.powi(a as i32 / 2),
             _ => 0.0,
         };
         let product: Vec<f64> = (0..slots * slots).map(|i| mean(i / slots) * mean(i % slots)).collect();

@@ -179,18 +179,18 @@ impl Radii {
         let Self { second, fourth, bounds } = *self;
         match (bounds, second >= 1.0, fourth >= 1.0) {
             (false, true, _) => {
-                Some(format!("has infinite variance: the spectral radius of ρ²F/(1−q) is {second:.3} ≥ 1"))
+                Some(format!("has infinite variance:\nthe spectral radius of ρ²F/(1−q) is {second:.3} ≥ 1"))
             }
             (false, false, true) => Some(format!(
-                "has finite variance, but that of the measured variance is infinite: the spectral radius\n\
-                 of ρ⁴F/(1−q)³ is {fourth:.3} ≥ 1, and error bars come out too small"
+                "has finite variance, but that of the measured variance is infinite:\n\
+                 the spectral radius of ρ⁴F/(1−q)³ is {fourth:.3} ≥ 1, and error bars come out too small"
             )),
             (true, true, _) => Some(format!(
-                "may have infinite variance: the bound max ρ²/(1−q) = {second:.3} ≥ 1 does not exclude it"
+                "may have infinite variance:\nthe bound max ρ²/(1−q) = {second:.3} ≥ 1 does not exclude it"
             )),
             (true, false, true) => Some(format!(
                 "has finite variance, but error bars may come out too small: the bound\n\
-                 max ρ⁴/(1−q)³ = {fourth:.3} ≥ 1 does not exclude that the measured variance has an infinite one"
+                 max ρ⁴/(1−q)³ = {fourth:.3} ≥ 1 does not exclude that the measured variance has none"
             )),
             _ => None,
         }
