@@ -423,13 +423,13 @@ fn members_have_their_signature() {
             );
         }
     }
-    jury.assert_power(0.3, 0.2);
+    // the level is 2.5e-11: 2 % is proved for what is flat, half of the term would be seen in nearly all others
+    jury.assert_power(0.15, 0.05);
 }
 
 /// At its declared sample size every member is rejected in at least 199 of 200 fresh runs, and the right walk of the same plan about as
 /// often as the level says. A table row per member.
-fn rejected_in_199_of_200_runs(test: &str, bugs: &'static [Bug]) {
-    let mut account = common::open(test);
+fn rejected_in_199_of_200_runs(mut account: common::Account, bugs: &'static [Bug]) {
     let seed = account.seed();
     let mut stages = Stages::new(seed);
     let (mut alarms, mut rights) = (0, 0);
@@ -466,49 +466,49 @@ fn rejected_in_199_of_200_runs(test: &str, bugs: &'static [Bug]) {
 #[test]
 #[ignore = "nightly: 200 runs of every member"]
 fn constants_are_rejected_in_199_of_200_runs() {
-    rejected_in_199_of_200_runs("constants_are_rejected_in_199_of_200_runs", &zoo::constants::BUGS);
+    rejected_in_199_of_200_runs(common::open("constants_are_rejected_in_199_of_200_runs"), &zoo::constants::BUGS);
 }
 
 #[test]
 #[ignore = "nightly: 200 runs of every member"]
 fn roulette_are_rejected_in_199_of_200_runs() {
-    rejected_in_199_of_200_runs("roulette_are_rejected_in_199_of_200_runs", &zoo::roulette::BUGS);
+    rejected_in_199_of_200_runs(common::open("roulette_are_rejected_in_199_of_200_runs"), &zoo::roulette::BUGS);
 }
 
 #[test]
 #[ignore = "nightly: 200 runs of every member"]
 fn measures_are_rejected_in_199_of_200_runs() {
-    rejected_in_199_of_200_runs("measures_are_rejected_in_199_of_200_runs", &zoo::measures::BUGS);
+    rejected_in_199_of_200_runs(common::open("measures_are_rejected_in_199_of_200_runs"), &zoo::measures::BUGS);
 }
 
 #[test]
 #[ignore = "nightly: 200 runs of every member"]
 fn directions_are_rejected_in_199_of_200_runs() {
-    rejected_in_199_of_200_runs("directions_are_rejected_in_199_of_200_runs", &zoo::directions::BUGS);
+    rejected_in_199_of_200_runs(common::open("directions_are_rejected_in_199_of_200_runs"), &zoo::directions::BUGS);
 }
 
 #[test]
 #[ignore = "nightly: 200 runs of every member"]
 fn shares_are_rejected_in_199_of_200_runs() {
-    rejected_in_199_of_200_runs("shares_are_rejected_in_199_of_200_runs", &zoo::shares::BUGS);
+    rejected_in_199_of_200_runs(common::open("shares_are_rejected_in_199_of_200_runs"), &zoo::shares::BUGS);
 }
 
 #[test]
 #[ignore = "nightly: 200 runs of every member"]
 fn lights_are_rejected_in_199_of_200_runs() {
-    rejected_in_199_of_200_runs("lights_are_rejected_in_199_of_200_runs", &zoo::lights::BUGS);
+    rejected_in_199_of_200_runs(common::open("lights_are_rejected_in_199_of_200_runs"), &zoo::lights::BUGS);
 }
 
 #[test]
 #[ignore = "nightly: 200 runs of every member"]
 fn specular_are_rejected_in_199_of_200_runs() {
-    rejected_in_199_of_200_runs("specular_are_rejected_in_199_of_200_runs", &zoo::specular::BUGS);
+    rejected_in_199_of_200_runs(common::open("specular_are_rejected_in_199_of_200_runs"), &zoo::specular::BUGS);
 }
 
 #[test]
 #[ignore = "nightly: 200 runs of every member"]
 fn bookkeeping_are_rejected_in_199_of_200_runs() {
-    rejected_in_199_of_200_runs("bookkeeping_are_rejected_in_199_of_200_runs", &zoo::bookkeeping::BUGS);
+    rejected_in_199_of_200_runs(common::open("bookkeeping_are_rejected_in_199_of_200_runs"), &zoo::bookkeeping::BUGS);
 }
 
 /// Uniform or by power: only a mistake in the choice depends on it.

@@ -181,8 +181,7 @@ fn everyone(args: &Zoo) -> Result<Ending, Failure> {
     let mut csv = format!("{}member,scene,k,ratio,std_error,predicted\n", mark());
     // first, so that the folder is known as this command's even if the rest never comes
     write_atomically(&folder.join(MARK), csv.as_bytes())?;
-    let mut table =
-        vec![format!("{:24} {:15} r₀          r₁          r₂          r₃          whole", "member", "scene")];
+    let mut table = vec![format!("{:24} {:18} r₀         r₁         r₂         r₃         whole", "member", "scene")];
     for bug in zoo::all() {
         let stage = bug.exposed_by;
         if !rights.iter().any(|r| r.0 == stage) {
@@ -206,8 +205,8 @@ fn everyone(args: &Zoo) -> Result<Ending, Failure> {
             csv += &format!("{},{},{k},{},{},{predicted}\n", bug.name, stage.label, r.value, r.std_error);
         }
         let cells: Vec<String> = ratios[..4].iter().chain([&whole(image, right)]).map(brief).collect();
-        let cells: Vec<String> = cells.iter().map(|c| format!("{c:11}")).collect();
-        table.push(format!("{:24} {:15} {}", bug.name, stage.label, cells.join(" ").trim_end()));
+        let cells: Vec<String> = cells.iter().map(|c| format!("{c:10}")).collect();
+        table.push(format!("{:24} {:18} {}", bug.name, stage.label, cells.join(" ").trim_end()));
     }
     progress.finish();
     write_atomically(&folder.join(MARK), csv.as_bytes())?;

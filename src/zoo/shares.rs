@@ -25,7 +25,7 @@ pub static BUGS: [Bug; 3] = [
         ends: Ends::AsSet,
         exposed_by: Stage::CORNELL,
         blind: Some(Stage::GLASS_BALL),
-        spp: 64,
+        spp: 128,
         mistake: &DoubleEmission,
     },
     Bug {
