@@ -1,6 +1,6 @@
 //! Diagnosis: every member of the zoo is named or stands on a short list, what is right is called right, and bad input is
 //! refused in words.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use fredholm::diagnosis::candidates::{Members, own_seed};
 use fredholm::diagnosis::{

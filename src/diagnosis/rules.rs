@@ -141,10 +141,10 @@ fn changes_with_samples(f: &Facts) -> Vec<Suspicion> {
             "average linear radiance, and apply gamma, tone map and clamp afterwards",
         );
     }
-    if s.slope.is_finite() && s.slope > -0.5 && !f.rejected {
+    if s.renewed < 0.3 && !f.rejected {
         let why = format!(
-            "the squared error falls as samples^{:.2} instead of samples^-1: samples repeat, or a bias too small for the means",
-            s.slope
+            "further samples replace {:.1} % of the error that the first ones leave, where new ones would replace nearly all",
+            100.0 * s.renewed
         );
         return points("same-numbers", why, "give every sample numbers of its own");
     }
@@ -153,7 +153,8 @@ fn changes_with_samples(f: &Facts) -> Vec<Suspicion> {
 
 fn no_sum_of_its_terms(f: &Facts) -> Vec<Suspicion> {
     let Some([sum, half, right]) = f.evidence.sum else { return vec![] };
-    if !((sum / right - 1.0).abs() > (2.5 * half).max(5e-3)) {
+    let off = (sum / right - 1.0).abs();
+    if off.is_nan() || off <= (2.5 * half).max(5e-3) {
         return vec![];
     }
     let why =

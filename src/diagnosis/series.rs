@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | n | samples per pixel | [`BySamples::means`] |
 //! | b | slope of log error² against log n, by least squares | [`BySamples::slope`] |
+//! | – | how much of the first error the further samples replace | [`BySamples::renewed`] |
 //! | p | p-value of a constant mean | [`BySamples::p_constant`] |
 
 use super::gap::ratio;
@@ -25,8 +26,10 @@ pub struct BySamples {
     pub p_constant: f64,
     /// Largest relative change of the mean.
     pub largest_change: f64,
-    /// b; NaN with fewer than two n.
+    /// b; NaN with fewer than two n. The noise of the reference is taken off.
     pub slope: f64,
+    /// Mean of (S_first − S_last)² over the squared error of the first: about 1 for samples that are new, 0 where they repeat.
+    pub renewed: f64,
 }
 
 /// Looks at the whole image (or the first picture) of renders with growing n.
@@ -34,15 +37,24 @@ pub fn by_samples(renders: &[(u32, Pictures)], reference: &Pictures, image: &Reg
     let pick = |p: &Pictures| p.layer(Slot::Whole).or(p.layers.first()).map(|l| l.slot);
     let slot = pick(&renders.first()?.1)?;
     let right = reference.layer(slot)?;
+    let own = right.std_error.as_ref().map_or(0.0, |e| {
+        let square = |p: usize| e[p].iter().map(|&s| f64::from(s).powi(2)).sum::<f64>();
+        image.pixels.iter().map(|&p| square(p)).sum::<f64>() / (3 * image.pixels.len()) as f64
+    });
     let mut rows: Vec<(u32, Measured, f64)> = vec![];
     for (n, pictures) in renders {
         let layer = pictures.layer(slot)?;
         let r = ratio(layer, right, pictures.size[0], &image.pixels);
         let square = |p: usize, c: usize| f64::from(layer.mean[p][c] - r.mean as f32 * right.mean[p][c]).powi(2);
         let error = image.pixels.iter().map(|&p| (0..3).map(|c| square(p, c)).sum::<f64>()).sum::<f64>();
-        rows.push((*n, r, error / (3 * image.pixels.len()) as f64));
+        rows.push((*n, r, error / (3 * image.pixels.len()) as f64 - own));
     }
     rows.sort_by_key(|r| r.0);
+    let least = renders.iter().min_by_key(|r| r.0).and_then(|r| r.1.layer(slot))?;
+    let most = renders.iter().max_by_key(|r| r.0).and_then(|r| r.1.layer(slot))?;
+    let change = |p: usize| (0..3).map(|c| f64::from(least.mean[p][c] - most.mean[p][c]).powi(2)).sum::<f64>();
+    let changed = image.pixels.iter().map(|&p| change(p)).sum::<f64>() / (3 * image.pixels.len()) as f64;
+    let renewed = if rows[0].2 > own { changed / rows[0].2 } else { f64::NAN };
     let (_, last, _) = rows.last()?;
     let others = &rows[..rows.len() - 1];
     let gap = |m: Measured| difference(m, *last);
@@ -56,6 +68,7 @@ pub fn by_samples(renders: &[(u32, Pictures)], reference: &Pictures, image: &Reg
         means: rows.iter().map(|r| [f64::from(r.0), r.1.mean]).collect(),
         p_constant: holm(&p).into_iter().fold(1.0, f64::min),
         largest_change: change,
+        renewed,
         slope: slope(&rows.iter().map(|r| (f64::from(r.0).ln(), r.2.ln())).collect::<Vec<_>>()),
     })
 }

@@ -98,6 +98,9 @@ struct Suspect {
     by_samples: Vec<(u32, Pictures)>,
 }
 
+/// Suspects with their places, by size and K.
+type Groups<'a> = BTreeMap<([usize; 2], usize), Vec<(usize, &'a Suspect)>>;
+
 /// What came out for one suspect.
 pub struct Found {
     /// File, or files.
@@ -137,7 +140,7 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     let progress = Progress::new(args.quiet, |_| {});
 
     // suspects of one size and one K share a reference and the pictures of the candidates
-    let mut groups: BTreeMap<([usize; 2], usize), Vec<(usize, &Suspect)>> = BTreeMap::new();
+    let mut groups: Groups = BTreeMap::new();
     for (i, s) in suspects.iter().enumerate() {
         groups.entry((s.file.pictures.size, last_term(args, &s.file))).or_default().push((i, s));
     }

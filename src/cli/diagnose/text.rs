@@ -192,7 +192,9 @@ fn evidence(f: &Found) -> String {
     if let Some(s) = &d.samples {
         let means: Vec<String> = s.means.iter().map(|m| format!("{:.4} at {}", m[1], m[0])).collect();
         facts.push(format!("mean over the right one by samples per pixel: {}", means.join(", ")));
-        facts.push(format!("squared error falls as samples^{:.2}", s.slope));
+        if s.slope.is_finite() {
+            facts.push(format!("squared error falls as samples^{:.2}", s.slope));
+        }
     }
     if !f.ignored.is_empty() {
         facts.push(format!("layers not understood: {}", f.ignored.join(", ")));
