@@ -132,8 +132,9 @@ Examples:
 --points, which may be lists; variance and squared error at 16, 32, 64, … samples are read off the
 film as it fills. Written: variance.svg, variance.png, sweep.csv, summary.json.
 
---over split: the terms by equal split (--estimator single), by the optimal split n ∝ σ/√c, and from
-the prefixes of one path, at about the same rays: variance × cost, predicted by a pilot and measured.
+--over split: the terms by equal split (--estimator single), by the optimal split n ∝ σ/√c, and
+from the prefixes of one path, at about the same rays: variance × cost, predicted by a pilot and
+measured.
 Written: split.csv, covariance.csv, covariance.svg, covariance.png, summary.json.
 
 All others. Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged
@@ -428,7 +429,9 @@ impl std::fmt::Display for Over {
 /// Arguments of `sweep`.
 #[derive(Clone, Debug, Args)]
 pub struct Sweep {
-    /// branching, spp, technique, sampling, estimator, points, roulette, split or patches
+    /// branching, spp, split, technique, … (all: --help)
+    ///
+    /// branching, spp, split, technique, sampling, estimator, points, roulette or patches
     #[arg(long, value_enum, value_name = "SETTING", hide_possible_values = true)]
     pub over: Over,
     /// Its values, with commas

@@ -231,8 +231,8 @@ fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Endin
     summary::write(&folder.join("summary.json"), &record)?;
     output::remove_stale(&folder, &old, &record.files);
     let head = format!(
-        "{command}\n{}: {}, seed {}, {w}×{h} pixels, path tracer, one render\n\
-         reference: {}, {} spp, seed {}; its variance is subtracted from the squared error",
+        "{command}\n{}\nscene {}, seed {}, {w}×{h} pixels, path tracer, one render\n\
+         reference: {}, {} spp, seed {}; its variance is subtracted",
         recipe.title,
         description.name,
         args.seed,
@@ -241,7 +241,7 @@ fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Endin
         reference_seed(args.seed)
     );
     let foot = "mean: what the samples say; mean shown: with everything above white cut off, as the screen does.\n\
-                Lamps in view and bright light are lost on every screen: what is lost beyond the reference is noise";
+                The reference loses lamps and bright light, too; what an image loses beyond that is noise";
     let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
     super::say(&super::paragraphs(&[head, format!("{}{foot}", report::table(&grown)), files]))?;
     Ok(if stop_flag().load(Ordering::Relaxed) { Ending::Interrupted } else { Ending::Ok })

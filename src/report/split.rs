@@ -91,9 +91,9 @@ pub fn table(study: &Study) -> String {
             .iter()
             .map(|w| format!("{} {}", w.name, number_to(if u == 0 { w.rays } else { w.seconds }, 4)))
             .collect();
-        let note = if u == 0 { "" } else { "; ± without the noise of the clock" };
+        let note = if u == 0 { "" } else { " (no ± knows the noise of the clock)" };
         blocks.push(format!(
-            "by {unit} (per pixel: {}{note})\n{}least of any split, (Σ σ√c)²: {} ± {}\n",
+            "by {unit} (per pixel: {})\n{}least of any split, (Σ σ√c)²: {} ± {}{note}\n",
             spent.join(", "),
             aligned(&rows, &[[Side::Left].as_slice(), &[Side::Right; 7]].concat()),
             number(least.value),

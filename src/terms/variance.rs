@@ -42,7 +42,7 @@ pub struct Snapshot {
 /// The variances of a film as it stands.
 pub fn snapshot(film: &TermFilm) -> Snapshot {
     let slots = film.shape.slots;
-    let ranges = (0..slots).map(|s| s..s + 1).chain([0..slots]);
+    let ranges = (0..slots).map(|s| s..s + 1).chain(std::iter::once(0..slots));
     let scatter: Vec<Scatter> = ranges.map(|r| Scatter::of(film, r, None)).collect();
     let (total, slots) = (Variance::from(&scatter[slots]), scatter[..slots].iter().map(Variance::from).collect());
     Snapshot { spp: film.least_samples(), slots, total, scatter }

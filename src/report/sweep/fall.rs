@@ -98,7 +98,10 @@ pub fn table(falls: &[Fall]) -> String {
             rows.push(row);
         }
         let sides = [[Side::Left].as_slice(), &[Side::Right; 7]].concat();
-        let numbers: Vec<String> = f.stands.iter().map(|s| s.spp.to_string()).collect();
+        let mut numbers: Vec<String> = f.stands.iter().map(|s| s.spp.to_string()).collect();
+        if numbers.len() > 6 {
+            numbers.splice(3..numbers.len() - 1, ["…".to_string()]);
+        }
         let [rays, seconds] = f.cost(last);
         let cost = format!("{} rays and {} µs a path", number(rays), number(1e6 * seconds));
         let head = format!("{}: n = {}; {cost}", f.label, numbers.join(", "));
