@@ -3,9 +3,10 @@
 //! Both sides are rendered in batches from streams of their own. After every batch an anytime-valid test looks at all terms,
 //! the whole and the regions; whatever ends the watch (a decision, the time, Ctrl-C), the chance of a false alarm stays below α.
 
-use super::super::args::{self, EstimatorName};
+use super::super::args;
 use super::super::progress::stop_flag;
-use super::super::{Ending, Failure, guard, note, output, paragraphs, say, solve};
+use super::super::{Ending, Failure, note, output, paragraphs, say};
+use super::sides::{Against, check_sides, finished, side};
 use super::{Common, Loaded, fraction, usage};
 use clap::Args;
 use fredholm::estimator::{Roulette, Technique};
@@ -15,10 +16,8 @@ use fredholm::report::{summary, table};
 use fredholm::scene::bsdf::Sampling;
 use fredholm::stats::{Criterion, Detector, Finding, Outcome};
 use fredholm::terms::{Functional, Series, World};
-use fredholm::worlds::Settings;
-use fredholm::worlds::batches::Side;
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -42,54 +41,54 @@ const SMALL: u32 = 64;
 pub struct Bias {
     /// Built-in scene, .toml, or .obj
     #[arg(long, value_name = "SCENE", default_value = "cornell")]
-    scene: String,
+    pub(super) scene: String,
     /// The estimator that is checked: prefix, single, branching, light, bidirectional, path
     #[arg(long, value_name = "NAME", default_value = "prefix")]
-    estimator: String,
+    pub(super) estimator: String,
     /// What it is checked against: an estimator, path, or the folder of a finished run
     #[arg(long, value_name = "NAME|DIR", default_value = "path")]
-    against: String,
+    pub(super) against: String,
     /// How light is found: scatter, connect, mis, mis-power
     #[arg(long, default_value = "mis", value_parser = args::technique, value_name = "NAME")]
-    technique: Technique,
+    pub(super) technique: Technique,
     /// The same of the other side [default: as --technique]
     #[arg(long, value_parser = args::technique, value_name = "NAME")]
-    against_technique: Option<Technique>,
+    pub(super) against_technique: Option<Technique>,
     /// Russian roulette [default: none for k ≤ K, then albedo; path: albedo@2]
     #[arg(long, value_name = "SCHEDULE")]
-    roulette: Option<Roulette>,
+    pub(super) roulette: Option<Roulette>,
     /// The same of the other side [default: as without --roulette]
     #[arg(long, value_name = "SCHEDULE")]
-    against_roulette: Option<Roulette>,
+    pub(super) against_roulette: Option<Roulette>,
     /// How directions are drawn: uniform, cosine, bsdf
     #[arg(long, default_value = "bsdf", value_parser = args::sampling, value_name = "NAME")]
-    sampling: Sampling,
+    pub(super) sampling: Sampling,
     /// The same of the other side [default: as --sampling]
     #[arg(long, value_parser = args::sampling, value_name = "NAME")]
-    against_sampling: Option<Sampling>,
+    pub(super) against_sampling: Option<Sampling>,
     /// Children of every vertex of a branching estimator
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    branching: u32,
+    pub(super) branching: u32,
     /// K: terms k = 0..=K are watched, everything longer as the tail
     #[arg(long, value_name = "K", default_value_t = 8, value_parser = clap::value_parser!(u16).range(0..=1000))]
-    max_bounces: u16,
+    pub(super) max_bounces: u16,
     /// Chance of a false alarm, whenever the watch ends
     #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = fraction)]
-    alpha: f64,
+    pub(super) alpha: f64,
     /// δ as a fraction of the term: the watch ends when every bias is proved smaller
     #[arg(long, value_name = "FRACTION", default_value_t = 0.01, value_parser = fraction)]
-    delta: f64,
+    pub(super) delta: f64,
     /// Samples per pixel of one batch [default: enough for 4096 paths]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 16))]
-    batch: Option<u32>,
+    pub(super) batch: Option<u32>,
     /// At most this long: 20s, 5m [default: 60s, or no limit with --spp]
     #[arg(long, value_name = "TIME", value_parser = duration)]
-    time: Option<Duration>,
+    pub(super) time: Option<Duration>,
     /// At most this many samples per pixel of each side
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 30))]
-    spp: Option<u32>,
+    pub(super) spp: Option<u32>,
     #[command(flatten)]
-    common: Common,
+    pub(super) common: Common,
 }
 
 /// Seconds by themselves or with an s; minutes with an m.
@@ -100,12 +99,6 @@ fn duration(s: &str) -> Result<Duration, String> {
     };
     let seconds = number.parse().ok().map(|x: f64| x * unit).filter(|x| *x > 0.0 && *x < 1e9);
     seconds.map(Duration::from_secs_f64).ok_or(format!("`{s}` is not a time such as 20s or 5m"))
-}
-
-/// What the first side is held against.
-enum Against {
-    Rendered(Side),
-    Finished(Box<Series>),
 }
 
 /// What a watch came to, for programs.
@@ -253,107 +246,6 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
         _ if stop.load(Ordering::Relaxed) => Ending::Interrupted,
         _ => Ending::Ok,
     })
-}
-
-/// One way of rendering, by name.
-fn side(
-    args: &Bias,
-    name: &str,
-    technique: Technique,
-    sampling: Sampling,
-    roulette: Option<Roulette>,
-    spp: u32,
-) -> Result<Side, Failure> {
-    let max_bounces = usize::from(args.max_bounces);
-    let usual = Roulette::Albedo { from: 2 };
-    let settings = Settings {
-        spp,
-        seed: args.common.seed,
-        max_bounces,
-        technique,
-        sampling,
-        roulette: roulette.clone().unwrap_or_else(|| usual.clone().after(max_bounces)),
-        path_roulette: roulette.unwrap_or(usual),
-        ..Settings::default()
-    };
-    let estimator = match name {
-        "path" => None,
-        name => {
-            let known = <EstimatorName as clap::ValueEnum>::from_str(name, false);
-            let unknown = |_| {
-                usage(
-                    &format!("`{name}` is no estimator, and no folder of a finished run"),
-                    "name one of prefix, single, branching, light, bidirectional, path, or a folder with a summary.json",
-                )
-            };
-            Some(solve::estimator(known.map_err(unknown)?, args.branching))
-        }
-    };
-    Ok(Side { estimator, settings })
-}
-
-/// A result and the size of its image.
-type FinishedRun = (Box<Series>, [u32; 2]);
-
-/// The finished run that the other side is, if it is one, and the size of its image.
-fn finished(args: &Bias) -> Result<Option<FinishedRun>, Failure> {
-    let path = PathBuf::from(&args.against);
-    let file = if path.is_dir() { path.join("summary.json") } else { path };
-    if !file.is_file() {
-        return Ok(None);
-    }
-    let run = summary::read(&file)?;
-    let size = [run.width, run.height].map(|s| s as u32);
-    if args.common.size.is_some_and(|asked| asked != size) {
-        let [w, h] = size;
-        return Err(usage(&format!("the finished run has {w}×{h} pixels"), "leave --size out"));
-    }
-    let mut series = run.series;
-    // terms if there are any, for they say more
-    series.sort_by_key(|s| [World::Terms, World::Path, World::Radiosity].iter().position(|w| *w == s.world));
-    match series.into_iter().next() {
-        Some(series) if series.world != World::Radiosity => Ok(Some((Box::new(series), size))),
-        _ => {
-            let help = "a matrix has a discretisation error that no number of batches knows: use `fredholm compare`";
-            Err(usage(&format!("{} holds no sampled result", file.display()), help))
-        }
-    }
-}
-
-impl Against {
-    fn label(&self) -> String {
-        match self {
-            Self::Rendered(side) => side.label(),
-            Self::Finished(series) => format!("{}, finished before", series.label),
-        }
-    }
-
-    fn limits(&self, scene: &fredholm::scene::Scene) -> Option<Series> {
-        match self {
-            Self::Rendered(side) => Some(side.limits(scene)),
-            Self::Finished(series) => Some(Series { functionals: vec![], ..(**series).clone() }),
-        }
-    }
-}
-
-/// Refuses what could only end badly.
-fn check_sides(loaded: &Loaded, first: &Side, against: &Against) -> Result<(), Failure> {
-    let size = loaded.description.camera.size;
-    let rendered = match against {
-        Against::Rendered(side) => Some(side),
-        Against::Finished(_) => None,
-    };
-    for side in [Some(first), rendered].into_iter().flatten() {
-        let worlds = [if side.estimator.is_some() { args::WorldName::Terms } else { args::WorldName::Path }];
-        let estimators: Vec<_> = side.estimator.into_iter().collect();
-        for &e in &estimators {
-            guard::tree_can_be_walked(e, &side.settings, size)?;
-        }
-        guard::light_is_seen(&loaded.scene, &estimators, &side.settings, &worlds)?;
-        guard::light_is_lost(&loaded.scene, &side.settings, &worlds)?;
-        guard::fits_in_memory(&side.settings, size)?;
-    }
-    Ok(())
 }
 
 /// The terms that both sides see in full.

@@ -2,6 +2,7 @@
 
 mod bias;
 mod equilibrium;
+mod sides;
 
 use super::{Ending, Failure, output};
 use clap::{Args, Subcommand};

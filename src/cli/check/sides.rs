@@ -1,0 +1,121 @@
+//! The two sides of `check bias`: what is asked for by name, and what is refused.
+
+use super::super::args::{self, EstimatorName};
+use super::super::{Failure, guard, solve};
+use super::bias::Bias;
+use super::{Loaded, usage};
+use fredholm::estimator::{Roulette, Technique};
+use fredholm::report::summary;
+use fredholm::scene::Scene;
+use fredholm::scene::bsdf::Sampling;
+use fredholm::terms::{Series, World};
+use fredholm::worlds::Settings;
+use fredholm::worlds::batches::Side;
+use std::path::PathBuf;
+
+/// What the first side is held against.
+pub(super) enum Against {
+    Rendered(Side),
+    Finished(Box<Series>),
+}
+
+/// One way of rendering, by name.
+pub(super) fn side(
+    args: &Bias,
+    name: &str,
+    technique: Technique,
+    sampling: Sampling,
+    roulette: Option<Roulette>,
+    spp: u32,
+) -> Result<Side, Failure> {
+    let max_bounces = usize::from(args.max_bounces);
+    let usual = Roulette::Albedo { from: 2 };
+    let settings = Settings {
+        spp,
+        seed: args.common.seed,
+        max_bounces,
+        technique,
+        sampling,
+        roulette: roulette.clone().unwrap_or_else(|| usual.clone().after(max_bounces)),
+        path_roulette: roulette.unwrap_or(usual),
+        ..Settings::default()
+    };
+    let estimator = match name {
+        "path" => None,
+        name => {
+            let known = <EstimatorName as clap::ValueEnum>::from_str(name, false);
+            let unknown = |_| {
+                usage(
+                    &format!("`{name}` is no estimator, and no folder of a finished run"),
+                    "name one of prefix, single, branching, light, bidirectional, path, or a folder with a summary.json",
+                )
+            };
+            Some(solve::estimator(known.map_err(unknown)?, args.branching))
+        }
+    };
+    Ok(Side { estimator, settings })
+}
+
+/// A result and the size of its image.
+pub(super) type FinishedRun = (Box<Series>, [u32; 2]);
+
+/// The finished run that the other side is, if it is one, and the size of its image.
+pub(super) fn finished(args: &Bias) -> Result<Option<FinishedRun>, Failure> {
+    let path = PathBuf::from(&args.against);
+    let file = if path.is_dir() { path.join("summary.json") } else { path };
+    if !file.is_file() {
+        return Ok(None);
+    }
+    let run = summary::read(&file)?;
+    let size = [run.width, run.height].map(|s| s as u32);
+    if args.common.size.is_some_and(|asked| asked != size) {
+        let [w, h] = size;
+        return Err(usage(&format!("the finished run has {w}×{h} pixels"), "leave --size out"));
+    }
+    let mut series = run.series;
+    // terms if there are any, for they say more
+    series.sort_by_key(|s| [World::Terms, World::Path, World::Radiosity].iter().position(|w| *w == s.world));
+    match series.into_iter().next() {
+        Some(series) if series.world != World::Radiosity => Ok(Some((Box::new(series), size))),
+        _ => {
+            let help = "a matrix has a discretisation error that no number of batches knows: use `fredholm compare`";
+            Err(usage(&format!("{} holds no sampled result", file.display()), help))
+        }
+    }
+}
+
+impl Against {
+    pub(super) fn label(&self) -> String {
+        match self {
+            Self::Rendered(side) => side.label(),
+            Self::Finished(series) => format!("{}, finished before", series.label),
+        }
+    }
+
+    pub(super) fn limits(&self, scene: &Scene) -> Option<Series> {
+        match self {
+            Self::Rendered(side) => Some(side.limits(scene)),
+            Self::Finished(series) => Some(Series { functionals: vec![], ..(**series).clone() }),
+        }
+    }
+}
+
+/// Refuses what could only end badly.
+pub(super) fn check_sides(loaded: &Loaded, first: &Side, against: &Against) -> Result<(), Failure> {
+    let size = loaded.description.camera.size;
+    let rendered = match against {
+        Against::Rendered(side) => Some(side),
+        Against::Finished(_) => None,
+    };
+    for side in [Some(first), rendered].into_iter().flatten() {
+        let worlds = [if side.estimator.is_some() { args::WorldName::Terms } else { args::WorldName::Path }];
+        let estimators: Vec<_> = side.estimator.into_iter().collect();
+        for &e in &estimators {
+            guard::tree_can_be_walked(e, &side.settings, size)?;
+        }
+        guard::light_is_seen(&loaded.scene, &estimators, &side.settings, &worlds)?;
+        guard::light_is_lost(&loaded.scene, &side.settings, &worlds)?;
+        guard::fits_in_memory(&side.settings, size)?;
+    }
+    Ok(())
+}
