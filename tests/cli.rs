@@ -127,6 +127,27 @@ fn a_series_leaves_every_file_and_layer() {
 }
 
 #[test]
+fn the_discrete_world_is_offered_by_rays_too() {
+    let desk = Desk::new();
+    let both = desk.small("both", "radiosity cornell --spp 8 --factors both --rays 256 -v");
+    assert!(both.out.contains("stored rays on the same patches: L − E differs by"), "{}", both.out);
+    let rays = desk.small("rays", "radiosity cornell --spp 8 --factors rays --rays 256 -v");
+    assert!(rays.out.contains("256 rays a row: relative L² error bar"), "{}", rays.out);
+    desk.small("again", "radiosity cornell --spp 8 --factors rays --rays 256 -t 1 -v");
+    assert_eq!(desk.image("rays").layer("Rfull"), desk.image("again").layer("Rfull"), "threads change no bit");
+    let radius = |dir: &str| desk.summary(dir).radiosity.unwrap().spectral_radius;
+    let (dense, sampled) = (radius("both"), radius("rays"));
+    assert!((sampled / dense - 1.0).abs().max_element() < 0.02, "{dense} {sampled}");
+    assert_ne!(dense, sampled);
+    // the rays asked for together with the matrix are those asked for alone
+    let line = |out: &str| out.lines().find(|l| l.contains("256 rays a row")).map(String::from);
+    assert_eq!(line(&both.out), line(&rays.out));
+    for bad in ["--rays 64", "--patches 30000 --factors dense", "--factors rays --rays 1"] {
+        assert_eq!(desk.run(&format!("radiosity cornell {bad}")).code, 2, "{bad}");
+    }
+}
+
+#[test]
 fn threads_and_place_change_no_bit() {
     let desk = Desk::new();
     desk.small("one", "series cornell --spp 32 -t 1");

@@ -74,8 +74,8 @@ tail. (Elsewhere the same images are Mitsuba's max_depth = K + 1 and pbrt's maxd
     /// The matrix alone: form factors, terms, solve
     #[command(after_help = "Examples:
   fredholm radiosity cornell --patches 2400 --orders
-  fredholm radiosity cornell --patches 2400 --factors both --rays 1024    matrix and stored rays, apart
-  fredholm radiosity cornell --patches 130000 --rays 256                  too many for a matrix
+  fredholm radiosity cornell --patches 2400 --factors both --rays 1024   both, compared
+  fredholm radiosity cornell --patches 130000 --rays 256                 too many for a matrix
   fredholm radiosity cornell --patches 2000 --solver all --history history.csv
   fredholm radiosity cornell --solver southwell --channel green --json
   fredholm radiosity cornell --modes 8 --size 128x128
@@ -343,10 +343,16 @@ pub struct Run {
     /// Up to 20000 for a dense matrix, 2000000 for stored rays.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
     pub patches: Option<u32>,
-    /// How form factors are held [default: dense up to 10000 patches, rays beyond]
-    #[arg(long, value_enum, value_name = "HOW")]
+    /// How form factors are held: dense, rays or both
+    ///
+    /// dense: a matrix, deterministic; rays: rows of stored rays, with an error bar;
+    /// both: the matrix, and how far rays on the same patches are from it.
+    /// [default: dense up to 10000 patches, rays beyond]
+    #[arg(long, value_enum, value_name = "HOW", hide_possible_values = true, verbatim_doc_comment)]
     pub factors: Option<FactorsName>,
-    /// Rays of every patch, where they are stored: 2 to 65536, powers of two are best [default: 256]
+    /// Rays of every patch, where they are stored [default: 256]
+    ///
+    /// 2 to 65536; powers of two are best.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=65_536))]
     pub rays: Option<u32>,
     /// Show patches as they are, without gathering a last bounce from them

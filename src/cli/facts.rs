@@ -40,7 +40,7 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
         None => format!("reciprocity {:.1e}", i.reciprocity),
         Some(s) => {
             let c = &s.checks;
-            format!("reciprocity {:.1e} ({:.1} standard errors)", c.reciprocity, c.reciprocity_z)
+            format!("reciprocity {:.1e} (z = {:.1})", c.reciprocity, c.reciprocity_z)
         }
     };
     let d = (r.fine.series.image().total.mean - r.coarse.series.image().total.mean).abs();
@@ -79,7 +79,7 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
 /// What stored rays are worth.
 fn sampling(s: &Sampling) -> String {
     let mut out = format!(
-        "u = L − E of {} rays a row: relative L² error bar over the patches {:.1e} (halves of the rows); {} steps",
+        "{} rays a row: relative L² error bar of L − E over the patches {:.1e}; {} steps",
         s.per_row,
         s.noise.element_sum() / 3.0,
         s.steps
@@ -93,7 +93,8 @@ fn sampling(s: &Sampling) -> String {
 /// How far stored rays are from the matrix.
 pub fn difference(d: &Difference) -> String {
     format!(
-        "rays on the same patches: ‖u_dense − u_rays‖/‖u_dense‖ {:.1e}; spectral radius ({})\n{}",
+        "stored rays on the same patches: L − E differs by {:.1e} (relative L²)\n\
+         their spectral radius ({})\n{}",
         d.of_u.element_sum() / 3.0,
         d.spectral.each_ref().map(|s| format!("{:.5}", s.radius)).join(", "),
         sampling(&d.sampling)

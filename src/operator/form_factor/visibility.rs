@@ -83,11 +83,11 @@ const STEP: [f64; 4] =
 /// Points `first`, `first` + 1, … of the additive recurrence.
 #[pulp::with_simd(golden = Arch::new())]
 #[inline(always)]
-fn golden_with_simd<'a, S: Simd>(_simd: S, shift: [f64; 4], first: u32, numbers: &'a mut [Lane; 4]) {
-    for d in 0..4 {
-        for k in 0..LANES {
-            let x = shift[d] + f64::from(first + k as u32) * STEP[d];
-            numbers[d][k] = x - x.floor();
+fn golden_with_simd<S: Simd>(_simd: S, shift: [f64; 4], first: u32, numbers: &mut [Lane; 4]) {
+    for ((shift, step), numbers) in shift.into_iter().zip(STEP).zip(numbers) {
+        for (k, number) in numbers.iter_mut().enumerate() {
+            let x = shift + f64::from(first + k as u32) * step;
+            *number = x - x.floor();
         }
     }
 }

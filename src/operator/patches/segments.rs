@@ -87,10 +87,10 @@ fn lift(patch: &Patch, offset: f64, p: &mut [Lane; 3]) {
         }
         return;
     }
-    for k in 0..LANES {
-        let on = patch.lift(DVec3::new(p[0][k], p[1][k], p[2][k]));
-        let x = on.position + offset * on.normal;
-        (p[0][k], p[1][k], p[2][k]) = (x.x, x.y, x.z);
+    let [x, y, z] = p;
+    for ((x, y), z) in x.iter_mut().zip(y).zip(z) {
+        let on = patch.lift(DVec3::new(*x, *y, *z));
+        (*x, *y, *z) = (on.position + offset * on.normal).into();
     }
 }
 

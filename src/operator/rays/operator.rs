@@ -85,9 +85,9 @@ impl LinearOperator for RayOperator<'_> {
             let first = number * block;
             let end = first + y.len();
             y.fill(0.0);
-            for i in 0..self.len() {
+            for (i, x) in x.iter().enumerate() {
                 let (runs, weight) = self.runs(i);
-                let weight = self.rays.area[i] * self.rho[i] * x[i] * weight;
+                let weight = self.rays.area[i] * self.rho[i] * x * weight;
                 if weight == 0.0 {
                     continue;
                 }
