@@ -299,7 +299,7 @@ pub struct Sweep {
     /// Its values, with commas
     ///
     /// [default: 1,2,3,4; 16,64,256; scatter,connect,mis; uniform,cosine,bsdf;
-    /// prefix,single,branching; independent,sobol; none,lecture,albedo,optimal]
+    /// prefix,single,branching; independent,sobol; none,lecture,albedo]
     #[arg(long, visible_alias = "schedules", value_name = "V,…", verbatim_doc_comment)]
     pub values: Option<String>,
     /// Give every value the rays of the dearest, instead of the same spp

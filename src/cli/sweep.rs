@@ -180,7 +180,7 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
         Over::Sampling => "uniform,cosine,bsdf",
         Over::Estimator => "prefix,single,branching,light,bidirectional",
         Over::Points => "independent,sobol",
-        Over::Roulette => "none,lecture,albedo,optimal",
+        Over::Roulette => "none,lecture,albedo",
     };
     let case = |value: String| {
         let (mut estimator, mut settings) =
