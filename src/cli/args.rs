@@ -445,7 +445,7 @@ pub struct Sweep {
     /// With --over spp the numbers of samples to look at: multiples of 16.
     /// [default: 1,2,3,4; 16,32,64,…; scatter,connect,mis,mis-power; uniform,cosine,bsdf;
     /// prefix,single,branching,light,bidirectional; independent,sobol;
-    /// none,lecture,albedo,optimal; 38,150,600,2400]
+    /// none,lecture,albedo; 38,150,600,2400]
     #[arg(long, visible_alias = "schedules", value_name = "V,…", verbatim_doc_comment)]
     pub values: Option<String>,
     /// Give every value the rays of the dearest, instead of the same spp

@@ -204,7 +204,7 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
         Over::Sampling => "uniform,cosine,bsdf",
         Over::Estimator => "prefix,single,branching,light,bidirectional",
         Over::Points => "independent,sobol",
-        Over::Roulette => "none,lecture,albedo,optimal",
+        Over::Roulette => "none,lecture,albedo",
         Over::Spp | Over::Split | Over::Patches => "", // commands of their own
     };
     let case = |value: String| {
