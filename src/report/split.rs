@@ -122,7 +122,7 @@ pub fn table(study: &Study) -> String {
     let ((sum, _), (trace, _)) = (study.reuse.covariance.sum(), study.reuse.covariance.trace());
     blocks.push(format!(
         "term by term: σ² of one sample from the pilot of {} spp; n in multiples of {REPLICATES} replicates\n{terms}\
-         one path for all terms: 1ᵀC1 = {}, trace C = {}: sharing makes the variance of the sum ×{}\n",
+         one path for all terms: 1ᵀC1 = {}, trace C = {}: sharing makes the variance ×{}\n",
         study.pilot.first().map_or(0, |t| t.spp),
         number(sum),
         number(trace),
