@@ -172,8 +172,8 @@ fn squared_errors_are_unbiased() {
 fn looking_changes_nothing() {
     struct At(Vec<u32>, Vec<u32>);
     impl Watch for At {
-        fn stop(&self, done: u32) -> Option<u32> {
-            self.0.iter().copied().find(|&n| n > done)
+        fn until(&self, done: u32, planned: u32) -> u32 {
+            self.0.iter().copied().find(|&n| n > done).map_or(planned, |n| planned.min(n))
         }
         fn pass(&mut self, film: &TermFilm) {
             self.1.push(film.least_samples());
