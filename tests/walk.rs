@@ -13,7 +13,7 @@ use fredholm::math::Key;
 use fredholm::operator::GuidedWalk;
 use fredholm::operator::form_factor::FormFactors;
 use fredholm::operator::guided_walk::GuidedRows;
-use fredholm::operator::matrix::PatchOperator;
+use fredholm::operator::matrix::{PatchOperator, Rows};
 use fredholm::solver::{Neumann, direct};
 use fredholm::terms::TermFilm;
 use glam::DVec3;
