@@ -14,6 +14,7 @@ mod facts;
 mod figure;
 mod guard;
 mod info;
+mod open;
 mod output;
 mod progress;
 mod quiz;

@@ -105,9 +105,7 @@ type Asked = (String, Option<estimator::Roulette>);
 pub fn run(args: &Args) -> Result<Ending, Failure> {
     let started = Instant::now();
     let asked = schedules(args)?;
-    if let Some(n) = args.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
-    }
+    super::open::threads(args.threads)?;
     let command = output::canonical_command();
     let (description, scene, hash) = scene(args)?;
     let settings = Settings {

@@ -3,10 +3,10 @@
 use super::args::{EstimatorName, FactorsName, GuideName, Run, Schedule, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, facts, guard, output, write};
+use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::math::Points;
 use fredholm::report::{summary, table};
-use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
 use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, compare, discretisation};
@@ -99,23 +99,11 @@ pub fn radiosity(run: &Run) -> Result<Ending, Failure> {
 
 fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let started = Instant::now();
-    if let Some(n) = run.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
-    }
-    let command = output::canonical_command();
-
-    // the scene
-    let mut set = run.set.clone();
+    open::threads(run.threads)?;
     let built_in_size = if run.scene == "cornell" { default.size } else { None };
-    if let Some([w, h]) = run.size.or(built_in_size) {
-        set.push(format!("camera.size=[{w},{h}]"));
-    }
-    let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
-    for warning in &loaded.warnings {
-        super::note(&format!("warning: {warning}"));
-    }
-    let description = loaded.description;
-    let scene = Scene::new(&description).select_lights(run.lights);
+    let Opened { command, description, scene, hash } =
+        open::scene(&run.scene, &run.set, &run.emit, run.size.or(built_in_size))?;
+    let scene = scene.select_lights(run.lights);
 
     // what to do with it
     let max_bounces = usize::from(run.max_bounces.unwrap_or(8));
@@ -178,7 +166,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let stopped = || stop.load(Ordering::Relaxed);
 
     let mut found = Found {
-        hash: scene_hash(&loaded.canonical),
+        hash,
         threads: rayon::current_num_threads(),
         command,
         folder,

@@ -6,11 +6,11 @@
 use super::args::{self, EstimatorName, Over, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, guard, output, solve};
+use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::report::sweep::{self, Row, Sweep};
 use fredholm::report::typeset::Caption;
 use fredholm::report::{summary, write_atomically};
-use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
 use fredholm::terms::{Series, TermFilm};
 use fredholm::worlds::sampled::{self, Estimator};
@@ -42,17 +42,8 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let args = &super::sweep_spp::one_of_each(args)?;
     let (run, over) = (&args.run, args.over);
     let started = Instant::now();
-    if let Some(n) = run.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
-    }
     let mut cases = cases(args)?;
-    let command = output::canonical_command();
-    let mut set = run.set.clone();
-    set.extend(run.size.map(|[w, h]| format!("camera.size=[{w},{h}]")));
-    let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
-    loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-    let description = loaded.description;
-    let scene = Scene::new(&description).select_lights(run.lights);
+    let Opened { command, description, scene, hash } = open::run(run)?;
     for case in &cases {
         guard::tree_can_be_walked(case.estimator, &case.settings, description.camera.size)?;
         guard::fits_in_memory(&case.settings, description.camera.size)?;
@@ -98,7 +89,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let mut record = summary::Summary {
         command,
         scene: description.name.clone(),
-        scene_hash: solve::scene_hash(&loaded.canonical),
+        scene_hash: hash,
         seed: run.seed,
         spp: cases[0].settings.spp.into(),
         max_bounces: cases[0].settings.max_bounces,

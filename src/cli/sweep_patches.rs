@@ -2,11 +2,10 @@
 
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, args, guard, output, solve};
+use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::report::typeset::Caption;
 use fredholm::report::{refine as report, summary, write_atomically};
-use fredholm::scene::Scene;
-use fredholm::scene::load::{self, Options};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::{Settings, realisation::Factors, refine};
 use std::sync::atomic::Ordering;
@@ -34,16 +33,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         })?;
     sizes.sort_unstable();
     sizes.dedup();
-    if let Some(n) = run.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
-    }
-    let command = output::canonical_command();
-    let mut set = run.set.clone();
-    set.extend(run.size.map(|[w, h]| format!("camera.size=[{w},{h}]")));
-    let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
-    loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-    let description = loaded.description;
-    let scene = Scene::new(&description).select_lights(run.lights);
+    let Opened { command, description, scene, hash } = open::run(run)?;
     let mut worlds = vec![args::WorldName::Radiosity];
     guard::suits_a_matrix(&description, &mut worlds, true)?;
     guard::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
@@ -79,7 +69,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let record = summary::Summary {
         command: command.clone(),
         scene: description.name.clone(),
-        scene_hash: solve::scene_hash(&loaded.canonical),
+        scene_hash: hash,
         seed: run.seed,
         spp: settings.spp.into(),
         max_bounces,

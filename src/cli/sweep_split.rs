@@ -4,10 +4,9 @@ use super::args::{self, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::sweep::usage;
 use super::{Ending, Failure, guard, output, solve};
+use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::report::{split as report, summary, typeset::Caption, write_atomically};
-use fredholm::scene::Scene;
-use fredholm::scene::load::{self, Options};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::{Settings, sampled::Estimator, split};
 use std::time::Instant;
@@ -35,16 +34,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     if spp < 16 {
         return Err(usage(&format!("{spp} samples are fewer than the 16 replicates"), "choose at least --spp 16"));
     }
-    if let Some(n) = run.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
-    }
-    let command = output::canonical_command();
-    let mut set = run.set.clone();
-    set.extend(run.size.map(|[w, h]| format!("camera.size=[{w},{h}]")));
-    let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
-    loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-    let description = loaded.description;
-    let scene = Scene::new(&description).select_lights(run.lights);
+    let Opened { command, description, scene, hash } = open::run(run)?;
     guard::fits_in_memory(&settings, description.camera.size)?;
     guard::light_is_seen(&scene, &[Estimator::Prefix], &settings, &[])?;
     guard::light_is_lost(&scene, &settings, &[WorldName::Terms])?;
@@ -69,7 +59,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let record = summary::Summary {
         command,
         scene: description.name.clone(),
-        scene_hash: solve::scene_hash(&loaded.canonical),
+        scene_hash: hash,
         seed: run.seed,
         spp: spp.into(),
         max_bounces,

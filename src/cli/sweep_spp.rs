@@ -5,13 +5,13 @@ use super::args::{self, EstimatorName, Schedule, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::sweep::{number, usage, values};
 use super::{Ending, Failure, guard, output, solve};
+use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::math::Points;
 use fredholm::report::sweep::fall::{self, Fall};
 use fredholm::report::typeset::Caption;
 use fredholm::report::{exr, summary, write_atomically};
-use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
 use fredholm::terms::{TermFilm, TermImage};
 use fredholm::worlds::falling::{Recorder, Reference};
@@ -198,16 +198,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         return Err(usage(&format!("{spp} samples leave no error of a variance"), "choose at least --spp 32"));
     }
     let mut cases = cases(args, spp)?;
-    if let Some(n) = run.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
-    }
-    let command = output::canonical_command();
-    let mut set = run.set.clone();
-    set.extend(run.size.map(|[w, h]| format!("camera.size=[{w},{h}]")));
-    let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
-    loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-    let description = loaded.description;
-    let scene = Scene::new(&description).select_lights(run.lights);
+    let Opened { command, description, scene, hash } = open::run(run)?;
     for case in &cases {
         let of_terms: Vec<Estimator> = case.estimator.into_iter().collect();
         let world = if of_terms.is_empty() { WorldName::Path } else { WorldName::Terms };
@@ -266,7 +257,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let mut record = summary::Summary {
         command: command.clone(),
         scene: description.name.clone(),
-        scene_hash: solve::scene_hash(&loaded.canonical),
+        scene_hash: hash,
         seed: run.seed,
         spp: spp.into(),
         max_bounces: cases[0].settings.max_bounces,

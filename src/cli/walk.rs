@@ -1,13 +1,13 @@
 //! `fredholm walk [SCENE]`: the estimators on the radiosity matrix, where the terms are known to rounding.
 
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, args, facts, guard, output, solve};
+use super::{Ending, Failure, args, facts, guard, output};
+use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::report::typeset::Caption;
 use fredholm::report::{summary, table, walk as report, write_atomically};
-use fredholm::scene::load::{self, Options};
-use fredholm::scene::{Description, Scene};
+use fredholm::scene::Description;
 use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, Outcome, compare};
 use fredholm::terms::TermFilm;
@@ -113,14 +113,8 @@ fn walker(args: &Walk) -> Option<Walker> {
 /// Builds the matrix, walks on it, and says whether the walk gives its powers.
 pub fn run(args: &Walk) -> Result<Ending, Failure> {
     let started = Instant::now();
-    if let Some(n) = args.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
-    }
-    let command = output::canonical_command();
-    let loaded = load::scene(&args.scene, &Options { set: args.set.clone(), emit: args.emit.clone() })?;
-    loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-    let description = loaded.description;
-    let scene = Scene::new(&description);
+    open::threads(args.threads)?;
+    let Opened { command, description, scene, hash } = open::scene(&args.scene, &args.set, &args.emit, None)?;
     let mut worlds = vec![args::WorldName::Radiosity];
     guard::suits_a_matrix(&description, &mut worlds, true)?;
     guard::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
@@ -160,7 +154,7 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
     let mut record = summary::Summary {
         command: command.clone(),
         scene: description.name.clone(),
-        scene_hash: solve::scene_hash(&loaded.canonical),
+        scene_hash: hash,
         seed: args.seed,
         spp: args.spp.into(),
         max_bounces,

@@ -67,9 +67,7 @@ pub struct Zoo {
 
 /// Lists, renders, or asks.
 pub fn run(args: &Zoo) -> Result<Ending, Failure> {
-    if let Some(n) = args.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
-    }
+    super::open::threads(args.threads)?;
     match &args.name {
         _ if args.quiz => quiz::run(args),
         None if args.list => {

@@ -7,7 +7,8 @@ use super::super::args;
 use super::super::progress::stop_flag;
 use super::super::{Ending, Failure, note, output, paragraphs, say};
 use super::sides::{Against, check_sides, finished, side};
-use super::{Common, Loaded, fraction, usage};
+use super::{Common, fraction, usage};
+use crate::cli::open::Opened;
 use clap::Args;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::report::typeset::Caption;
@@ -285,7 +286,7 @@ fn progress(detector: &Detector, started: Instant) -> String {
 fn write(
     folder: &Path,
     args: &Bias,
-    loaded: &Loaded,
+    loaded: &Opened,
     record: &Record,
     curve: &[Glimpse],
     spp: u32,

@@ -3,7 +3,8 @@
 use super::super::args;
 use super::super::progress::{Progress, stop_flag};
 use super::super::{Ending, Failure, guard, note, output, paragraphs, say, write};
-use super::{Common, Loaded, fraction, usage};
+use super::{Common, fraction, usage};
+use crate::cli::open::Opened;
 use clap::Args;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::report::equilibrium::{self as figure, Dot};
@@ -72,7 +73,7 @@ pub struct Equilibrium {
 /// Everything that was found.
 struct Found<'a> {
     args: &'a Equilibrium,
-    loaded: Loaded,
+    loaded: Opened,
     groups: [(&'static str, Vec<Balance>); 2],
     judgement: Judgement,
     images: [TermImage; 2],

@@ -4,11 +4,10 @@ mod bias;
 mod equilibrium;
 mod sides;
 
-use super::{Ending, Failure, output};
+use super::{Ending, Failure};
+use crate::cli::open::{self, Opened};
 use clap::{Args, Subcommand};
 use fredholm::scene::Scene;
-use fredholm::scene::description::Description;
-use fredholm::scene::load::{self, Options};
 use std::path::PathBuf;
 
 /// Arguments of `check`.
@@ -72,26 +71,14 @@ struct Common {
     quiet: bool,
 }
 
-/// A scene ready to be checked.
-struct Loaded {
-    command: String,
-    description: Description,
-    scene: Scene,
-    hash: String,
-}
-
 impl Common {
-    fn load(&self, name: &str, most: u32) -> Result<Loaded, Failure> {
-        if let Some(n) = self.threads {
-            rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
-        }
-        let options = Options { set: self.set.clone(), emit: self.emit.clone() };
-        let loaded = load::scene(name, &options)?;
-        loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-        let mut description = loaded.description;
-        description.camera.size = self.size.unwrap_or_else(|| small(description.camera.size, most));
-        let hash = super::solve::scene_hash(&loaded.canonical);
-        Ok(Loaded { command: output::canonical_command(), scene: Scene::new(&description), description, hash })
+    /// The scene, in a small picture unless a size was asked for.
+    fn load(&self, name: &str, most: u32) -> Result<Opened, Failure> {
+        open::threads(self.threads)?;
+        let mut opened = open::scene(name, &self.set, &self.emit, None)?;
+        let size = self.size.unwrap_or_else(|| small(opened.description.camera.size, most));
+        opened.description.camera.size = size;
+        Ok(Opened { scene: Scene::new(&opened.description), ..opened })
     }
 }
 

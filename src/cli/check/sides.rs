@@ -3,7 +3,8 @@
 use super::super::args::{self, EstimatorName};
 use super::super::{Failure, guard, solve};
 use super::bias::Bias;
-use super::{Loaded, usage};
+use super::usage;
+use crate::cli::open::Opened;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::report::summary;
 use fredholm::scene::Scene;
@@ -101,7 +102,7 @@ impl Against {
 }
 
 /// Refuses what could only end badly.
-pub(super) fn check_sides(loaded: &Loaded, first: &Side, against: &Against) -> Result<(), Failure> {
+pub(super) fn check_sides(loaded: &Opened, first: &Side, against: &Against) -> Result<(), Failure> {
     let size = loaded.description.camera.size;
     let rendered = match against {
         Against::Rendered(side) => Some(side),

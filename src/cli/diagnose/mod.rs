@@ -121,9 +121,7 @@ pub struct Found {
 
 /// Diagnoses every suspect.
 pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
-    if let Some(n) = args.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
-    }
+    super::open::threads(args.threads)?;
     let (suspects, how) = suspects(args)?;
     let scaled = args.scale.as_ref().map(|(s, file)| Ok::<_, Failure>((*s, read::file(file)?))).transpose()?;
     let source = against::source(args)?;

@@ -7,11 +7,10 @@ mod solvers;
 use super::args::Run;
 use super::progress::{Progress, stop_flag};
 use super::{Ending, Failure, args::WorldName, guard, output, solve};
+use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
 use fredholm::report::summary;
 use fredholm::report::typeset::Caption;
-use fredholm::scene::Scene;
-use fredholm::scene::load::{self, Loaded, Options};
 use fredholm::solver::{self, study::Solver};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::discrete::{self, Matrix, MatrixError};
@@ -121,9 +120,7 @@ pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
 
 /// A scene, its matrix and where the results go.
 struct Laboratory {
-    command: String,
-    loaded: Loaded,
-    scene: Scene,
+    opened: Opened,
     matrix: Matrix<solver::Radiosity>,
     folder: PathBuf,
 }
@@ -131,26 +128,18 @@ struct Laboratory {
 impl Laboratory {
     /// Loads, meshes and computes form factors; `None` if interrupted.
     fn new(run: &Run, what: &str) -> Result<Option<Self>, Failure> {
-        if let Some(n) = run.threads {
-            rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
-        }
-        let command = output::canonical_command();
-        let mut set = run.set.clone();
-        set.extend(run.size.map(|[w, h]| format!("camera.size=[{w},{h}]")));
-        let loaded = load::scene(&run.scene, &Options { set, emit: run.emit.clone() })?;
-        loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-        let scene = Scene::new(&loaded.description);
+        let opened = open::run(run)?;
         let mut worlds = vec![WorldName::Radiosity];
-        guard::suits_a_matrix(&loaded.description, &mut worlds, true)?;
-        guard::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
-        let name = format!("{}-{what}", loaded.description.name);
-        let folder = output::folder(run.out.as_deref(), &name, &command, run.force)?;
+        guard::suits_a_matrix(&opened.description, &mut worlds, true)?;
+        guard::fits_in_a_matrix(&opened.scene, Factors::Dense, &mut worlds, true)?;
+        let name = format!("{}-{what}", opened.description.name);
+        let folder = output::folder(run.out.as_deref(), &name, &opened.command, run.force)?;
         let progress = Progress::new(run.quiet, |_: &TermFilm| {});
         let patches = run.patches.unwrap_or(600) as usize;
-        let matrix = discrete::dense_matrix(&loaded.description, &scene, patches, 0, &progress, stop_flag());
+        let matrix = discrete::dense_matrix(&opened.description, &opened.scene, patches, 0, &progress, stop_flag());
         progress.finish();
         match matrix {
-            Ok(matrix) => Ok(Some(Self { command, loaded, scene, matrix, folder })),
+            Ok(matrix) => Ok(Some(Self { opened, matrix, folder })),
             Err(e) => {
                 let _ = std::fs::remove_dir(&folder); // only if it is empty
                 if !matches!(e, MatrixError::Stopped) {
@@ -174,15 +163,15 @@ impl Laboratory {
     }
 
     fn caption(&self, run: &Run) -> Caption {
-        Caption { command: self.command.clone(), seed: run.seed, scene: self.loaded.description.name.clone() }
+        Caption { command: self.opened.command.clone(), seed: run.seed, scene: self.opened.description.name.clone() }
     }
 
     /// Writes the summary that owns the folder, and removes what the last run left and this one did not write.
     fn sign(&self, run: &Run, files: &[String]) -> Result<(), Failure> {
         let record = summary::Summary {
-            command: self.command.clone(),
-            scene: self.loaded.description.name.clone(),
-            scene_hash: solve::scene_hash(&self.loaded.canonical),
+            command: self.opened.command.clone(),
+            scene: self.opened.description.name.clone(),
+            scene_hash: self.opened.hash.clone(),
             seed: run.seed,
             threads: rayon::current_num_threads(),
             files: files.to_vec(),

@@ -1,7 +1,7 @@
 //! `--modes`: the spectrum of T, what bounds it, and its modes through the camera.
 
 use super::super::progress::{Progress, stop_flag};
-use super::super::{Ending, Failure, guard, paragraphs, say, solve::scene_hash};
+use super::super::{Ending, Failure, guard, paragraphs, say};
 use super::{Laboratory, NAMES, Radiosity};
 use fredholm::operator::edges::{Band, essential_band};
 use fredholm::operator::matrix::LinearOperator;
@@ -23,7 +23,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     let Some(lab) = Laboratory::new(run, "modes")? else { return Ok(Ending::Interrupted) };
     let settings =
         Settings { spp: run.spp.unwrap_or(64), seed: run.seed, max_bounces: count + 1, ..Settings::default() };
-    let size = lab.loaded.description.camera.size;
+    let size = lab.opened.description.camera.size;
     guard::fits_in_memory(&settings, size)?;
     let stopped = || stop_flag().load(Ordering::Relaxed);
     let progress = Progress::new(run.quiet, |_: &TermFilm| {});
@@ -50,7 +50,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     let shown: Vec<usize> =
         (0..all[channel].leading.len()).filter(|&i| spectra[channel].modes[i].value.abs() > modes::ROUNDING).collect();
     let fields: Vec<Vec<f64>> = shown.iter().map(|&i| all[channel].leading[i].vector.clone()).collect();
-    let images = lab.matrix.paint(&lab.scene, &fields, &settings, &progress, stop_flag());
+    let images = lab.matrix.paint(&lab.opened.scene, &fields, &settings, &progress, stop_flag());
     progress.finish();
     let paint = |(&i, image): (&usize, &fredholm::terms::TermImage)| {
         let value = spectra[channel].modes[i].value;
@@ -64,7 +64,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     let painted: Vec<Painted> = shown.iter().zip(&images).map(paint).collect();
 
     // files
-    let name = &lab.loaded.description.name;
+    let name = &lab.opened.description.name;
     let caption = lab.caption(run);
     let title = format!("Spectrum of T: {name}, {} patches, {}", lab.patches(), NAMES[channel]);
     modes::draw(&spectra[channel], &title, &caption)?.write(&lab.folder, "modes")?;
@@ -76,9 +76,9 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
         files.push("modes-painted.png".into());
     }
     let record = json!({
-        "command": lab.command,
+        "command": lab.opened.command,
         "scene": name,
-        "scene_hash": scene_hash(&lab.loaded.canonical),
+        "scene_hash": lab.opened.hash.clone(),
         "seed": run.seed,
         "patches": lab.patches(),
         "channels": modes::machine(&spectra),
@@ -91,7 +91,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
         let mut blocks = vec![
             format!(
                 "{}\n{} patches; eigenvalues inside the band of the edges belong to the mesh",
-                lab.command,
+                lab.opened.command,
                 lab.patches()
             ),
             modes::norms(&spectra),

@@ -1,7 +1,7 @@
 //! `--solver`: all ways to solve (I − T) L = E, step by step.
 
 use super::super::progress::{Progress, stop_flag};
-use super::super::{Ending, Failure, paragraphs, say, solve::scene_hash};
+use super::super::{Ending, Failure, paragraphs, say};
 use super::{Laboratory, NAMES, Radiosity, SolverName};
 use fredholm::operator::matrix::{LinearOperator, Rows};
 use fredholm::report::solvers::{self, Extrapolated};
@@ -53,7 +53,7 @@ pub fn run(args: &Radiosity, name: SolverName) -> Result<Ending, Failure> {
             "{}\n{} patches, {} channel: eigenvalues {low:.5} to {high:.5}\n\
              products with T, then seconds, until ‖x − L‖/‖L‖ in the weight A/ρ is below 1e-3, 1e-6, 1e-10\n\
              LU counts as n/3 products; Chebyshev and SOR spend {} on the spectrum first",
-            lab.command,
+            lab.opened.command,
             lab.patches(),
             NAMES[channel],
             system.ends.steps,
@@ -85,9 +85,9 @@ fn extrapolations(system: &System<'_>) -> Vec<Extrapolated> {
 
 fn record(args: &Radiosity, lab: &Laboratory, channel: usize, ends: [f64; 2], solvers: Value) -> Value {
     json!({
-        "command": lab.command,
-        "scene": lab.loaded.description.name,
-        "scene_hash": scene_hash(&lab.loaded.canonical),
+        "command": lab.opened.command,
+        "scene": lab.opened.description.name,
+        "scene_hash": lab.opened.hash.clone(),
         "seed": args.run.seed,
         "threads": rayon::current_num_threads(),
         "patches": lab.patches(),
@@ -99,7 +99,7 @@ fn record(args: &Radiosity, lab: &Laboratory, channel: usize, ends: [f64; 2], so
 
 /// Writes the figure, the steps and the summary; returns the names of the files.
 fn write(args: &Radiosity, lab: &Laboratory, histories: &[History], channel: usize) -> Result<Vec<String>, Failure> {
-    let scene = &lab.loaded.description.name;
+    let scene = &lab.opened.description.name;
     let title = format!("Solvers of (I − T) L = E: {scene}, {} patches, {}", lab.patches(), NAMES[channel]);
     let mut files = vec!["solvers.json".to_string(), "summary.json".into()];
     if histories.iter().any(|h| h.points.len() > 1) {
