@@ -468,7 +468,9 @@ fn a_closed_pipe_is_no_crash() {
 #[test]
 fn help_fits_the_screen_and_says_how_k_counts() {
     let desk = Desk::new();
-    for command in ["", "tour", "series", "render", "radiosity", "sweep", "compare", "info", "chapter"] {
+    let picture = ["", "tour", "series", "render", "radiosity", "sweep", "compare", "info", "chapter", "figure"];
+    let study = ["walk", "roulette", "zoo", "diagnose", "check", "check bias", "check equilibrium"];
+    for command in picture.into_iter().chain(study) {
         for flag in ["-h", "--help"] {
             let said = desk.ok(&format!("{command} {flag}"));
             for line in said.out.lines() {

@@ -30,7 +30,7 @@ Exit codes: 0 ok, 1 a comparison failed, 2 usage, 3 scene or file,
 
 /// The operator view of global illumination: L = E + T L = Σ T^k E, measured
 #[derive(Debug, Parser)]
-#[command(name = "fredholm", version, about = TOUR, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+#[command(name = "fredholm", version, max_term_width = 100, about = TOUR, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Cli {
     /// What to do; nothing is the tour
     #[command(subcommand)]
@@ -137,8 +137,9 @@ from the prefixes of one path, at about the same rays: variance × cost, predict
 measured.
 Written: split.csv, covariance.csv, covariance.svg, covariance.png, summary.json.
 
-All others. Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample, averaged
-over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for the same error.")]
+All others. Written: sweep.csv, sweep.svg, sweep.png, summary.json. V is the variance of one sample,
+averaged over the pixels; 1/(V rays) is the efficiency: twice of it is half the rays for the same
+error.")]
     Sweep(Sweep),
     /// The same estimators on the radiosity matrix, beside its powers
     #[command(after_help = "Examples:

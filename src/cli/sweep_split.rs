@@ -80,7 +80,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         "{}\nseed {}, {}×{} pixels, k ≤ {max_bounces}, technique {}, {} threads; cost per pixel",
         record.command, run.seed, record.width, record.height, settings.technique, record.threads
     );
-    let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
+    let files = format!("written to {}:\n{}", folder.display(), record.files.join(", "));
     super::say(&super::paragraphs(&[head, report::table(&study), files]))?;
     Ok(Ending::Ok)
 }

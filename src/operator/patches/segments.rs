@@ -218,8 +218,8 @@ pub(super) fn hides(body: &Body, a: &[DVec3], b: &[DVec3]) -> bool {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use super::super::{BruteForce, Patches};
     use super::*;
+    use crate::operator::patches::{BruteForce, Patches};
     use crate::scene::Primitive;
     use crate::scene::description::{CameraDescription, Description, Geometry, Material, Shape, Sides};
 
