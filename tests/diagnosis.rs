@@ -370,7 +370,11 @@ fn the_command_says_correct_or_names_the_mistake() {
     let said = run(&desk, &format!("diagnose good.exr --against cornell -o a {QUICK}"));
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
     assert!(said.out.starts_with("good.exr: correct, as far as this data can tell"), "{}", said.out);
-    assert!(said.out.contains("A uniform bias"), "{}", said.out);
+    assert!(
+        said.out.contains("A uniform bias") && said.out.contains("cannot show samples that repeat"),
+        "{}",
+        said.out
+    );
 
     let said = run(&desk, &format!("diagnose bad.exr --against cornell -o b {QUICK}"));
     assert_eq!(said.code, 1, "{}{}", said.out, said.err);
@@ -385,7 +389,7 @@ fn the_command_says_correct_or_names_the_mistake() {
     let line = format!("diagnose good.exr bad.exr --against cornell {QUICK}");
     let said = run(&desk, &format!("{line} -o c -t 1"));
     assert_eq!(said.code, 1);
-    assert!(said.out.contains("1 of 2 are wrong"), "{}", said.out);
+    assert!(said.out.contains("1 of 2 are wrong") && said.out.contains("data can tell: bias < "), "{}", said.out);
     let json = run(&desk, &format!("{line} --json -o c -t 2"));
     let json: serde_json::Value = serde_json::from_str(&json.out).unwrap();
     assert_eq!(json[1]["diagnosis"]["suspects"][0]["name"], "missing-pi-connection");
@@ -430,6 +434,76 @@ fn growing_samples_show_what_one_picture_cannot() {
             }
             None => assert_eq!(said.code, 0, "{}", said.out),
         }
+    }
+}
+
+/// Inside a sphere nothing depends on its radius: only what is wrong in its measures does.
+#[test]
+fn a_larger_scene_shows_mixed_measures() {
+    let desk = tempfile::TempDir::new().unwrap();
+    let mixed = zoo::find("mixed-measures").unwrap();
+    for (radius, stage) in [(1, Stage::SPHERE), (10, Stage::LARGE_SPHERE)] {
+        let scene = Scene::new(&stage.load([16, 16]).unwrap());
+        let s = Settings { max_bounces: 3, ..settings(256, 20 + radius) };
+        let wrong = zoo::render(mixed, &scene, &s, &Unobserved, &NEVER);
+        let right = zoo::render_right(mixed, &scene, &s, &Unobserved, &NEVER);
+        for (name, render) in [("wrong", &wrong), ("right", &right)] {
+            write_exr(&desk, &format!("{name}{radius}.exr"), [16, 16], &[("T01", render.terms[1].mean.as_slice())]);
+        }
+    }
+    let lengths = "lengths enter where they must cancel";
+    // no candidates: what the two scales say by themselves
+    let few = "--spp 256 --paths 1 -q --json";
+    let names = |said: &Said| {
+        let json: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+        let list = json[0]["diagnosis"]["suspects"].as_array().unwrap().clone();
+        list.iter().map(|s| s["name"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    let said = run(&desk, &format!("diagnose wrong1.exr --scale 10=wrong10.exr --against sphere -o a {few}"));
+    assert_eq!(said.code, 1, "{}", said.err);
+    assert!(said.out.contains(lengths) && names(&said).contains(&"mixed-measures".into()), "{}", said.out);
+    let said = run(&desk, &format!("diagnose right1.exr --scale 10=right10.exr --against sphere -o b {few}"));
+    assert_eq!(said.code, 0, "{}", said.out);
+    assert!(!said.out.contains(lengths) && names(&said).is_empty(), "{}", said.out);
+    // the right picture, beside a large one that is not
+    let said = run(&desk, &format!("diagnose right1.exr --scale 10=wrong10.exr --against sphere -o c {few}"));
+    assert_eq!(said.code, 1, "{}", said.err);
+    assert_eq!(names(&said), ["mixed-measures"], "{}", said.out);
+    assert!(said.out.contains(lengths), "{}", said.out);
+}
+
+/// A lamp close below the ceiling that shines upwards, too: its light lies in few pixels, and is in no other renderer.
+#[test]
+fn fireflies_that_nothing_pays_for_are_seen() {
+    let bench = Bench::new(Stage::CORNELL, 1024);
+    let behind = zoo::find("light-from-behind").unwrap();
+    let render = |mistake: bool| {
+        let s = settings(512, 31);
+        let make = if mistake { zoo::render } else { zoo::render_right };
+        without_errors(Pictures::of(&make(behind, &bench.scene, &s, &Unobserved, &NEVER), SIZE))
+    };
+    let d = bench.judge(&render(true), None, 1e-6);
+    assert_eq!(d.verdict, Verdict::Wrong, "{}", d.p);
+    let d = bench.judge(&render(false), None, 1e-6);
+    assert_eq!(d.verdict, Verdict::Correct, "{}", d.worst);
+    // one firefly, as bright as half of all pixels together, decides nothing, and that is said
+    let mut one = render(false).only(|s| s == Slot::Term(1));
+    one.layers[0].mean[40] = [10.0; 3];
+    let d = bench.judge(&one, None, 1e-6);
+    assert_eq!((d.verdict, d.undecided.as_slice()), (Verdict::Correct, &[Slot::Term(1)][..]), "{}", d.p);
+    assert!(d.visible.is_infinite(), "{}", d.visible);
+}
+
+/// A lamp of few pixels: it is seen that it is missing, with its term and in the whole image.
+#[test]
+fn a_small_lamp_is_missed() {
+    let bench = Bench::new(Stage::CORNELL, 1024);
+    let missing = zoo::find("emission-missing").unwrap();
+    let render = zoo::render(missing, &bench.scene, &settings(64, 32), &Unobserved, &NEVER);
+    let all = without_errors(Pictures::of(&render, SIZE));
+    for part in [all.clone(), all.only(|s| s == Slot::Term(0)), all.only(|s| s == Slot::Whole)] {
+        let d = bench.judge(&part, None, 1e-6);
+        assert_eq!(d.verdict, Verdict::Wrong, "{:?} {}", d.evidence.ratios, d.p);
     }
 }
 

@@ -15,14 +15,16 @@
 //! The local scatter holds the noise of both sides and, where the explanation is wrong in shape, that misfit too: it is too
 //! large rather than too small, so a noisy difference is not taken for a bias. Noise of rare hits is as their number: a region
 //! that by chance had none looks dark and certain, and κ times its mean mends that. Where fewer than ten pixels carry the noise the
-//! t-test is not to be trusted, and nothing is rejected. Pixels are taken as independent. Welch (1947); Holm (1979).
+//! t-test is not to be trusted: [`rare`](super::rare) looks for fireflies that nothing pays for, and for lamps that are not there, and
+//! else nothing is rejected. Pixels are taken as independent. Welch (1947); Holm (1979).
 
 use super::picture::{Code, Layer, Pictures, Slot};
+use super::rare::{Pixel, deficit, excess};
 use super::regions::Region;
 use crate::stats::{Measured, holm, two_sided_p};
 
 /// Fewer pixels than this carry the noise: no decision.
-const FEW: f64 = 10.0;
+pub(super) const FEW: f64 = 10.0;
 /// Side of the blocks in which the noise is measured.
 const BLOCK: usize = 8;
 
@@ -45,6 +47,8 @@ pub struct Gap {
     pub p: f64,
     /// The same adjusted for the number of comparisons.
     pub adjusted: f64,
+    /// Whether too few pixels carry the noise, and nothing can be decided.
+    pub few: bool,
 }
 
 /// All comparisons of two sets of pictures.
@@ -137,6 +141,52 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
+/// One channel of a layer beside its prediction, where few pixels carry the noise.
+struct Rare<'a> {
+    layers: (&'a Layer, &'a Layer),
+    errors: &'a [[f32; 3]],
+    channel: usize,
+    width: usize,
+    regions: &'a [Region],
+}
+
+impl Rare<'_> {
+    fn pixels(&self, region: &Region, lamps: bool) -> Vec<Pixel> {
+        let ((a, b), c) = (self.layers, self.channel);
+        let chosen = region.pixels.iter().filter(|p| region.lamps.binary_search(p).is_ok() == lamps);
+        chosen.map(|&p| [a.mean[p][c], b.mean[p][c], self.errors[p][c]].map(f64::from)).collect()
+    }
+
+    /// Whether many pixels carry the noise of the prediction: else it may have fireflies of its own, here or there.
+    fn steady(&self, region: &Region) -> bool {
+        let squares = self.pixels(region, false).into_iter().map(|[.., s]| s * s);
+        let (one, two) = squares.fold((0.0, 0.0), |a, v| (a.0 + v, a.1 + v * v));
+        one * one >= FEW * two
+    }
+
+    /// Variance of the suspect over that of the prediction: the median of the regions.
+    fn noise(&self) -> f64 {
+        let of = |r: &Region| {
+            let (m, _) = difference((self.layers.0, self.layers.1, 1.0), self.width, &r.pixels, self.channel, false);
+            let own = r.pixels.iter().map(|&p| f64::from(self.errors[p][self.channel]).powi(2)).sum::<f64>();
+            (m.std_error * r.pixels.len() as f64).powi(2) / own
+        };
+        let all: Vec<f64> = self.regions.iter().map(of).filter(|v| v.is_finite()).collect();
+        if all.is_empty() { f64::INFINITY } else { median(all) }
+    }
+
+    /// p-value of no difference. What is emitted towards the eye is found by every renderer alike, so that a lamp can be missed;
+    /// of all other light it is not known how rarely a right renderer finds it.
+    fn p(&self, region: &Region, brighter: bool) -> f64 {
+        if brighter {
+            let steady = self.steady(&self.regions[0]) && self.steady(region);
+            return if steady { excess(&self.pixels(region, false)) } else { 1.0 };
+        }
+        let emitted = matches!(self.layers.0.slot, Slot::Term(0) | Slot::Whole) && !region.lamps.is_empty();
+        if emitted { deficit(&self.pixels(region, true), self.noise()) } else { 1.0 }
+    }
+}
+
 /// Compares every slot that both have in every region.
 pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> Fit {
     let rounding = suspect.code.rounding().max(predicted.code.rounding());
@@ -156,6 +206,13 @@ pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> 
             let level = |r: usize| (measured[r].0.mean + measured[r].1).max(measured[r].1).max(0.0);
             let size = |r: usize| regions[r].pixels.len() as f64;
             let usual = |r: usize| measured[r].0.std_error.powi(2) * size(r) / level(r);
+            let rare = b.std_error.as_ref().filter(|_| exact).map(|errors| Rare {
+                layers: (a, b),
+                errors,
+                channel,
+                width,
+                regions,
+            });
             let kappa = median((1..regions.len()).map(usual).filter(|k| *k > 0.0 && k.is_finite()).collect());
             for (r, region) in regions.iter().enumerate() {
                 let (Measured { mean: difference, std_error: own, dof }, predicted, carried) = measured[r];
@@ -163,16 +220,30 @@ pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> 
                 let floor = if r == 0 { 0.0 } else { (kappa * level(r) / size(r)).sqrt() };
                 let std_error = own.max(floor);
                 let equal = difference.abs() <= rounding * predicted.abs();
+                let few = carried < FEW && !equal;
                 let p =
                     if exact && differs_without_noise(a, b, &region.pixels, channel, rounding) || difference.is_nan() {
                         // what is not a number differs from every number
                         0.0
-                    } else if equal || carried < FEW {
+                    } else if equal {
                         1.0
+                    } else if few {
+                        rare.as_ref().map_or(1.0, |rare| rare.p(region, difference > 0.0))
                     } else {
                         two_sided_p(difference / std_error, dof)
                     };
-                gaps.push(Gap { slot: a.slot, region: r, channel, suspect, predicted, std_error, p, adjusted: 1.0 });
+                let few = few && p == 1.0;
+                gaps.push(Gap {
+                    slot: a.slot,
+                    region: r,
+                    channel,
+                    suspect,
+                    predicted,
+                    std_error,
+                    p,
+                    adjusted: 1.0,
+                    few,
+                });
             }
         }
     }

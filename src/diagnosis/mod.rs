@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | pictures | terms and whole image, brought to at most 96 pixels a side | [`picture`] |
 //! | comparison | means of regions, t-tests adjusted by Holm | [`gap`], [`regions`] |
+//! | few pixels | fireflies that nothing pays for, lamps that are not there | `rare` |
 //! | evidence | ratios, flatness in space, counts, noise | [`evidence`], [`series`] |
 //! | patterns | rules for r_k with one fitted number | [`pattern`] |
 //! | simulations | every member of the zoo on the same scene | [`elimination`], [`candidates`] |
@@ -23,6 +24,7 @@ pub mod evidence;
 pub mod gap;
 pub mod pattern;
 pub mod picture;
+mod rare;
 pub mod regions;
 pub mod rules;
 pub mod series;
@@ -75,8 +77,10 @@ pub struct Diagnosis {
     pub p: f64,
     /// Where it differs most, in words; empty if it is correct.
     pub worst: String,
-    /// A uniform relative bias of this size would have been seen with probability 0.99.
+    /// A uniform relative bias of this size would have been seen with probability 0.99; infinite if none would.
     pub visible: f64,
+    /// Pictures off by more than that, whose mean decides nothing because too few pixels carry its noise.
+    pub undecided: Vec<Slot>,
     /// The short list, best first.
     pub suspects: Vec<Suspicion>,
     /// Evidence.
@@ -137,8 +141,9 @@ impl Watch for Unwatched {
 
 /// Finds out what is wrong, if anything.
 pub fn diagnose(case: &Case, watch: &dyn Watch) -> Diagnosis {
-    let grid = regions::without(regions::grid(case.suspect.size), case.mask);
-    let all = regions::without(grid.iter().chain(case.seen).cloned().collect(), case.mask);
+    let grid = regions::lit(regions::without(regions::grid(case.suspect.size), case.mask), case.reference);
+    let all = grid.iter().chain(case.seen).cloned().collect();
+    let all = regions::lit(regions::without(all, case.mask), case.reference);
     let reference = case.brightened(case.reference.clone(), &grid);
     let case = &Case { reference: &reference, ..*case };
     let fit = compare(case.suspect, case.reference, &all);
@@ -176,11 +181,13 @@ pub fn diagnose(case: &Case, watch: &dyn Watch) -> Diagnosis {
         spp: t.spp,
         rejected: t.rejected,
     });
+    let visible = visible(case, &grid[0], fit.gaps.len());
     Diagnosis {
         verdict: if wrong { Verdict::Wrong } else { Verdict::Correct },
         p: fit.p,
         worst: if rejected { worst(&fit, &all) } else { String::new() },
-        visible: visible(case, &grid[0], fit.gaps.len()),
+        visible,
+        undecided: undecided(&fit, &evidence, visible),
         suspects,
         candidates: candidates.collect(),
         samples,
@@ -242,14 +249,16 @@ fn short_list(named: Vec<Suspicion>, tried: &[Tried], evidence: &Evidence, certa
             p: t.fit.p,
             misfit: t.fit.misfit,
             curve: curve(&t.fit, evidence),
+            fitted: None,
         });
     }
-    let patterns: Vec<Suspicion> = named.iter().filter(|s| s.basis == Basis::Pattern).cloned().collect();
-    for s in patterns {
-        if list.iter().all(|l| l.name != s.name) {
-            list.push(s);
-        }
-    }
+    let simulated = !list.is_empty();
+    let patterns = named.iter().filter(|s| s.basis == Basis::Pattern && list.iter().all(|l| l.name != s.name));
+    let patterns: Vec<Suspicion> = patterns.cloned().collect();
+    let (fitted, exact): (Vec<Suspicion>, Vec<Suspicion>) = patterns.into_iter().partition(|s| s.fitted.is_some());
+    list.extend(exact);
+    // a number that is free and has no name explains less than a simulation, in which there is nothing to fit
+    list.extend(if simulated && fitted.len() > 1 { vec![rules::one_constant(&fitted)] } else { fitted });
     if list.is_empty() {
         // what was simulated without success is not suggested again, but where the simulation had a number of its own
         let has_a_number = |name: &str| ["clamped", "gamma-before-mean"].contains(&name);
@@ -284,13 +293,24 @@ fn worst(fit: &gap::Fit, regions: &[Region]) -> String {
     )
 }
 
+/// The pictures that are off by more than a visible bias, though nothing follows from that.
+fn undecided(fit: &gap::Fit, evidence: &Evidence, visible: f64) -> Vec<Slot> {
+    let few = |slot: Slot| fit.gaps.iter().filter(|g| g.region == 0 && g.slot == slot).all(|g| g.few);
+    let least = if visible.is_finite() { visible } else { 0.0 };
+    let off = evidence.ratios.iter().filter(|r| r.slot != Slot::Tail && (r.value - 1.0).abs() > least);
+    off.map(|r| r.slot).filter(|slot| few(*slot)).collect()
+}
+
 /// The smallest uniform relative bias that the image means would have shown with probability 0.99.
 fn visible(case: &Case, image: &Region, comparisons: usize) -> f64 {
     let one = |l: &Layer| {
         let right = case.reference.layer(l.slot)?;
         let n = image.pixels.len() as f64;
         let channel = |c: usize| {
-            let (m, _) = difference((l, right, 1.0), case.suspect.size[0], &image.pixels, c, true);
+            let (m, carried) = difference((l, right, 1.0), case.suspect.size[0], &image.pixels, c, true);
+            if carried < gap::FEW {
+                return f64::NAN;
+            }
             let mean = image.pixels.iter().map(|&p| f64::from(right.mean[p][c])).sum::<f64>() / n;
             min_detectable(m.std_error, m.dof, case.alpha / comparisons.max(1) as f64, 0.01) / mean
         };

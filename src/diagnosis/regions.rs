@@ -9,6 +9,7 @@
 //! | grazing | whose centre sees a surface at cos θ < 0.25 |
 //! | beside lamps | within an eighth of the image of a lamp, and not a lamp |
 
+use super::picture::{Pictures, Slot};
 use crate::math::Rgb;
 use crate::scene::Scene;
 
@@ -19,6 +20,8 @@ pub struct Region {
     pub name: String,
     /// Indices, ascending.
     pub pixels: Vec<usize>,
+    /// Those of them whose light is mostly emitted towards the eye, ascending; see [`lit`].
+    pub lamps: Vec<usize>,
 }
 
 /// Regions with fewer pixels are not tested: their noise is not known well enough.
@@ -28,11 +31,11 @@ pub const SIDE: usize = 4;
 
 /// The whole image first, then the sixteen regions, of which small images have fewer.
 pub fn grid([w, h]: [usize; 2]) -> Vec<Region> {
-    let mut regions = vec![Region { name: "image".into(), pixels: (0..w * h).collect() }];
+    let mut regions = vec![Region { name: "image".into(), pixels: (0..w * h).collect(), lamps: vec![] }];
     for (row, column) in (0..SIDE).flat_map(|r| (0..SIDE).map(move |c| (r, c))) {
         let inside = |p: &usize| p / w * SIDE / h == row && p % w * SIDE / w == column;
         let pixels: Vec<usize> = (0..w * h).filter(inside).collect();
-        regions.push(Region { name: format!("region {row},{column}"), pixels });
+        regions.push(Region { name: format!("region {row},{column}"), pixels, lamps: vec![] });
     }
     regions.retain(|r| r.pixels.len() >= FEWEST);
     regions
@@ -51,6 +54,17 @@ pub fn without(regions: Vec<Region>, mask: &[bool]) -> Vec<Region> {
         at == 1 || r.pixels.len() >= FEWEST
     });
     all
+}
+
+/// The regions with their lamps, from what is emitted and what is seen in all.
+pub fn lit(regions: Vec<Region>, reference: &Pictures) -> Vec<Region> {
+    let (Some(emitted), Some(whole)) = (reference.layer(Slot::Term(0)), reference.layer(Slot::Whole)) else {
+        return regions;
+    };
+    let sum = |v: [f32; 3]| v.iter().sum::<f32>();
+    let lamp = |p: &usize| sum(emitted.mean[*p]) > 0.5 * sum(whole.mean[*p]);
+    let with = |r: Region| Region { lamps: r.pixels.iter().copied().filter(lamp).collect(), ..r };
+    regions.into_iter().map(with).collect()
 }
 
 /// What the camera of a scene sees, as sets of pixels; those with too few pixels are left out.
@@ -72,6 +86,7 @@ pub fn seen(scene: &Scene) -> Vec<Region> {
     let set = |name: &str, inside: &dyn Fn(usize) -> bool| Region {
         name: name.into(),
         pixels: (0..w * h).filter(|&p| inside(p)).collect(),
+        lamps: vec![],
     };
     let mut regions = vec![
         set("lamps", &lamp),

@@ -51,6 +51,8 @@ pub struct Suspicion {
     pub misfit: f64,
     /// k and the r_k that it predicts, where it predicts any.
     pub curve: Vec<[f64; 2]>,
+    /// A number that was fitted and is no known one.
+    pub fitted: Option<f64>,
 }
 
 /// What a rule may look at.
@@ -85,7 +87,29 @@ pub const RULES: [fn(&Facts) -> Vec<Suspicion>; 10] = [
 
 fn points(name: &str, why: String, next: &str) -> Vec<Suspicion> {
     let (why, next) = (why, next.to_owned());
-    vec![Suspicion { name: name.into(), basis: Basis::Points, why, next, p: f64::NAN, misfit: f64::NAN, curve: vec![] }]
+    vec![Suspicion {
+        name: name.into(),
+        basis: Basis::Points,
+        why,
+        next,
+        p: f64::NAN,
+        misfit: f64::NAN,
+        curve: vec![],
+        fitted: None,
+    }]
+}
+
+/// Several rules with a free number each, as one: where the number belongs the data does not say.
+pub(super) fn one_constant(fitted: &[Suspicion]) -> Suspicion {
+    let each = fitted.iter().map(|s| format!("{} {:.4}", s.name, s.fitted.unwrap_or(f64::NAN)));
+    let why = format!(
+        "one number fits as well, and it is no known one: {}. It was free, so it is the weaker explanation",
+        each.collect::<Vec<_>>().join(", or ")
+    );
+    let next =
+        "render the terms apart: r_k tells whether it belongs to the exposure, the connection, the bounce or the BSDF";
+    let best = &fitted[0];
+    Suspicion { name: "one-constant".into(), why, next: next.into(), curve: vec![], ..best.clone() }
 }
 
 fn not_a_number(f: &Facts) -> Vec<Suspicion> {
@@ -191,6 +215,7 @@ fn named(pattern: Pattern, c: Option<Constant>, p: f64, misfit: f64) -> Vec<Susp
         p,
         misfit,
         curve: vec![],
+        fitted: c.filter(|c| name_of(*c).is_none()).map(|c| c.value),
     };
     let apart = "render it with connections only, and with hits only: which of the two is wrong?";
     match pattern {

@@ -93,10 +93,9 @@ impl Page<'_> {
         out += &match d.verdict {
             Verdict::Correct => wrapped(
                 &format!(
-                    "No mean of any region differs by more than its noise (smallest adjusted p = {}). A uniform bias above {} \
-                     would have been seen.",
+                    "No mean of any region differs by more than its noise (smallest adjusted p = {}). {}",
                     significant(d.p, 2),
-                    percent(d.visible)
+                    limits(d)
                 ),
                 "",
             ),
@@ -125,6 +124,27 @@ impl Page<'_> {
         }
         super::super::paragraphs(&blocks)
     }
+}
+
+/// What a verdict of *correct* leaves open.
+fn limits(d: &Diagnosis) -> String {
+    let seen = if d.visible.is_finite() {
+        format!("A uniform bias above {} would have been seen with probability 0.99.", percent(d.visible))
+    } else {
+        "Too few pixels carry the noise: no bias of any size would have been seen.".into()
+    };
+    let of = |slot: &Slot| {
+        let r = d.evidence.ratio(*slot).map_or(f64::NAN, |r| r.value);
+        format!("{slot} (r = {})", significant(r, 3))
+    };
+    let undecided: Vec<String> = d.undecided.iter().map(of).collect();
+    if undecided.is_empty() {
+        return seen;
+    }
+    format!(
+        "{seen} Nothing can be said of {}: fewer than ten pixels carry the noise there. More samples per pixel would decide",
+        undecided.join(", ")
+    ) + "."
 }
 
 /// The table of the ratios, and single facts below it.
@@ -161,6 +181,12 @@ fn evidence(f: &Found) -> String {
             );
         }
         facts.push(line);
+    }
+    if d.verdict == Verdict::Correct && d.samples.is_none() {
+        facts.push(
+            "one file cannot show samples that repeat: two with different samples per pixel can (r_16.exr r_64.exr)"
+                .into(),
+        );
     }
     if f.any_gain {
         facts.push(
@@ -251,6 +277,22 @@ fn candidates(d: &Diagnosis) -> String {
     out
 }
 
+/// The verdict in a table: what is called correct says how closely one has looked.
+fn brief(d: &Diagnosis) -> String {
+    let undecided: Vec<String> = d.undecided.iter().map(ToString::to_string).collect();
+    match d.verdict {
+        Verdict::Wrong => headline(d),
+        Verdict::Correct if d.visible.is_infinite() => "nothing can be told: too few pixels carry the noise".into(),
+        Verdict::Correct if undecided.is_empty() => {
+            format!("correct, as far as this data can tell: bias < {}", percent(d.visible))
+        }
+        Verdict::Correct => {
+            let open = undecided.join(", ");
+            format!("undecided in {open}; elsewhere correct: bias < {}", percent(d.visible))
+        }
+    }
+}
+
 /// One line per file.
 fn table(found: &[Found]) -> String {
     let width = found.iter().map(|f| short(&f.name).chars().count()).max().unwrap_or(4).min(40);
@@ -258,12 +300,21 @@ fn table(found: &[Found]) -> String {
     for f in found {
         let r = f.diagnosis.evidence.ratio(Slot::Whole).or(f.diagnosis.evidence.ratios.last());
         let ratio = r.map_or(String::new(), |r| format!(" (r = {})", significant(r.value, 3)));
-        let line = format!("{:<width$}  {}{ratio}", short(&f.name), headline(&f.diagnosis));
+        let line = format!("{:<width$}  {}{ratio}", short(&f.name), brief(&f.diagnosis));
         let cut: String = line.chars().take(WIDTH).collect();
         out += &format!("{cut}\n");
     }
     let wrong = found.iter().filter(|f| f.diagnosis.verdict == Verdict::Wrong).count();
-    out + &format!("\n{wrong} of {} are wrong", found.len())
+    out += &format!("\n{wrong} of {} are wrong", found.len());
+    if wrong < found.len() {
+        out += "\n";
+        out += &wrapped(
+            "bias < x: a larger uniform one would have been seen with probability 0.99. One file cannot show samples that \
+             repeat; two with different samples per pixel can.",
+            "",
+        );
+    }
+    out
 }
 
 /// Everything, for programs.
