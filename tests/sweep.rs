@@ -406,8 +406,8 @@ fn finer_meshes_come_nearer() {
     assert_eq!(code, 0, "{out}");
     let csv = std::fs::read_to_string(dir.path().join("p/patches.csv")).unwrap();
     let row = |patches: &str, k: &str| -> Vec<f64> {
-        let rows = csv.lines().map(|l| l.split(',').collect::<Vec<_>>());
-        let found = rows.filter(|c| c[0] == patches && c[2] == k).last().unwrap();
+        let mut rows = csv.lines().map(|l| l.split(',').collect::<Vec<_>>());
+        let found = rows.find(|c| c[0] == patches && c[2] == k).unwrap();
         found[3..5].iter().map(|x| x.parse().unwrap()).collect()
     };
     // all meshes are read along the same rays: what differs is the mesh, and what they read of T¹ does not

@@ -113,12 +113,15 @@ fn panel(page: &Page, all: &[ZeroVariance]) -> Drawn {
         (24.0, 24.0),
         Words { size: 18.0, ..Words::default() },
     )?;
-    let kinds: [(&str, fn(&Guide) -> bool); 2] =
-        [("meshes", |g| matches!(g, Guide::Mesh(_))), ("partial sums", |g| matches!(g, Guide::Partial(_)))];
     let point = |l: &Led| Point::exact(l.error, l.spread.variance);
     let mut curves = vec![];
     for z in all {
-        for (kind, chosen) in kinds {
+        for (kind, meshes) in [("meshes", true), ("partial sums", false)] {
+            let chosen = |guide: &Guide| match guide {
+                Guide::Mesh(_) => meshes,
+                Guide::Partial(_) => !meshes,
+                Guide::Analog | Guide::Exact => false,
+            };
             let of = |l: &&Led| chosen(&l.guide) && l.spread.variance > 0.0 && l.error > 0.0;
             let points: Vec<Point> = z.guides.iter().filter(of).map(point).collect();
             if !points.is_empty() {
