@@ -7,7 +7,7 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | S, P | the suspect, and what an explanation predicts | arguments of [`compare`] |
-//! | se(d) | from the `_se` layers of both; else from how S − P scatters inside blocks of 8 × 8 pixels | [`spread`] |
+//! | se(d) | from the `_se` layers of both; else from how S − P scatters inside blocks of 8 × 8 pixels | `spread` here |
 //! | r | ratio of means, with its error by the same rule for S − r P | [`ratio`] |
 //! | κ | variance over mean, per pixel, the median of the regions: the least that is believed of any of them | [`compare`] |
 //! | n_eff | (Σ v)²/Σ v² of the pixel variances: how many pixels carry the noise | [`Gap::p`] |
@@ -15,7 +15,7 @@
 //! The local scatter holds the noise of both sides and, where the explanation is wrong in shape, that misfit too: it is too
 //! large rather than too small, so a noisy difference is not taken for a bias. Noise of rare hits is as their number: a region
 //! that by chance had none looks dark and certain, and κ times its mean mends that. Where fewer than ten pixels carry the noise the
-//! t-test is not to be trusted: [`rare`](super::rare) looks for fireflies that nothing pays for, and for lamps that are not there, and
+//! t-test is not to be trusted: `rare` looks for fireflies that nothing pays for, and for lamps that are not there, and
 //! else nothing is rejected. Pixels are taken as independent. Welch (1947); Holm (1979).
 
 use super::picture::{Code, Layer, Pictures, Slot};

@@ -15,7 +15,7 @@
 //! | | two results watched batch by batch, in every quantity | [`detector`] |
 //! | p | order of convergence under refinement | [`order`] |
 //! | b | slope of the variance against samples | [`slope`] |
-//! | D | distance of p-values from uniform ones | [`uniformity`] |
+//! | D | distance of p-values from uniform ones | [`uniformity()`] |
 //! | Q_v, A_v, c_v | noise and cost of a roulette schedule, without rendering it | [`schedule`] |
 //! | Q* | the schedule with the most efficiency | [`optimal`] |
 //! | SUITE_ALPHA | significance of this project's own tests | [`ledger`] |

@@ -10,7 +10,7 @@
 //! | N | rays of a row, all of the same weight 1/N | [`Rays::per_row`] |
 //! | hit(i, s) | patch met, or [`NOTHING`] | [`Rays::row`] |
 //! | T = diag(ρ) F | the operator of one channel | [`RayOperator`] |
-//! | D | T E of the emitters, by pairs of points where they are far | [`direct`] |
+//! | D | T E of the emitters, by pairs of points where they are far | `direct` |
 //!
 //! The four numbers of a ray are a point of a Sobol sequence with an Owen scramble of its own in every row. Rows of a
 //! closed scene sum to exactly 1; single entries are poor, but the errors of a row cancel in T x, which converges about
