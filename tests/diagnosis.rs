@@ -109,8 +109,8 @@ fn hand_in(members: &[&'static Bug], terms: bool, errors: bool, more: u32) -> Ve
             let d = bench.judge_at_length(&suspect, Some(&candidates), 1e-3, paths);
             let names: Vec<&str> = d.suspects.iter().map(|s| s.name.as_str()).collect();
             let points = d.suspects.iter().any(|s| s.basis == Basis::Points);
-            // the mean of same-numbers is right: a single picture cannot show it
-            let right = if bug.name == "same-numbers" {
+            // the mean of same-numbers is right, and so is the sum of what has no blind scene: this data cannot show it
+            let right = if bug.name == "same-numbers" || (!terms && bug.blind.is_none()) {
                 d.verdict == Verdict::Correct
             } else {
                 d.verdict == Verdict::Wrong && names.contains(&bug.name) && names.len() <= 3

@@ -258,7 +258,16 @@ fn short_list(named: Vec<Suspicion>, tried: &[Tried], evidence: &Evidence, certa
     let (fitted, exact): (Vec<Suspicion>, Vec<Suspicion>) = patterns.into_iter().partition(|s| s.fitted.is_some());
     list.extend(exact);
     // a number that is free and has no name explains less than a simulation, in which there is nothing to fit
-    list.extend(if simulated && fitted.len() > 1 { vec![rules::one_constant(&fitted)] } else { fitted });
+    if simulated && fitted.len() > 1 {
+        let why = &mut list[0].why;
+        *why = [why.as_str(), &rules::one_constant(&fitted)]
+            .into_iter()
+            .filter(|w| !w.is_empty())
+            .collect::<Vec<_>>()
+            .join("; ");
+    } else {
+        list.extend(fitted);
+    }
     if list.is_empty() {
         // what was simulated without success is not suggested again, but where the simulation had a number of its own
         let has_a_number = |name: &str| ["clamped", "gamma-before-mean"].contains(&name);
