@@ -79,7 +79,7 @@ pub struct Diagnosis {
     pub worst: String,
     /// A uniform relative bias of this size would have been seen with probability 0.99; infinite if none would.
     pub visible: f64,
-    /// Pictures off by more than that, whose mean decides nothing because too few pixels carry its noise.
+    /// Pictures off by more than that and 5 %, whose mean decides nothing because too few pixels carry its noise.
     pub undecided: Vec<Slot>,
     /// The short list, best first.
     pub suspects: Vec<Suspicion>,
@@ -181,7 +181,7 @@ pub fn diagnose(case: &Case, watch: &dyn Watch) -> Diagnosis {
         spp: t.spp,
         rejected: t.rejected,
     });
-    let visible = visible(case, &grid[0], fit.gaps.len());
+    let visible = grid.iter().map(|r| visible(case, r, fit.gaps.len())).fold(f64::INFINITY, f64::min);
     Diagnosis {
         verdict: if wrong { Verdict::Wrong } else { Verdict::Correct },
         p: fit.p,
@@ -258,7 +258,16 @@ fn short_list(named: Vec<Suspicion>, tried: &[Tried], evidence: &Evidence, certa
     let (fitted, exact): (Vec<Suspicion>, Vec<Suspicion>) = patterns.into_iter().partition(|s| s.fitted.is_some());
     list.extend(exact);
     // a number that is free and has no name explains less than a simulation, in which there is nothing to fit
-    list.extend(if simulated && fitted.len() > 1 { vec![rules::one_constant(&fitted)] } else { fitted });
+    if simulated && fitted.len() > 1 {
+        let why = &mut list[0].why;
+        *why = [why.as_str(), &rules::one_constant(&fitted)]
+            .into_iter()
+            .filter(|w| !w.is_empty())
+            .collect::<Vec<_>>()
+            .join("; ");
+    } else {
+        list.extend(fitted);
+    }
     if list.is_empty() {
         // what was simulated without success is not suggested again, but where the simulation had a number of its own
         let has_a_number = |name: &str| ["clamped", "gamma-before-mean"].contains(&name);
@@ -296,12 +305,13 @@ fn worst(fit: &gap::Fit, regions: &[Region]) -> String {
 /// The pictures that are off by more than a visible bias, though nothing follows from that.
 fn undecided(fit: &gap::Fit, evidence: &Evidence, visible: f64) -> Vec<Slot> {
     let few = |slot: Slot| fit.gaps.iter().filter(|g| g.region == 0 && g.slot == slot).all(|g| g.few);
-    let least = if visible.is_finite() { visible } else { 0.0 };
+    // less than a twentieth is no news
+    let least = if visible.is_finite() { visible.max(0.05) } else { 0.05 };
     let off = evidence.ratios.iter().filter(|r| r.slot != Slot::Tail && (r.value - 1.0).abs() > least);
     off.map(|r| r.slot).filter(|slot| few(*slot)).collect()
 }
 
-/// The smallest uniform relative bias that the image means would have shown with probability 0.99.
+/// The smallest uniform relative bias that the means of a region would have shown with probability 0.99.
 fn visible(case: &Case, image: &Region, comparisons: usize) -> f64 {
     let one = |l: &Layer| {
         let right = case.reference.layer(l.slot)?;

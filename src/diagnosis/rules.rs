@@ -99,17 +99,11 @@ fn points(name: &str, why: String, next: &str) -> Vec<Suspicion> {
     }]
 }
 
-/// Several rules with a free number each, as one: where the number belongs the data does not say.
-pub(super) fn one_constant(fitted: &[Suspicion]) -> Suspicion {
+/// Several rules with a free number each, in words: where the number belongs the data does not say.
+pub(super) fn one_constant(fitted: &[Suspicion]) -> String {
     let each = fitted.iter().map(|s| format!("{} {:.4}", s.name, s.fitted.unwrap_or(f64::NAN)));
-    let why = format!(
-        "one number fits as well, and it is no known one: {}. It was free, so it is the weaker explanation",
-        each.collect::<Vec<_>>().join(", or ")
-    );
-    let next =
-        "render the terms apart: r_k tells whether it belongs to the exposure, the connection, the bounce or the BSDF";
-    let best = &fitted[0];
-    Suspicion { name: "one-constant".into(), why, next: next.into(), curve: vec![], ..best.clone() }
+    let each = each.collect::<Vec<_>>().join(", or ");
+    format!("one number that is no known one fits as well, but it was free to fit: {each}")
 }
 
 fn not_a_number(f: &Facts) -> Vec<Suspicion> {
