@@ -47,7 +47,7 @@ pub struct Gap {
     pub p: f64,
     /// The same adjusted for the number of comparisons.
     pub adjusted: f64,
-    /// Whether too few pixels carry the noise, and nothing can be decided.
+    /// Whether too few pixels carry the noise for a t-test.
     pub few: bool,
 }
 
@@ -232,7 +232,6 @@ pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> 
                     } else {
                         two_sided_p(difference / std_error, dof)
                     };
-                let few = few && p == 1.0;
                 gaps.push(Gap {
                     slot: a.slot,
                     region: r,
