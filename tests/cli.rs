@@ -497,8 +497,13 @@ fn help_fits_the_screen_and_says_how_k_counts() {
       render     The full path tracer alone
       radiosity  The matrix alone: form factors, terms, solve
       compare    Two results: verdict per term, z map
+      diagnose   Somebody else's pictures: correct, or what is wrong with them
       sweep      The terms for every value of one setting: cost beside gain
+      walk       The same estimators on the radiosity matrix, beside its powers
+      check      Is an estimator biased? Does the equation hold?
       figure     Rebuilds a figure: data, pictures, and the command that makes them
+      roulette   Roulette schedules: predicted without rendering, verified, optimised
+      zoo        Estimators that are wrong on purpose, each beside the right one
       info       Scenes, materials, lights, bounds on the norm of T
       chapter    Runs a chapter of the book
       help       Print this message or the help of the given subcommand(s)
@@ -513,6 +518,7 @@ fn help_fits_the_screen_and_says_how_k_counts() {
       fredholm series box.toml --set materials.white.reflectance=[0.6,0.6,0.6]
       fredholm compare fredholm-out/cornell other     verdict per term
       fredholm sweep cornell --over technique         one setting, several values: cost and gain
+      fredholm roulette cornell --optimise            how paths should end, predicted and measured
       fredholm info                                   the built-in scenes
       fredholm info cornell                           materials, lights, bounds
 
