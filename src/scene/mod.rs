@@ -329,6 +329,17 @@ impl Scene {
         packets::occluded(&self.accel.shapes, rays, n);
     }
 
+    /// The same by packets or one by one, as the scene suits.
+    pub(crate) fn block(&self, rays: &mut Rays, n: usize) {
+        if self.packets {
+            return self.block_packets(rays, n);
+        }
+        for &ray in &rays.list[..n] {
+            let ray = ray as usize;
+            rays.prim[ray] = u32::from(self.accel.occluded(rays.o.get(ray), rays.d.get(ray)));
+        }
+    }
+
     #[inline(always)]
     fn arrive(&self, o: Vec3, d: Vec3, hit: shape::Hit) -> Vertex {
         let shape = &self.accel.shapes[hit.prim as usize];

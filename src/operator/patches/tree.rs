@@ -54,6 +54,8 @@ impl Tree {
             Node::Split { .. } => None,
         }));
         finder.root = self.copy(0, &leaf, &mut finder);
+        let cells = self.cells().count();
+        finder.index(self.cells().flat_map(|(_, p)| p.iter().copied()), cells);
         finder
     }
 

@@ -88,13 +88,13 @@ impl Rays {
         let (done, lost) = (AtomicUsize::new(0), AtomicU64::new(0));
         let (mut hits, mut direct) = (vec![NOTHING; n * per_row], vec![[[0.0f32; 3]; 2]; n]);
         hits.par_chunks_mut(per_row).zip(&mut direct).enumerate().with_min_len(16).for_each_init(
-            || wave(per_row),
-            |wave, (i, (row, direct))| {
+            || Scratch::new(per_row),
+            |scratch, (i, (row, direct))| {
                 if stopped() {
                     return;
                 }
-                lost.fetch_add(caster.row(i, wave, row), Relaxed);
-                *direct = caster.direct(i, row);
+                lost.fetch_add(caster.row(i, &mut scratch.wave, row), Relaxed);
+                *direct = caster.direct(i, row, scratch);
                 row.chunks_mut(per_row / 2).for_each(<[u32]>::sort_unstable);
                 let done = done.fetch_add(1, Relaxed) + 1;
                 if let Some(report) = watch.progress.filter(|_| done % 64 == 0 || done == n) {
@@ -135,11 +135,18 @@ impl Rays {
     }
 }
 
-/// Scratch for `n` rays, in whole packets.
-fn wave(n: usize) -> VertexWave {
-    let mut wave = VertexWave::default();
-    wave.resize(n.next_multiple_of(64));
-    wave
+/// Room for the rays of a row, in whole packets, and for what its pairs carry if nothing is between them.
+struct Scratch {
+    wave: VertexWave,
+    unblocked: Vec<DVec3>,
+}
+
+impl Scratch {
+    fn new(n: usize) -> Self {
+        let mut wave = VertexWave::default();
+        wave.resize(n.next_multiple_of(64));
+        Self { wave, unblocked: vec![DVec3::ZERO; n] }
+    }
 }
 
 struct Caster<'a> {
