@@ -329,8 +329,20 @@ impl Scene {
         packets::occluded(&self.accel.shapes, rays, n);
     }
 
-    /// The same by packets or one by one, as the scene suits.
-    pub(crate) fn block(&self, rays: &mut Rays, n: usize) {
+    /// [`Scene::trace_packets`], or one by one where packets do not suit the scene.
+    pub(crate) fn trace_wave(&self, rays: &mut Rays, n: usize, mut at: impl FnMut(usize, Vertex)) {
+        if self.packets {
+            return self.trace_packets(rays, n, at);
+        }
+        for i in 0..n {
+            if let Some(v) = self.trace(rays.o.get(i), rays.d.get(i)) {
+                at(i, v);
+            }
+        }
+    }
+
+    /// [`Scene::block_packets`], or one by one where packets do not suit the scene.
+    pub(crate) fn block_wave(&self, rays: &mut Rays, n: usize) {
         if self.packets {
             return self.block_packets(rays, n);
         }

@@ -6,6 +6,7 @@
 
 use super::{
     Cover, CoverTest, Finder, Grid, Tree,
+    finder::Walk,
     polygon::{area_vector, extent},
     sides_of,
     tree::{meeting, share},
@@ -232,6 +233,21 @@ impl Search {
         match self {
             Self::Flat(finder) => finder.locate(p),
             Self::Curved(grid) => grid.locate(p),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn begin(&self, p: DVec3) -> Walk {
+        match self {
+            Self::Flat(finder) => finder.begin(p),
+            Self::Curved(grid) => Walk::arrived(grid.locate(p)),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn step(&self, walk: &mut Walk) {
+        if let Self::Flat(finder) = self {
+            finder.step(walk);
         }
     }
 

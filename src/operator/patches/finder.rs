@@ -31,6 +31,29 @@ pub(super) struct Finder {
     table: Table,
 }
 
+/// A point on its way down to its cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Walk {
+    at: u32,
+    point: [f32; 2],
+}
+
+impl Walk {
+    /// Already in a cell.
+    pub(super) fn arrived(cell: usize) -> Self {
+        Self { at: LEAF | cell as u32, point: [0.0; 2] }
+    }
+
+    pub(super) fn is_over(&self) -> bool {
+        self.at & LEAF != 0
+    }
+
+    /// The cell, at the end.
+    pub(super) fn cell(&self) -> usize {
+        (self.at ^ LEAF) as usize
+    }
+}
+
 /// Nodes to start from, square by square.
 #[derive(Clone, Debug, Default)]
 struct Table {
@@ -126,14 +149,27 @@ impl Finder {
 
     /// The cell a point of the plane belongs to; points outside belong to the cell whose side of every line they share.
     pub(super) fn locate(&self, p: DVec3) -> usize {
-        let d = p - self.origin;
-        let [s, t] = self.frame.map(|e| e.dot(d) as f32);
-        let mut at = self.table.start([s, t]).unwrap_or(self.root);
-        while at & LEAF == 0 {
-            let line = &self.lines[at as usize];
-            at = line.children[usize::from(line.axis[0] * s + line.axis[1] * t > line.offset)];
+        let mut walk = self.begin(p);
+        while !walk.is_over() {
+            self.step(&mut walk);
         }
-        (at ^ LEAF) as usize
+        walk.cell()
+    }
+
+    /// Where the way down to the cell of a point begins.
+    #[inline(always)]
+    pub(super) fn begin(&self, p: DVec3) -> Walk {
+        let d = p - self.origin;
+        let at = self.frame.map(|e| e.dot(d) as f32);
+        Walk { at: self.table.start(at).unwrap_or(self.root), point: at }
+    }
+
+    /// One line further down; the walk must not have arrived.
+    #[inline(always)]
+    pub(super) fn step(&self, walk: &mut Walk) {
+        let line = &self.lines[walk.at as usize];
+        let [s, t] = walk.point;
+        walk.at = line.children[usize::from(line.axis[0] * s + line.axis[1] * t > line.offset)];
     }
 
     /// For every cell, the number of the group it belongs to: the largest subtrees of at most `most` cells.

@@ -121,7 +121,7 @@ impl Caster<'_> {
         scratch: &mut Scratch,
         light: &mut [DVec3; 2],
     ) {
-        let Scratch { wave, unblocked } = scratch;
+        let Scratch { wave, unblocked, .. } = scratch;
         let rays = &mut wave.rays;
         let mut origins = Origins::new(self.patches, i);
         let mut facing = 0;
@@ -144,7 +144,7 @@ impl Caster<'_> {
                 facing += 1;
             }
         }
-        self.scene.block(rays, facing);
+        self.scene.block_wave(rays, facing);
         for s in rays.list[..facing].iter().map(|s| *s as usize).filter(|s| rays.prim[*s] == 0) {
             light[s / pairs] += unblocked[s] / pairs as f64;
         }
