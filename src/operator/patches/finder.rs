@@ -212,9 +212,9 @@ impl Plane {
     /// The child of the line on whose side the whole block lies, with room for rounding.
     fn side_of(&self, line: &Line, block: [[usize; 2]; 2]) -> Option<usize> {
         let (mut least, mut most) = (-f64::from(line.offset), -f64::from(line.offset));
-        for k in 0..2 {
+        for (k, range) in block.iter().enumerate() {
             let a = f64::from(line.axis[k]);
-            let [p, q] = block[k].map(|i| a * (self.low[k] + i as f64 * self.side[k]));
+            let [p, q] = range.map(|i| a * (self.low[k] + i as f64 * self.side[k]));
             (least, most) = (least + p.min(q), most + p.max(q));
         }
         if most < -self.margin {

@@ -80,3 +80,28 @@ impl Lookup {
         asked.iter().map(|a| Some(patches.on(a.primitive, a.front, a.walk.cell())).filter(|j| *j != NONE))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::scene::load;
+
+    #[test]
+    fn together_they_find_what_each_finds_alone() {
+        let scene = load::scene("cornell", &load::Options::default()).unwrap().description;
+        let patches = Patches::new(&scene, 3000).unwrap();
+        let (mut lookup, mut found) = (Lookup::default(), 0);
+        for part in patches.chunks(100) {
+            // centres, and corners, where rounding decides; the floor's corners under the blocks have no patch
+            let points = || part.iter().flat_map(|p| p.polygon.iter().copied().chain([p.centre]).map(move |x| (p, x)));
+            lookup.clear();
+            points().for_each(|(p, x)| lookup.ask(&patches, p.primitive as u32, p.front, x));
+            let together: Vec<_> = lookup.answers(&patches).map(|j| j.map(|j| j as usize)).collect();
+            let alone: Vec<_> = points().map(|(p, x)| patches.locate(p.primitive, p.front, x)).collect();
+            assert_eq!(together, alone);
+            found += together.iter().flatten().count();
+        }
+        assert!(found > 4 * patches.len(), "{found}");
+    }
+}

@@ -125,7 +125,7 @@ impl Caster<'_> {
         let rays = &mut wave.rays;
         let mut origins = Origins::new(self.patches, i);
         let mut facing = 0;
-        for s in 0..2 * pairs {
+        for (s, unblocked) in unblocked[..2 * pairs].iter_mut().enumerate() {
             let (x, [_, _, u, v]) = origins.next(|s| Rng::at(self.key, i as u32, s, 0, Purpose::Connect).four());
             let (lamp, u) = self.lamps.choose(u.into());
             if near(lamp) {
@@ -136,7 +136,7 @@ impl Caster<'_> {
             let cosines = [x.normal.dot(r), -m.as_dvec3().dot(r)];
             if cosines[0] > 0.0 && cosines[1] > 0.0 {
                 let square = r.length_squared();
-                unblocked[s] = lamp.emission * (cosines[0] * cosines[1] / (PI * square * square * lamp.density));
+                *unblocked = lamp.emission * (cosines[0] * cosines[1] / (PI * square * square * lamp.density));
                 let (o, d) = self.scene.segment(x.position.as_vec3(), x.normal.as_vec3(), y, m);
                 rays.o.set(s, o);
                 rays.d.set(s, d);
