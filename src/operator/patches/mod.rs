@@ -143,7 +143,7 @@ impl Patches {
                 });
                 for cell in shape.cells() {
                     patch[side].push(NONE);
-                    let whole = Patch::new(&shared, cell.polygon, cell.area);
+                    let whole = Patch::new(&shared, cell.polygon.to_vec(), cell.area);
                     let free = match cell.cover[side] {
                         Cover::Free => 1.0,
                         Cover::Covered => 0.0,
