@@ -103,7 +103,7 @@ fn a_point_sees_polygons_disks_and_spheres() {
 fn a_box_has_its_matrix() {
     let case = &truth()["ff_box_1x2x3"];
     let scene = room(v(1., 2., 3.), [0.5; 6], [0.0; 6]);
-    let faces: Vec<Vec<DVec3>> = Patches::new(&scene, 1).unwrap().iter().map(|p| p.polygon.clone()).collect();
+    let faces: Vec<Vec<DVec3>> = Patches::new(&scene, 1).unwrap().iter().map(|p| p.polygon.to_vec()).collect();
     let (patches, f) = discretise(&scene, 1);
     for i in 0..6 {
         for j in 0..6 {

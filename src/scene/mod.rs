@@ -329,6 +329,29 @@ impl Scene {
         packets::occluded(&self.accel.shapes, rays, n);
     }
 
+    /// [`Scene::trace_packets`], or one by one where packets do not suit the scene.
+    pub(crate) fn trace_wave(&self, rays: &mut Rays, n: usize, mut at: impl FnMut(usize, Vertex)) {
+        if self.packets {
+            return self.trace_packets(rays, n, at);
+        }
+        for i in 0..n {
+            if let Some(v) = self.trace(rays.o.get(i), rays.d.get(i)) {
+                at(i, v);
+            }
+        }
+    }
+
+    /// [`Scene::block_packets`], or one by one where packets do not suit the scene.
+    pub(crate) fn block_wave(&self, rays: &mut Rays, n: usize) {
+        if self.packets {
+            return self.block_packets(rays, n);
+        }
+        for &ray in &rays.list[..n] {
+            let ray = ray as usize;
+            rays.prim[ray] = u32::from(self.accel.occluded(rays.o.get(ray), rays.d.get(ray)));
+        }
+    }
+
     #[inline(always)]
     fn arrive(&self, o: Vec3, d: Vec3, hit: shape::Hit) -> Vertex {
         let shape = &self.accel.shapes[hit.prim as usize];

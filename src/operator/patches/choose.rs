@@ -5,7 +5,8 @@
 //! ```
 
 use super::{
-    Cover, CoverTest, Finder, Grid, Tree,
+    Corners, Cover, CoverTest, Finder, Grid, Tree,
+    finder::Walk,
     polygon::{area_vector, extent},
     sides_of,
     tree::{meeting, share},
@@ -46,7 +47,7 @@ pub(super) enum Search {
 /// A cell on its way to become a patch.
 pub(super) struct Cell {
     pub(super) number: usize,
-    pub(super) polygon: Vec<DVec3>,
+    pub(super) polygon: Corners,
     pub(super) area: f64,
     pub(super) cover: [Cover; 2],
 }
@@ -200,7 +201,7 @@ impl Shape {
             Self::Flat { tree, cover } => {
                 let one = |(number, (node, p)): (usize, (usize, &[DVec3]))| Cell {
                     number,
-                    polygon: p.to_vec(),
+                    polygon: p.to_vec().into(),
                     area: area_vector(p).length(),
                     cover: cover[node],
                 };
@@ -209,7 +210,7 @@ impl Shape {
             Self::Curved(grid) => {
                 let one = |(number, f): (usize, super::curved::Facet)| Cell {
                     number,
-                    polygon: f.polygon,
+                    polygon: f.polygon.into(),
                     area: f.area,
                     cover: [Cover::Mixed; 2],
                 };
@@ -232,6 +233,21 @@ impl Search {
         match self {
             Self::Flat(finder) => finder.locate(p),
             Self::Curved(grid) => grid.locate(p),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn begin(&self, p: DVec3) -> Walk {
+        match self {
+            Self::Flat(finder) => finder.begin(p),
+            Self::Curved(grid) => Walk::arrived(grid.locate(p)),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn step(&self, walk: &mut Walk) {
+        if let Self::Flat(finder) = self {
+            finder.step(walk);
         }
     }
 

@@ -9,7 +9,7 @@
 //! | Pᵢ | patch: one side of a cell | [`Patch::polygon`] |
 //! | Aᵢ | its true, uncovered area, m² | [`Patch::area`] |
 //! | Aᵢᶠ | area of the flat polygon, m² | [`Patch::flat_area`] |
-//! | ρᵢ, Eᵢ | albedo and emitted radiance | [`Patch::reflectance`], [`Patch::emission`] |
+//! | ρᵢ, Eᵢ | albedo and emitted radiance | [`SurfaceSide::reflectance`], [`SurfaceSide::emission`] |
 //! | A | area of all reflecting sides, covered or not | [`Patches::surface_area`] |
 //!
 //! Flat primitives are first cut where others touch or cross them, so that a block standing on the floor cuts its
@@ -21,6 +21,8 @@ mod choose;
 mod cover;
 mod curved;
 mod finder;
+mod locate;
+mod patch;
 pub mod polygon;
 mod segments;
 mod tree;
@@ -32,62 +34,11 @@ use cover::{Cover, CoverTest};
 use curved::Grid;
 use finder::Finder;
 use glam::DVec3;
+pub(crate) use locate::Lookup;
+pub use patch::{Corners, Patch, SurfacePoint, SurfaceSide};
 pub(crate) use segments::{LANES, Lane, Segments};
+use std::sync::Arc;
 use tree::Tree;
-
-/// A point of the true surface with the normal of the side meant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfacePoint {
-    /// Metres.
-    pub position: DVec3,
-    /// Unit normal of the side meant.
-    pub normal: DVec3,
-}
-
-/// One side of one cell of a surface.
-#[derive(Clone, Debug)]
-pub struct Patch {
-    /// Corners, counter-clockwise seen from the side meant.
-    pub polygon: Vec<DVec3>,
-    /// Unit normal of the side meant.
-    pub normal: DVec3,
-    /// Centre of mass of the polygon.
-    pub centre: DVec3,
-    /// True area, without what is covered, m².
-    pub area: f64,
-    /// Area of the polygon, m².
-    pub flat_area: f64,
-    /// True area, covered or not, over the area of the polygon: 1 on flat surfaces with straight edges.
-    pub stretch: f64,
-    /// Number of the primitive.
-    pub primitive: usize,
-    /// The side of the primitive's normal.
-    pub front: bool,
-    /// The sphere the polygon stands for a piece of: centre and radius.
-    pub ball: Option<(DVec3, f64)>,
-    /// Albedo per channel.
-    pub reflectance: DVec3,
-    /// Radiance it emits, W·sr⁻¹·m⁻²; zero on the back.
-    pub emission: DVec3,
-}
-
-impl Patch {
-    /// The point of the true surface that a point of the polygon stands for.
-    pub fn lift(&self, p: DVec3) -> SurfacePoint {
-        match self.ball {
-            None => SurfacePoint { position: p, normal: self.normal },
-            Some((center, radius)) => {
-                let out = (p - center).normalize();
-                SurfacePoint { position: center + radius * out, normal: if self.is_concave() { -out } else { out } }
-            }
-        }
-    }
-
-    /// A piece of the inside of a sphere.
-    pub fn is_concave(&self) -> bool {
-        self.ball.is_some_and(|(center, _)| self.normal.dot(self.centre - center) < 0.0)
-    }
-}
 
 /// All patches of a scene. They are numbered primitive by primitive, front before back.
 #[derive(Clone, Debug)]
@@ -179,25 +130,29 @@ impl Patches {
             let mut patch = [Vec::new(), Vec::new()];
             for side in sides_of(sides(s)) {
                 let front = side == 0;
+                let owner = &scene.shapes[s];
+                let shared = Arc::new(SurfaceSide {
+                    primitive: number,
+                    front,
+                    ball: match p {
+                        Primitive::Sphere { center, radius, .. } => Some((center, radius)),
+                        _ => None,
+                    },
+                    reflectance: scene.materials[owner.material].lambertian().unwrap_or_default(),
+                    emission: if front { owner.emission } else { DVec3::ZERO },
+                });
                 for cell in shape.cells() {
                     patch[side].push(NONE);
-                    let geometry = PatchGeometry::new(&p, cell.polygon, cell.area, front);
+                    let whole = Patch::new(&shared, cell.polygon.to_vec(), cell.area);
                     let free = match cell.cover[side] {
                         Cover::Free => 1.0,
                         Cover::Covered => 0.0,
-                        Cover::Mixed => patches.cover.free_share(number, &geometry.polygon, 8, |x| geometry.lift(x)),
+                        Cover::Mixed => patches.cover.free_share(number, &whole.polygon, 8, |x| whole.lift(x)),
                     };
                     patches.covered_area += (1.0 - free) * cell.area;
                     if free > 0.0 {
                         patch[side][cell.number] = patches.list.len() as u32;
-                        let shape = &scene.shapes[s];
-                        patches.list.push(Patch {
-                            area: free * cell.area,
-                            primitive: number,
-                            reflectance: scene.materials[shape.material].lambertian().unwrap_or_default(),
-                            emission: if front { shape.emission } else { DVec3::ZERO },
-                            ..geometry
-                        });
+                        patches.list.push(Patch { area: free * cell.area, ..whole });
                     }
                 }
             }
@@ -209,16 +164,6 @@ impl Patches {
             );
         }
         Ok(patches)
-    }
-
-    /// The patch of a point of the surface, also when rounding has put it slightly outside; `None` where covered.
-    pub fn locate(&self, primitive: usize, front: bool, point: DVec3) -> Option<usize> {
-        let index = self.indices.get(primitive)?;
-        let patch = &index.patch[usize::from(!front)];
-        if patch.is_empty() {
-            return None;
-        }
-        patch.get(index.search.locate(point)).filter(|i| **i != NONE).map(|i| *i as usize)
     }
 
     /// Is this point of patch `i` under something, where it neither emits nor reflects?
@@ -287,35 +232,5 @@ fn sides_of(sides: Sides) -> std::ops::Range<usize> {
     match sides {
         Sides::Front => 0..1,
         Sides::Both => 0..2,
-    }
-}
-
-/// A [`Patch`] of which only the geometry is filled in.
-type PatchGeometry = Patch;
-
-impl PatchGeometry {
-    fn new(primitive: &Primitive, mut polygon: Vec<DVec3>, area: f64, front: bool) -> Self {
-        if !front {
-            polygon.reverse();
-        }
-        let vector = polygon::area_vector(&polygon);
-        let flat_area = vector.length();
-        let ball = match *primitive {
-            Primitive::Sphere { center, radius, .. } => Some((center, radius)),
-            _ => None,
-        };
-        Self {
-            normal: vector / flat_area,
-            centre: polygon::centroid(&polygon),
-            polygon,
-            area,
-            flat_area,
-            stretch: area / flat_area,
-            primitive: 0,
-            front,
-            ball,
-            reflectance: DVec3::ZERO,
-            emission: DVec3::ZERO,
-        }
     }
 }

@@ -5,6 +5,7 @@
 //! bisect(cell, c):        ⌊c/2⌋ : ⌈c/2⌉ of the area, recursively, until c = 1
 //! ```
 
+use super::Corners;
 use super::finder::{Finder, LEAF};
 use super::polygon::{area_vector, clip, equal_area_line, extent};
 use glam::DVec3;
@@ -12,7 +13,7 @@ use glam::DVec3;
 #[derive(Clone, Debug)]
 enum Node {
     Split { axis: DVec3, offset: f64, children: [u32; 2] },
-    Cell(Vec<DVec3>),
+    Cell(Corners),
 }
 
 /// The cells of one flat primitive.
@@ -29,13 +30,13 @@ const TINY: f64 = 1e-9;
 impl Tree {
     pub(super) fn new(polygon: Vec<DVec3>) -> Self {
         let size = polygon.iter().map(|p| p.distance(polygon[0])).fold(0.0, f64::max);
-        Self { nodes: vec![Node::Cell(polygon)], size }
+        Self { nodes: vec![Node::Cell(polygon.into())], size }
     }
 
     /// Numbers of the nodes that are cells, and their outlines.
     pub(super) fn cells(&self) -> impl Iterator<Item = (usize, &[DVec3])> {
         self.nodes.iter().enumerate().filter_map(|(i, n)| match n {
-            Node::Cell(p) => Some((i, p.as_slice())),
+            Node::Cell(p) => Some((i, &**p)),
             Node::Split { .. } => None,
         })
     }
@@ -50,10 +51,12 @@ impl Tree {
         let mut leaf = vec![0; self.nodes.len()];
         self.cells().enumerate().for_each(|(ordinal, (node, _))| leaf[node] = ordinal as u32 | LEAF);
         let mut finder = Finder::new(self.nodes.iter().find_map(|n| match n {
-            Node::Cell(p) => Some(p.as_slice()),
+            Node::Cell(p) => Some(&**p),
             Node::Split { .. } => None,
         }));
         finder.root = self.copy(0, &leaf, &mut finder);
+        let cells = self.cells().count();
+        finder.index(self.cells().flat_map(|(_, p)| p.iter().copied()), cells);
         finder
     }
 
@@ -106,7 +109,7 @@ impl Tree {
         clip(p, axis, offset, tolerance, &mut high);
         let at = self.nodes.len();
         self.nodes[cell] = Node::Split { axis, offset, children: [at as u32, at as u32 + 1] };
-        self.nodes.extend([Node::Cell(low), Node::Cell(high)]);
+        self.nodes.extend([Node::Cell(low.into()), Node::Cell(high.into())]);
         [at, at + 1]
     }
 }

@@ -13,15 +13,18 @@
 //!
 //! Either way the estimate is unbiased, so the line between near and far costs no accuracy in the mean.
 
-use super::{Caster, NOTHING};
+use super::{Caster, Scratch};
 use crate::math::{Purpose, Rng};
 use crate::operator::patches::{Patches, polygon::radius_about};
 use crate::operator::rays::origin::Origins;
 use glam::DVec3;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 struct Lamp {
     primitive: u32,
+    /// The patches of its front, the only ones that emit.
+    patches: Range<u32>,
     emission: DVec3,
     centre: DVec3,
     radius: f64,
@@ -39,8 +42,14 @@ const PAIRS: usize = 256;
 
 impl Lamps {
     pub(super) fn new(patches: &Patches) -> Self {
+        // patches are numbered primitive by primitive, front before back
         let mut emission = vec![DVec3::ZERO; patches.primitives().len()];
-        patches.iter().filter(|p| p.front).for_each(|p| emission[p.primitive] = p.emission);
+        let mut own = vec![0..0; emission.len()];
+        for (i, p) in patches.iter().enumerate().filter(|p| p.1.front && p.1.emission != DVec3::ZERO) {
+            emission[p.primitive] = p.emission;
+            let first = if own[p.primitive].is_empty() { i as u32 } else { own[p.primitive].start };
+            own[p.primitive] = first..i as u32 + 1;
+        }
         let power = |i: usize| patches.primitives()[i].area() * emission[i].element_sum();
         let whole: f64 = (0..emission.len()).map(power).sum();
         let mut cumulative = 0.0;
@@ -50,6 +59,7 @@ impl Lamps {
             cumulative += power(i) / whole;
             Lamp {
                 primitive: i as u32,
+                patches: own[i].clone(),
                 emission: emission[i],
                 centre: 0.5 * (lo + hi),
                 radius: 0.5 * (hi - lo).length(),
@@ -68,8 +78,10 @@ impl Lamps {
         (&self.0[at], rest.clamp(0.0, 1.0 - f64::EPSILON))
     }
 
-    fn find(&self, primitive: usize) -> Option<&Lamp> {
-        self.0.binary_search_by_key(&(primitive as u32), |l| l.primitive).ok().map(|i| &self.0[i])
+    /// The lamp that patch `hit` belongs to.
+    fn find(&self, hit: u32) -> Option<&Lamp> {
+        let at = self.0.partition_point(|l| l.patches.end <= hit);
+        self.0.get(at).filter(|l| l.patches.contains(&hit))
     }
 }
 
@@ -81,44 +93,60 @@ impl Lamp {
 
 impl Caster<'_> {
     /// T E of patch `i` by both halves of its samples; `row` holds the hits.
-    pub(super) fn direct(&self, i: usize, row: &[u32]) -> [[f32; 3]; 2] {
+    pub(super) fn direct(&self, i: usize, row: &[u32], scratch: &mut Scratch) -> [[f32; 3]; 2] {
         if self.lamps.0.is_empty() {
             return [[0.0; 3]; 2];
         }
         let (patch, half_row) = (&self.patches[i], row.len() / 2);
         let radius = radius_about(&patch.polygon, patch.centre);
+        let near = |lamp: &Lamp| lamp.is_near(patch.centre, radius);
         let mut light = [DVec3::ZERO; 2];
-        for (k, &hit) in row.iter().enumerate().filter(|h| *h.1 != NOTHING) {
-            let met = &self.patches[hit as usize];
-            if met.emission != DVec3::ZERO
-                && self.lamps.find(met.primitive).is_some_and(|l| l.is_near(patch.centre, radius))
-            {
-                light[k / half_row] += met.emission / half_row as f64;
+        for (k, &hit) in row.iter().enumerate() {
+            if let Some(lamp) = self.lamps.find(hit).filter(|l| near(l)) {
+                light[k / half_row] += lamp.emission / half_row as f64;
             }
         }
-        let pairs = half_row.min(PAIRS);
-        let mut origins = Origins::new(self.patches, i);
-        for s in 0..2 * pairs {
-            let (x, [_, _, u, v]) = origins.next(|s| Rng::at(self.key, i as u32, s, 0, Purpose::Connect).four());
-            let far = self.pair(x.position, x.normal, [u, v], |lamp| lamp.is_near(patch.centre, radius));
-            light[s / pairs] += far / pairs as f64;
+        if !self.lamps.0.iter().all(near) {
+            self.pairs(i, half_row.min(PAIRS), near, scratch, &mut light);
         }
         light.map(|l| (patch.reflectance * l).as_vec3().to_array())
     }
 
-    /// One pair: E_l/p_l · v cos θ cos θ' / πr².
-    fn pair(&self, x: DVec3, n: DVec3, [u, v]: [f32; 2], left_out: impl Fn(&Lamp) -> bool) -> DVec3 {
-        let (lamp, u) = self.lamps.choose(u.into());
-        if left_out(lamp) {
-            return DVec3::ZERO;
+    /// Adds the mean over `pairs` pairs of points for either half.
+    fn pairs(
+        &self,
+        i: usize,
+        pairs: usize,
+        near: impl Fn(&Lamp) -> bool,
+        scratch: &mut Scratch,
+        light: &mut [DVec3; 2],
+    ) {
+        let Scratch { wave, unblocked, .. } = scratch;
+        let rays = &mut wave.rays;
+        let mut origins = Origins::new(self.patches, i);
+        let mut facing = 0;
+        for (s, unblocked) in unblocked[..2 * pairs].iter_mut().enumerate() {
+            let (x, [_, _, u, v]) = origins.next(|s| Rng::at(self.key, i as u32, s, 0, Purpose::Connect).four());
+            let (lamp, u) = self.lamps.choose(u.into());
+            if near(lamp) {
+                continue;
+            }
+            let (y, m) = self.scene.point(2 * lamp.primitive, [u as f32, v]);
+            let r = y.as_dvec3() - x.position;
+            let cosines = [x.normal.dot(r), -m.as_dvec3().dot(r)];
+            if cosines[0] > 0.0 && cosines[1] > 0.0 {
+                let square = r.length_squared();
+                *unblocked = lamp.emission * (cosines[0] * cosines[1] / (PI * square * square * lamp.density));
+                let (o, d) = self.scene.segment(x.position.as_vec3(), x.normal.as_vec3(), y, m);
+                rays.o.set(s, o);
+                rays.d.set(s, d);
+                rays.list[facing] = s as u32;
+                facing += 1;
+            }
         }
-        let (y, m) = self.scene.point(2 * lamp.primitive, [u as f32, v]);
-        let r = y.as_dvec3() - x;
-        let square = r.length_squared();
-        let cosines = n.dot(r) * -m.as_dvec3().dot(r);
-        if n.dot(r) <= 0.0 || cosines <= 0.0 || self.scene.blocked(x.as_vec3(), n.as_vec3(), y, m) {
-            return DVec3::ZERO;
+        self.scene.block_wave(rays, facing);
+        for s in rays.list[..facing].iter().map(|s| *s as usize).filter(|s| rays.prim[*s] == 0) {
+            light[s / pairs] += unblocked[s] / pairs as f64;
         }
-        lamp.emission * (cosines / (PI * square * square * lamp.density))
     }
 }

@@ -36,10 +36,10 @@ pub use operator::{Coarse, Half, RayOperator};
 pub use solution::{Light, Solved};
 
 use super::form_factor::{Stopped, Watch};
-use super::patches::Patches;
+use super::patches::{Lookup, Patches};
 use crate::math::direction::cosine_hemisphere;
 use crate::math::{Key, Points, Purpose, Rng};
-use crate::scene::{Scene, VertexWave};
+use crate::scene::{Scene, Vertex, VertexWave};
 use direct::Lamps;
 use glam::DVec3;
 use origin::Origins;
@@ -88,13 +88,13 @@ impl Rays {
         let (done, lost) = (AtomicUsize::new(0), AtomicU64::new(0));
         let (mut hits, mut direct) = (vec![NOTHING; n * per_row], vec![[[0.0f32; 3]; 2]; n]);
         hits.par_chunks_mut(per_row).zip(&mut direct).enumerate().with_min_len(16).for_each_init(
-            || wave(per_row),
-            |wave, (i, (row, direct))| {
+            || Scratch::new(per_row),
+            |scratch, (i, (row, direct))| {
                 if stopped() {
                     return;
                 }
-                lost.fetch_add(caster.row(i, wave, row), Relaxed);
-                *direct = caster.direct(i, row);
+                lost.fetch_add(caster.row(i, scratch, row), Relaxed);
+                *direct = caster.direct(i, row, scratch);
                 row.chunks_mut(per_row / 2).for_each(<[u32]>::sort_unstable);
                 let done = done.fetch_add(1, Relaxed) + 1;
                 if let Some(report) = watch.progress.filter(|_| done % 64 == 0 || done == n) {
@@ -135,11 +135,21 @@ impl Rays {
     }
 }
 
-/// Scratch for `n` rays, in whole packets.
-fn wave(n: usize) -> VertexWave {
-    let mut wave = VertexWave::default();
-    wave.resize(n.next_multiple_of(64));
-    wave
+/// Room for the rays of a row, in whole packets, and for what its pairs carry if nothing is between them.
+struct Scratch {
+    wave: VertexWave,
+    lookup: Lookup,
+    /// Where rays arrived: their numbers, and what they met.
+    met: Vec<(usize, Vertex)>,
+    unblocked: Vec<DVec3>,
+}
+
+impl Scratch {
+    fn new(n: usize) -> Self {
+        let mut wave = VertexWave::default();
+        wave.resize(n.next_multiple_of(64));
+        Self { wave, lookup: Lookup::default(), met: Vec::with_capacity(n), unblocked: vec![DVec3::ZERO; n] }
+    }
 }
 
 struct Caster<'a> {
@@ -152,8 +162,9 @@ struct Caster<'a> {
 impl Caster<'_> {
     /// Fills row `i` with hits in the order of the sequence. Returns how many rays met a reflecting surface without a
     /// patch.
-    fn row(&self, i: usize, wave: &mut VertexWave, row: &mut [u32]) -> u64 {
+    fn row(&self, i: usize, scratch: &mut Scratch, row: &mut [u32]) -> u64 {
         let mut origins = Origins::new(self.patches, i);
+        let Scratch { wave, lookup, met, .. } = scratch;
         let rays = &mut wave.rays;
         for k in 0..row.len() {
             let (at, [_, _, u, v]) = origins.next(|s| Rng::at(self.key, i as u32, s, 0, Purpose::Scatter).four());
@@ -161,31 +172,32 @@ impl Caster<'_> {
             rays.o.set(k, self.scene.lift(at.position.as_vec3(), normal));
             rays.d.set(k, cosine_hemisphere(normal, [u, v]).0);
         }
-        let mut lost = 0;
-        if self.scene.in_packets() {
-            self.scene.trace_packets(rays, row.len(), |k, v| row[k] = self.arrive(&v, &mut lost));
-        } else {
-            for (k, hit) in row.iter_mut().enumerate() {
-                if let Some(v) = self.scene.trace(rays.o.get(k), rays.d.get(k)) {
-                    *hit = self.arrive(&v, &mut lost);
-                }
+        met.clear();
+        let meet = |k: usize, v: Vertex| {
+            if self.scene.takes_part(v.side) {
+                met.push((k, v));
             }
+        };
+        self.scene.trace_wave(rays, row.len(), meet);
+        lookup.clear();
+        met.iter().for_each(|(_, v)| lookup.ask(self.patches, v.side / 2, v.side & 1 == 0, v.p.as_dvec3()));
+        let mut lost = 0;
+        for ((k, v), found) in met.iter().zip(lookup.answers(self.patches)) {
+            row[*k] = found.or_else(|| self.nearby(v)).unwrap_or_else(|| {
+                lost += 1;
+                NOTHING
+            });
         }
         lost
     }
 
-    fn arrive(&self, v: &crate::scene::Vertex, lost: &mut u64) -> u32 {
-        if !self.scene.takes_part(v.side) {
-            return NOTHING;
-        }
+    /// Rounding may put a hit under the foot of whatever stands there: a little back along the ray it is free.
+    fn nearby(&self, v: &Vertex) -> Option<u32> {
+        let offset = self.scene.offset();
         let find = |back: f32| {
             let p = (v.p + back * v.omega).as_dvec3();
-            self.patches.locate((v.side / 2) as usize, v.side & 1 == 0, p)
+            self.patches.locate((v.side / 2) as usize, v.side & 1 == 0, p).map(|j| j as u32)
         };
-        // rounding may put the hit under the foot of whatever stands there: a little back along the ray it is free
-        let offset = self.scene.offset();
-        let found = find(0.0).or_else(|| find(offset)).or_else(|| find(4.0 * offset));
-        *lost += u64::from(found.is_none());
-        found.map_or(NOTHING, |j| j as u32)
+        find(offset).or_else(|| find(4.0 * offset))
     }
 }
