@@ -496,7 +496,7 @@ fn too_few_pixels_are_said_to_be_too_few() {
     };
     // this light comes through few pixels: if that is too few to decide, it is said
     let d = bench.judge(&render(true), None, 1e-6);
-    assert!(d.verdict == Verdict::Wrong || d.undecided.contains(&Slot::Term(1)), "{:?}", d.evidence.ratios);
+    assert!(d.verdict == Verdict::Wrong || !d.undecided.is_empty(), "{:?}", d.evidence.ratios);
     let d = bench.judge(&render(false), None, 1e-6);
     assert_eq!(d.verdict, Verdict::Correct, "{}", d.worst);
     // one firefly, as bright as half of all pixels together, decides nothing, and that is said

@@ -302,13 +302,15 @@ fn worst(fit: &gap::Fit, regions: &[Region]) -> String {
     )
 }
 
-/// The pictures that are off by more than a visible bias, though nothing follows from that.
+/// The pictures that are off by more than a visible bias, though nothing follows from that: too few pixels carry their noise, or
+/// they would look suspicious alone (p < 5 %) and are one of many.
 fn undecided(fit: &gap::Fit, evidence: &Evidence, visible: f64) -> Vec<Slot> {
-    let few = |slot: Slot| fit.gaps.iter().filter(|g| g.region == 0 && g.slot == slot).all(|g| g.few);
+    let of = |slot: Slot| fit.gaps.iter().filter(move |g| g.region == 0 && g.slot == slot);
+    let doubtful = |slot: Slot| of(slot).all(|g| g.few) || of(slot).any(|g| g.p < 0.05);
     // less than a twentieth is no news
     let least = if visible.is_finite() { visible.max(0.05) } else { 0.05 };
     let off = evidence.ratios.iter().filter(|r| r.slot != Slot::Tail && (r.value - 1.0).abs() > least);
-    off.map(|r| r.slot).filter(|slot| few(*slot)).collect()
+    off.map(|r| r.slot).filter(|slot| doubtful(*slot)).collect()
 }
 
 /// The smallest uniform relative bias that the means of a region would have shown with probability 0.99.
