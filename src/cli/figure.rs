@@ -29,7 +29,7 @@ the screen cuts off what is above white; mean and mean shown are both printed.";
 #[derive(Clone, Debug, Args)]
 pub struct Figure {
     /// Which figure; --list names them
-    #[arg(value_name = "ID", required_unless_present_any = ["list", "all"], conflicts_with_all = ["list", "all"])]
+    #[arg(value_name = "ID", conflicts_with_all = ["list", "all"])]
     pub id: Option<String>,
     /// Name the figures
     #[arg(long)]
@@ -125,6 +125,10 @@ pub fn run(args: &Figure) -> Result<Ending, Failure> {
         let widest = FIGURES.iter().map(|f| f.id().len()).max().unwrap_or(0);
         let lines: Vec<String> = FIGURES.iter().map(|f| format!("{:widest$}  {}", f.id(), f.title())).collect();
         return super::say(&lines.join("\n")).map(|()| Ending::Ok);
+    }
+    if args.id.is_none() && !args.all {
+        let help = "`fredholm figure --list` names them, --all makes them all";
+        return Err(Failure::Usage(format!("error: which figure?\nhelp: {help}")));
     }
     let chosen: Vec<&Kind> = FIGURES.iter().filter(|f| args.all || args.id.as_deref() == Some(f.id())).collect();
     if chosen.is_empty() {
