@@ -1,8 +1,38 @@
 //! What every command does first: threads, the scene as the options change it, what the loader warns of.
 
 use super::{Failure, args::Run, output, solve};
+use clap::Args;
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
+use std::path::PathBuf;
+
+/// What every study of a scene takes.
+#[derive(Clone, Debug, Args)]
+pub struct Shared {
+    /// Override a key of the scene
+    ///
+    /// For example materials.white.reflectance=[0.6,0.6,0.6]
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Let a material emit: lamp=17,12,4
+    #[arg(long, value_name = "MATERIAL=R,G,B")]
+    pub emit: Vec<String>,
+    /// Output folder [default: a folder in fredholm-out, named after scene and study]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace what another run left in the output folder
+    #[arg(long)]
+    pub force: bool,
+    /// Threads [default: all]; results do not depend on it
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+    /// Print JSON instead of tables
+    #[arg(long)]
+    pub json: bool,
+    /// No progress
+    #[arg(short, long)]
+    pub quiet: bool,
+}
 
 /// A scene ready to be worked on.
 pub struct Opened {

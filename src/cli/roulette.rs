@@ -14,7 +14,6 @@ use fredholm::stats::Noise;
 use fredholm::terms::cross_moments::{Recorded, Value};
 use fredholm::worlds::Settings;
 use fredholm::worlds::roulette::{self, Radii};
-use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -75,27 +74,9 @@ pub struct Args {
     /// How directions are drawn: uniform, cosine, bsdf
     #[arg(long, default_value = "bsdf", value_parser = args::sampling, value_name = "NAME")]
     pub sampling: Sampling,
-    /// Override a key of the scene
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
-    /// Let a material emit: lamp=17,12,4
-    #[arg(long, value_name = "MATERIAL=R,G,B")]
-    pub emit: Vec<String>,
-    /// Output folder [default: fredholm-out/<scene>-roulette]
-    #[arg(short, long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Replace what another run left in the output folder
-    #[arg(long)]
-    pub force: bool,
-    /// Threads [default: all]; results do not depend on it
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
-    /// Print summary.json instead of tables
-    #[arg(long)]
-    pub json: bool,
-    /// No progress
-    #[arg(short, long)]
-    pub quiet: bool,
+    /// Scene, output, threads.
+    #[command(flatten)]
+    pub shared: crate::cli::open::Shared,
 }
 
 /// A schedule by the name it was typed with; `None` is to be found.
@@ -105,7 +86,7 @@ type Asked = (String, Option<estimator::Roulette>);
 pub fn run(args: &Args) -> Result<Ending, Failure> {
     let started = Instant::now();
     let asked = schedules(args)?;
-    super::open::threads(args.threads)?;
+    super::open::threads(args.shared.threads)?;
     let command = output::canonical_command();
     let (description, scene, hash) = scene(args)?;
     let settings = Settings {
@@ -119,8 +100,8 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
     guard::light_is_seen(&scene, &[fredholm::worlds::sampled::Estimator::Prefix], &settings, &[])?;
     guard::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
     let name = format!("{}-roulette", description.name);
-    let folder = output::folder(args.out.as_deref(), &name, &command, args.force)?;
-    let progress = Progress::new(args.quiet, |_| {});
+    let folder = output::folder(args.shared.out.as_deref(), &name, &command, args.shared.force)?;
+    let progress = Progress::new(args.shared.quiet, |_| {});
     let stop = stop_flag();
 
     // the recording, and what follows from it
@@ -186,7 +167,7 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
 
     let doubts = doubts(&all, &description, &scene);
     let warnings = warnings(&doubts, &recorded);
-    if args.json {
+    if args.shared.json {
         warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
         super::say(&serde_json::to_string_pretty(&record)?)?;
     } else {
@@ -243,9 +224,9 @@ fn schedules(args: &Args) -> Result<Vec<Asked>, Failure> {
 fn scene(args: &Args) -> Result<(Description, Scene, String), Failure> {
     const SIDE: u32 = 64;
     let load = |size: Option<[u32; 2]>| {
-        let mut set = args.set.clone();
+        let mut set = args.shared.set.clone();
         set.extend(size.map(|[w, h]| format!("camera.size=[{w},{h}]")));
-        load::scene(&args.scene, &Options { set, emit: args.emit.clone() })
+        load::scene(&args.scene, &Options { set, emit: args.shared.emit.clone() })
     };
     let mut loaded = load(args.size)?;
     let [w, h] = loaded.description.camera.size;

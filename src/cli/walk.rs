@@ -17,7 +17,7 @@ use fredholm::worlds::realisation::Factors;
 use fredholm::worlds::sampled::Estimator;
 use fredholm::worlds::walk::{self, Walked, Walker};
 use fredholm::worlds::zero_variance::{self, ZeroVariance};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -72,27 +72,9 @@ pub struct Walk {
     /// Seed: same seed, same bits, for any number of threads
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-    /// Override a key of the scene
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
-    /// Let a material emit: lamp=17,12,4
-    #[arg(long, value_name = "MATERIAL=R,G,B")]
-    pub emit: Vec<String>,
-    /// Output folder [default: fredholm-out/<scene>-walk]
-    #[arg(short, long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Replace what another run left in the output folder
-    #[arg(long)]
-    pub force: bool,
-    /// Threads [default: all]; results do not depend on it
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
-    /// Print summary.json instead of tables
-    #[arg(long)]
-    pub json: bool,
-    /// No progress
-    #[arg(short, long)]
-    pub quiet: bool,
+    /// Scene, output, threads.
+    #[command(flatten)]
+    pub shared: crate::cli::open::Shared,
 }
 
 /// The walker of that name; nothing for the zero-variance study.
@@ -113,8 +95,9 @@ fn walker(args: &Walk) -> Option<Walker> {
 /// Builds the matrix, walks on it, and says whether the walk gives its powers.
 pub fn run(args: &Walk) -> Result<Ending, Failure> {
     let started = Instant::now();
-    open::threads(args.threads)?;
-    let Opened { command, description, scene, hash } = open::scene(&args.scene, &args.set, &args.emit, None)?;
+    open::threads(args.shared.threads)?;
+    let Opened { command, description, scene, hash } =
+        open::scene(&args.scene, &args.shared.set, &args.shared.emit, None)?;
     let mut worlds = vec![args::WorldName::Radiosity];
     guard::suits_a_matrix(&description, &mut worlds, true)?;
     guard::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
@@ -136,8 +119,9 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
     if let Some(Walker::Terms(estimator)) = walker {
         guard::tree_can_be_walked(estimator, &settings, [args.patches, 1])?;
     }
-    let folder = output::folder(args.out.as_deref(), &format!("{}-walk", description.name), &command, args.force)?;
-    let progress = Progress::new(args.quiet, |_: &TermFilm| {});
+    let folder =
+        output::folder(args.shared.out.as_deref(), &format!("{}-walk", description.name), &command, args.shared.force)?;
+    let progress = Progress::new(args.shared.quiet, |_: &TermFilm| {});
     let mesh = |patches: usize| -> Result<Option<Matrix<Radiosity>>, Failure> {
         match discrete::dense_matrix(&description, &scene, patches, max_bounces, &progress, stop_flag()) {
             Ok(m) => Ok(Some(m)),
@@ -194,7 +178,7 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
     let old = output::left_by_the_last_run(&folder);
     summary::write(&folder.join("summary.json"), &record)?;
     output::remove_stale(&folder, &old, &record.files);
-    if args.json {
+    if args.shared.json {
         super::say(&serde_json::to_string_pretty(&record)?)?;
     } else {
         let files = format!("written to {}: {}", folder.display(), record.files.join(", "));

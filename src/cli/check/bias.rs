@@ -139,10 +139,10 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
     };
     check_sides(&loaded, &first, &against)?;
     let folder = output::folder(
-        args.common.out.as_deref(),
+        args.common.shared.out.as_deref(),
         &format!("bias-{}", loaded.description.name),
         &loaded.command,
-        args.common.force,
+        args.common.shared.force,
     )?;
 
     let limits = [Some(first.limits(scene)), against.limits(scene)];
@@ -185,7 +185,7 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
         if last || n as f64 >= 1.04 * curve.last().map_or(0.0, |g: &Glimpse| g.batches as f64) {
             curve.push(Glimpse { batches: n, image: detector.image() });
         }
-        if !args.common.quiet && (last || said.elapsed() >= Duration::from_secs(2)) {
+        if !args.common.shared.quiet && (last || said.elapsed() >= Duration::from_secs(2)) {
             said = Instant::now();
             note(&progress(&detector, started));
         }
@@ -214,7 +214,7 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
         findings: &findings,
     };
     write(&folder, args, &loaded, &record, &curve, spp, started)?;
-    if args.common.json {
+    if args.common.shared.json {
         say(&serde_json::to_string_pretty(&record)?)?;
     } else {
         let mut foot = watch::judgement(outcome, &findings, args.alpha, criterion.beta);

@@ -106,9 +106,9 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
     }
     guard::light_is_lost(&loaded.scene, &settings, &[args::WorldName::Path])?;
     let name = format!("equilibrium-{}", loaded.description.name);
-    let folder = output::folder(args.common.out.as_deref(), &name, &loaded.command, args.common.force)?;
+    let folder = output::folder(args.common.shared.out.as_deref(), &name, &loaded.command, args.common.shared.force)?;
 
-    let (progress, stop) = (Progress::new(args.common.quiet, |_| ()), stop_flag());
+    let (progress, stop) = (Progress::new(args.common.shared.quiet, |_| ()), stop_flag());
     let half = (args.points / 2).max(1);
     let at = |from| {
         let points = equilibrium::points(&loaded.scene, from, half, args.common.seed);
@@ -125,7 +125,7 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
     let judgement = judge(&parts, args.alpha, args.delta);
     let found = Found { args, loaded, groups, judgement, images, spp: seen.spp };
     let files = write_all(&folder, &found, started)?;
-    if args.common.json {
+    if args.common.shared.json {
         say(&serde_json::to_string_pretty(&record(&found))?)?;
     } else {
         say(&people(&found, &folder, &files))?;

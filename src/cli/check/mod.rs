@@ -8,7 +8,6 @@ use super::{Ending, Failure};
 use crate::cli::open::{self, Opened};
 use clap::{Args, Subcommand};
 use fredholm::scene::Scene;
-use std::path::PathBuf;
 
 /// Arguments of `check`.
 #[derive(Debug, Args)]
@@ -46,36 +45,16 @@ struct Common {
     /// Image size in pixels [default: the scene's shape, small]
     #[arg(long, value_name = "WxH", value_parser = super::args::size)]
     size: Option<[u32; 2]>,
-    /// Override a key of the scene
-    ///
-    /// For example materials.white.reflectance=[0.6,0.6,0.6]
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
-    /// Let a material emit: lamp=17,12,4
-    #[arg(long, value_name = "MATERIAL=R,G,B")]
-    emit: Vec<String>,
-    /// Output folder [default: fredholm-out/<check>-<scene>]
-    #[arg(short, long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Replace what another run left in the output folder
-    #[arg(long)]
-    force: bool,
-    /// Threads [default: all]
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    threads: Option<u16>,
-    /// Print JSON instead of tables
-    #[arg(long)]
-    json: bool,
-    /// No progress
-    #[arg(short, long)]
-    quiet: bool,
+    /// Scene, output, threads.
+    #[command(flatten)]
+    shared: crate::cli::open::Shared,
 }
 
 impl Common {
     /// The scene, in a small picture unless a size was asked for.
     fn load(&self, name: &str, most: u32) -> Result<Opened, Failure> {
-        open::threads(self.threads)?;
-        let mut opened = open::scene(name, &self.set, &self.emit, None)?;
+        open::threads(self.shared.threads)?;
+        let mut opened = open::scene(name, &self.shared.set, &self.shared.emit, None)?;
         let size = self.size.unwrap_or_else(|| small(opened.description.camera.size, most));
         opened.description.camera.size = size;
         Ok(Opened { scene: Scene::new(&opened.description), ..opened })

@@ -46,13 +46,15 @@ pub struct Right {
 pub fn source(args: &Diagnose) -> Result<Source, Failure> {
     let path = Path::new(&args.against);
     if path.is_dir() || path.file_name().is_some_and(|n| n == "summary.json") {
-        if let Some(flag) = [("--set", !args.set.is_empty()), ("--emit", !args.emit.is_empty())].iter().find(|f| f.1) {
+        if let Some(flag) =
+            [("--set", !args.shared.set.is_empty()), ("--emit", !args.shared.emit.is_empty())].iter().find(|f| f.1)
+        {
             let what = format!("error: {} changes a scene, and {} is a finished run", flag.0, args.against);
             return Err(Failure::Usage(format!("{what}\nhelp: give the scene itself to --against")));
         }
         return finished(path);
     }
-    let loaded = load::scene(&args.against, &Options { set: args.set.clone(), emit: args.emit.clone() })?;
+    let loaded = load::scene(&args.against, &Options { set: args.shared.set.clone(), emit: args.shared.emit.clone() })?;
     for warning in &loaded.warnings {
         super::super::note(&format!("warning: {warning}"));
     }
@@ -185,7 +187,7 @@ impl Source {
         let settings = Settings { spp, seed: own_seed(args.seed), max_bounces, roulette, ..usual };
         super::super::guard::fits_in_memory(&settings, small)?;
         super::super::guard::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
-        let observer: &dyn fredholm::worlds::Observer = if args.quiet { &Unobserved } else { progress };
+        let observer: &dyn fredholm::worlds::Observer = if args.shared.quiet { &Unobserved } else { progress };
         let result = sampled::terms(&scene, Estimator::Prefix, &settings, observer, stop_flag());
         let missing = result.series.unseen.iter().map(|u| format!("from k = {} on: {}", u.from, u.what));
         for missing in missing {

@@ -54,27 +54,9 @@ pub struct Diagnose {
     /// Seed of the reference and of the candidates
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub seed: u64,
-    /// Override a key of the scene
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
-    /// Let a material emit: lamp=17,12,4
-    #[arg(long, value_name = "MATERIAL=R,G,B")]
-    pub emit: Vec<String>,
-    /// Output folder [default: fredholm-out/diagnose]
-    #[arg(short, long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Replace what another run left in the output folder
-    #[arg(long)]
-    pub force: bool,
-    /// Threads [default: all]; results do not depend on it
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
-    /// Print JSON instead of text
-    #[arg(long)]
-    pub json: bool,
-    /// No progress
-    #[arg(short, long)]
-    pub quiet: bool,
+    /// Scene, output, threads.
+    #[command(flatten)]
+    pub shared: crate::cli::open::Shared,
     /// Also the candidates that were struck off
     #[arg(short, long)]
     pub verbose: bool,
@@ -121,7 +103,7 @@ pub struct Found {
 
 /// Diagnoses every suspect.
 pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
-    super::open::threads(args.threads)?;
+    super::open::threads(args.shared.threads)?;
     let (suspects, how) = suspects(args)?;
     let scaled = args.scale.as_ref().map(|(s, file)| Ok::<_, Failure>((*s, read::file(file)?))).transpose()?;
     let source = against::source(args)?;
@@ -134,8 +116,8 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
         return Err(size_mismatch("--scale", large.pictures.size, first.file.pictures.size));
     }
     let command = output::canonical_command();
-    let folder = output::folder(args.out.as_deref(), "diagnose", &command, args.force)?;
-    let progress = Progress::new(args.quiet, |_| {});
+    let folder = output::folder(args.shared.out.as_deref(), "diagnose", &command, args.shared.force)?;
+    let progress = Progress::new(args.shared.quiet, |_| {});
 
     // suspects of one size and one K share a reference and the pictures of the candidates
     let mut groups: Groups = BTreeMap::new();
@@ -167,7 +149,7 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     let found: Vec<Found> = found.into_values().collect();
     let page = text::Page { args, how, label: &label, luck: luck.as_deref(), command: &command, folder: &folder };
     let files = write(&page, &found, &source)?;
-    if args.json {
+    if args.shared.json {
         super::say(&serde_json::to_string_pretty(&text::json(&found))?)?;
     } else {
         super::say(&page.people(&found, &files))?;
