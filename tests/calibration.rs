@@ -64,7 +64,7 @@ fn cornell() -> &'static Scene {
     static SCENE: OnceLock<Scene> = OnceLock::new();
     SCENE.get_or_init(|| {
         let set = vec!["camera.size=[8,8]".to_string()];
-        Scene::new(&load::scene("cornell", &Options { set, emit: vec![] }).unwrap().description)
+        Scene::new(&load::scene("cornell", &Options { set, ..Options::default() }).unwrap().description)
     })
 }
 

@@ -85,7 +85,7 @@ source = "by hand"
 
 fn options(set: &[&str], emit: &[&str]) -> Options {
     let own = |list: &[&str]| list.iter().map(|s| (*s).to_owned()).collect();
-    Options { set: own(set), emit: own(emit) }
+    Options { set: own(set), emit: own(emit), ..Options::default() }
 }
 
 fn parse(text: &str) -> Result<Loaded, SceneError> {

@@ -219,7 +219,7 @@ fn a_bias_of_one_percent_is_found_in_renders() {
 fn watching_the_cornell_box_raises_no_false_alarms() {
     let mut account = open("watching_the_cornell_box_raises_no_false_alarms");
     let set = vec!["camera.size=[8,8]".to_string()];
-    let loaded = load::scene("cornell", &Options { set, emit: vec![] }).unwrap();
+    let loaded = load::scene("cornell", &Options { set, ..Options::default() }).unwrap();
     let scene = Scene::new(&loaded.description);
     let settings = Settings { spp: 4, max_bounces: 4, seed: account.seed(), ..Settings::default() };
     let roulette = settings.path_roulette.clone().after(4);

@@ -23,6 +23,7 @@ pub mod primitive;
 pub mod raster;
 pub mod sensor;
 mod shape;
+mod stand_in;
 mod textures;
 pub mod vertex;
 
@@ -31,6 +32,7 @@ pub use error::SceneError;
 pub use lighting::LightSample;
 pub use primitive::Primitive;
 pub use sensor::{Camera, SurfaceSensor};
+pub use stand_in::stand_in;
 pub use vertex::{ESCAPED, LIGHT, Side, Vertex, VertexWave};
 
 use crate::math::Rgb;

@@ -80,6 +80,6 @@ impl Stage {
     pub fn load(&self, [width, height]: [u32; 2]) -> Result<Description, SceneError> {
         let mut set: Vec<String> = self.set.iter().map(|s| (*s).to_string()).collect();
         set.push(format!("camera.size=[{width},{height}]"));
-        Ok(load::scene(self.scene, &Options { set, emit: vec![] })?.description)
+        Ok(load::scene(self.scene, &Options { set, ..Options::default() })?.description)
     }
 }

@@ -24,7 +24,6 @@
 
 pub mod incident;
 mod places;
-mod stand_in;
 pub mod warp;
 
 use super::scene_transport::SceneTransport;
@@ -32,11 +31,10 @@ use super::transport::{self, Samples, Seen, Sensor, Step, Transport};
 use crate::math::{Columns, Key, Rgb, Rng, Streams};
 use crate::operator::patches::Patches;
 use crate::scene::bsdf::{Bsdf, Sampling, diffuse, diffuse::Diffuse};
-use crate::scene::{Camera, Scene, SceneError, Vertex, VertexWave, connection, numbers};
+use crate::scene::{Camera, Scene, SceneError, Vertex, VertexWave, connection, numbers, stand_in};
 use glam::Vec3;
 use incident::{Fineness, Incident};
 use places::{Found, Places};
-pub use stand_in::stand_in;
 use std::sync::atomic::AtomicBool;
 use warp::Warp;
 

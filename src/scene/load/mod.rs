@@ -23,7 +23,7 @@ mod shapes;
 mod toml;
 mod tree;
 
-use super::{Description, SceneError, builtin};
+use super::{Description, SceneError, builtin, stand_in};
 use glam::DVec3;
 use nearest::suggest;
 use std::path::{Path, PathBuf};
@@ -36,6 +36,8 @@ pub struct Options {
     pub set: Vec<String>,
     /// `MATERIAL=r,g,b`: every shape of that material emits this radiance from its front.
     pub emit: Vec<String>,
+    /// Every surface Lambertian, of one colour ([`stand_in`]).
+    pub lambertian: bool,
 }
 
 /// A scene that has been read and found sound.
@@ -123,6 +125,9 @@ fn finish(mut draft: Draft, file: &Path, options: &Options) -> Result<Loaded, Sc
         let hint = draft.hints.first().unwrap_or(&general);
         let help = format!("{hint}; materials in use: {}", names.join(", "));
         return Err(SceneError::new("nothing in the scene emits light").file(file).help(help));
+    }
+    if options.lambertian {
+        draft.description = stand_in(&draft.description);
     }
     let canonical = format!("{:?}", draft.description);
     Ok(Loaded { description: draft.description, warnings: draft.warnings, canonical })

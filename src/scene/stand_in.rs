@@ -1,12 +1,11 @@
-//! The scene that the guide believes in: every surface Lambertian, of one colour.
+//! A scene with every surface Lambertian, of one colour: what a matrix can hold.
 //!
 //! `ρ = ∫ f cos θ dω` at normal incidence, the mean of an image where there is one; glass is black, because what lies behind it is not
-//! where a Lambertian surface would send light. The stand-in decides where to look, never what is seen: the estimate keeps the true
-//! scene's f, and an error here costs variance alone.
+//! where a Lambertian surface would send light. It is another scene with another solution: what a guide believes in, which decides where
+//! to look and never what is seen, and what `--lambertian` asks for.
 
-use crate::scene::Description;
-use crate::scene::bsdf::Bsdf;
-use crate::scene::description::{BsdfDescription, Colour, Material};
+use super::bsdf::Bsdf;
+use super::description::{BsdfDescription, Colour, Description, Material};
 use glam::{DVec3, Vec3};
 
 /// The same shapes and lights with Lambertian surfaces.
