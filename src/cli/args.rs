@@ -77,6 +77,7 @@ tail. (Elsewhere the same images are Mitsuba's max_depth = K + 1 and pbrt's maxd
   fredholm radiosity cornell --patches 2400 --factors both --rays 1024   both, compared
   fredholm radiosity cornell --patches 130000 --rays 256                 too many for a matrix
   fredholm radiosity cornell --patches 2000 --solver all --history history.csv
+  fredholm radiosity cornell --patches 130000 --solver gmres             on stored rays
   fredholm radiosity cornell --solver southwell --channel green --json
   fredholm radiosity cornell --modes 8 --size 128x128
 
