@@ -418,6 +418,7 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     lines.extend(facts::decay_facts(found));
     lines.extend(facts::orders(&found.orders));
     blocks.push(lines.join("\n"));
+    blocks.extend(facts::extrapolated(found));
     if !found.verdicts.is_empty() {
         blocks.push(table::verdicts(&found.verdicts));
     }
