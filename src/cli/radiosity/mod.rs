@@ -16,8 +16,8 @@ use fredholm::terms::TermFilm;
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::{self, Matrix, MatrixError};
 use fredholm::worlds::realisation::{Factors, Realisation};
-use std::sync::atomic::AtomicBool;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 /// Arguments of `radiosity`.
 #[derive(Clone, Debug, Args)]
@@ -167,8 +167,8 @@ impl<R> Laboratory<R> {
         let settings = Settings { patches, factors, max_bounces: 0, seed: run.seed, ..Settings::default() };
         guard::rows_fit_in_memory(&settings)?;
         let name = format!("{}-{what}", opened.description.name);
-        let folder = output::folder(run.out.as_deref(), &name, &opened.command, run.force)?;
-        let progress = Progress::new(run.quiet, |_: &TermFilm| {});
+        let folder = output::folder(run.shared.out.as_deref(), &name, &opened.command, run.shared.force)?;
+        let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
         let made = make(&opened, &settings, &progress, stop_flag());
         progress.finish();
         match made {

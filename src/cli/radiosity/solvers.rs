@@ -75,7 +75,7 @@ impl Study<'_> {
         let Self { args, lab, .. } = self;
         let stopped = || stop_flag().load(Ordering::Relaxed);
         let limits = Limits { error: ERROR, applications: APPLICATIONS, stopped: &stopped };
-        let progress = Progress::new(args.run.quiet, |_: &TermFilm| {});
+        let progress = Progress::new(args.run.shared.quiet, |_: &TermFilm| {});
         let possible = system.solvers();
         // the direct solution is the reference, and always there
         let wanted = |s: &Solver| self.name.solver().is_none_or(|one| one == *s) || *s == Solver::Lu;
@@ -94,7 +94,7 @@ impl Study<'_> {
         let series = extrapolations(system);
         let record = self.record(system, &histories, &series);
         write_atomically(&lab.folder.join("solvers.json"), serde_json::to_string_pretty(&record)?.as_bytes())?;
-        if args.run.json {
+        if args.run.shared.json {
             say(&serde_json::to_string_pretty(&record)?)?;
         } else {
             let extrapolated = format!(
@@ -151,12 +151,7 @@ impl Study<'_> {
         if self.lab.matrix.sampling.is_some() { "u" } else { "L" }
     }
 
-    fn record<T: Transposed>(
-        &self,
-        system: &System<'_, T>,
-        histories: &[History],
-        series: &[Extrapolated],
-    ) -> Value {
+    fn record<T: Transposed>(&self, system: &System<'_, T>, histories: &[History], series: &[Extrapolated]) -> Value {
         let Self { args, lab, .. } = self;
         let reference = match system.reference {
             Reference::Lu { .. } => json!({ "solver": "LU", "residual": system.residual() }),
