@@ -9,6 +9,7 @@ use fredholm::estimator::{Prefix, Roulette, Technique};
 use fredholm::math::{Key, Rgb};
 use fredholm::operator::MatrixWalk;
 use fredholm::operator::matrix_walk::Rows;
+use fredholm::report::extrapolation::Measured;
 use fredholm::solver::accelerate::{Accelerated, aitken, known_rate, plain, two_step, wynn};
 use glam::DVec3;
 use nalgebra::DMatrix;
@@ -98,6 +99,38 @@ fn derivatives_are_those_of_the_values() {
     close("∂A/∂t₀", g[0], 1.0 - 0.64 / 0.04, 1e-11);
     close("∂A/∂t₁", g[1], 25.0, 1e-11);
     close("known rate", known_rate(&[1.0, 0.8], 0.8).unwrap().gradient[1], 5.0, 1e-14);
+}
+
+/// What a run prints: independent terms and terms of one path, by hand.
+#[test]
+fn a_measured_series_is_off_by_what_is_left_out() {
+    // t = 8, 4, 2 and 2 for the rest, each with an error of 0.1
+    let mean = vec![8.0, 4.0, 2.0, 2.0];
+    let measured = |covariance| Measured { label: "by hand".into(), mean: mean.clone(), covariance, used: 3 };
+    let [plain, aitken, two_step, known, wynn] = measured(DMatrix::from_diagonal_element(4, 4, 0.01)).outcomes(0.5);
+    let (plain, aitken, known, wynn) = (plain.unwrap(), aitken.unwrap(), known.unwrap(), wynn.unwrap());
+    assert!(two_step.is_none(), "two steps need five terms");
+    // the sum leaves the rest out, and nothing else: only the noise of the rest is in it
+    close("off", plain.off[0], -2.0 / 16.0, 1e-15);
+    close("its error", plain.off[1], 0.1 / 16.0, 1e-15);
+    close("noise", plain.noise, 0.03f64.sqrt() / 16.0, 1e-15);
+    close("gain", plain.gain, 1.0, 1e-15);
+    // known rate: 14 + 2; ∇ = (1, 1, 2), d = (0, 0, 1, −1)
+    close("known rate", known.off[0], 0.0, 1e-15);
+    close("its error", known.off[1], 0.02f64.sqrt() / 16.0, 1e-15);
+    close("its gain", known.gain, 2f64.sqrt(), 1e-14);
+    // Aitken: g = ½, ∇ = (1, 0, 4), d = (0, −1, 3, −1)
+    close("Aitken", aitken.off[0], 0.0, 1e-15);
+    close("its error", aitken.off[1], 0.11f64.sqrt() / 16.0, 1e-15);
+    close("its gain", aitken.gain, (17.0f64 / 3.0).sqrt(), 1e-14);
+    close("Wynn is Aitken", wynn.gain, aitken.gain, 1e-12);
+    // one path whose terms all move together, in proportion: nothing is amplified, and off has no noise
+    let together = DMatrix::from_fn(4, 4, |i, j| 1e-4 * mean[i] * mean[j]);
+    for method in [0, 1, 3, 4] {
+        let o = measured(together.clone()).outcomes(0.5)[method].unwrap();
+        close("relative noise", o.noise / (1.0 + o.off[0]), 0.01, 1e-12);
+        close("off is off", o.off[1], 0.01 * o.off[0].abs(), 1e-9);
+    }
 }
 
 /// ∇Aᵀ C ∇A against the variance of A over 8192 groups of paths on a matrix, three albedos at once.

@@ -2,6 +2,9 @@
 #![allow(clippy::unwrap_used)]
 
 mod discrete;
+#[path = "../examples/operators.rs"]
+#[allow(dead_code, unreachable_pub)] // its `main`; a program, not a library
+mod example;
 use discrete::*;
 use fredholm::operator::algebra::{AlgebraError, Expression};
 use fredholm::operator::form_factor::FormFactors;
@@ -155,4 +158,16 @@ fn a_series_without_a_sum_is_refused() {
     let t = PatchOperator::new(&plates, vec![0.5, 0.5]);
     let alternating = Expression::from(&t).scaled(-1.0).resolvent().unwrap();
     assert!(apart(&alternating.of(&[1.0, 0.0]).unwrap(), &[4.0 / 3.0, -2.0 / 3.0]) < 1e-15);
+}
+
+/// `cargo run --example operators`: what it prints as equal is equal, and what it prints as different is not.
+#[test]
+fn the_example_says_what_holds() {
+    let room = example::room().unwrap();
+    let equations = example::equations(&room).unwrap();
+    for e in &equations {
+        assert!(e.is_right(), "{}: {:?}, {:e} apart", e.says, e.sides, e.apart());
+        assert!(e.sides.iter().all(|x| x.is_finite() && *x > 0.0), "{}: {:?}", e.says, e.sides);
+    }
+    assert_eq!(equations.iter().filter(|e| e.but.is_none()).count(), 7);
 }

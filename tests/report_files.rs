@@ -314,7 +314,7 @@ fn figures_are_reproducible_and_drawn_at_twice_the_size() {
     assert_eq!((read.width(), read.height()), (2 * figure.width, 2 * figure.height));
     let text = std::fs::read_to_string(svg).unwrap();
     assert!(text.contains(&format!("width=\"{}\" height=\"{}\"", figure.width, figure.height)));
-    assert!(text.contains("a &lt; b &amp; c") && text.contains("slope\u{a0}−1.00\u{a0}±\u{a0}0.02"));
+    assert!(text.contains("a &lt; b &amp; c") && text.contains("slope\u{a0}−1.000\u{a0}±\u{a0}0.020"));
     assert!(text.contains("fredholm series cornell --spp 16 --seed 3"));
     assert!(!text.contains("font-family=\"DejaVu Sans\""), "every family has a fallback");
 }

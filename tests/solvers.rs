@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod discrete;
+#[path = "solvers/rays.rs"]
+mod rays;
 use discrete::*;
 use fredholm::operator::form_factor::FormFactors;
 use fredholm::operator::matrix::*;
@@ -224,14 +226,14 @@ fn the_ends_of_the_spectrum_are_those_of_the_dense_matrix() {
     for case in cases() {
         let t = case.operator();
         let all = eigenvalues(&t);
-        let ends = extremes(&t, 1e-10, 400);
+        let ends = extremes(&t, &t.weight(), 1e-10, 400);
         let exact = [all[0], all[all.len() - 1]];
         for (found, exact) in [ends.smallest, ends.largest].into_iter().zip(exact) {
             assert!((found - exact).abs() <= SINGLE, "{}: {found} instead of {exact}", case.name);
         }
         assert!(ends.residual.iter().all(|r| *r <= 1e-10 + SINGLE), "{}: {ends:?}", case.name);
         // stopped early, the bracket is honest about what it does not know
-        let early = extremes(&t, 0.0, 5.min(t.len()));
+        let early = extremes(&t, &t.weight(), 0.0, 5.min(t.len()));
         assert!(early.largest <= exact[1] + SINGLE && early.smallest >= exact[0] - SINGLE);
         assert!((early.largest - exact[1]).abs() <= early.residual[1] + SINGLE, "{}: {early:?}", case.name);
     }
@@ -255,7 +257,7 @@ fn chebyshev_and_cg_keep_their_bounds() {
         };
         let start = (t.weighted_norm(&error(&case.emission)), energy(&case.emission));
         let mut chebyshev = Chebyshev::new(&t, &case.emission, ends);
-        let mut cg = ConjugateGradients::new(&t, &case.emission);
+        let mut cg = ConjugateGradients::new(&t, t.weight(), &case.emission);
         for n in 1..=25 {
             let bound = Chebyshev::<PatchOperator<'_>>::bound(ends, n);
             chebyshev.advance();
@@ -303,7 +305,7 @@ fn iterations_end_when_nothing_is_left() {
     // no light, no steps
     let dark = [0.0, 0.0];
     assert!(!Gmres::new(&t, &dark).advance());
-    assert!(!ConjugateGradients::new(&t, &dark).advance());
+    assert!(!ConjugateGradients::new(&t, t.weight(), &dark).advance());
     assert!(!Southwell::new(&t, &dark).advance());
     assert_eq!(Gmres::new(&t, &dark).iterate(), dark);
 }

@@ -53,6 +53,40 @@ fn all_solvers_stand_in_one_table_and_one_file() {
     }
 }
 
+/// Stored rays: the same files, without what needs a symmetric matrix, and with the residual of the reference.
+#[test]
+fn stored_rays_are_solved_in_every_way_but_two() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["radiosity", "cornell", "--patches", "200", "--factors", "rays", "--rays", "64", "--solver", "all"];
+    let args = [&args[..], &["--history", "h.csv", "-o", "out"]].concat();
+    let run = fredholm(folder.path(), &args).assert().success();
+    let printed = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+    assert!(printed.lines().skip(1).all(|l| l.chars().count() <= 100), "{printed}");
+    let names: Vec<&str> = ALL.into_iter().filter(|n| !matches!(*n, "CG" | "LU")).collect();
+    let again = fredholm(folder.path(), &[&args[..], &["--json", "-t", "1"]].concat()).assert().success();
+    let json: Value = serde_json::from_slice(&again.get_output().stdout).unwrap();
+    let shown: Vec<&str> = json["solvers"].as_array().unwrap().iter().map(|s| s["solver"].as_str().unwrap()).collect();
+    assert_eq!((shown, json["rays"].as_u64(), json["unknown"].as_str()), (names.clone(), Some(64), Some("u")));
+    let (reference, residual) = (&json["reference"], json["reference"]["residual"].as_f64().unwrap());
+    assert!(reference["solver"] == "GMRES" && residual > 0.0 && residual < 1e-15, "{reference}");
+    assert!(printed.contains(&format!("{residual:.1e} of ‖D‖")), "{printed}");
+    let csv = std::fs::read_to_string(folder.path().join("out/h.csv")).unwrap();
+    for name in names {
+        assert!(printed.lines().any(|l| l.starts_with(name)) && csv.contains(&format!("\n{name},")), "{name}");
+    }
+    let one = [&args[..8], &["--solver", "gmres", "--channel", "blue", "--json", "-o", "one"]].concat();
+    let run = fredholm(folder.path(), &one).assert().success();
+    let json: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    assert_eq!(json["solvers"].as_array().unwrap().len(), 1, "the reference has no row");
+    for (solver, why) in [("cg", "self-adjoint"), ("lu", "no matrix")] {
+        let args = ["radiosity", "cornell", "--factors", "rays", "--solver", solver];
+        let run = fredholm(folder.path(), &args).assert().code(2);
+        let text = String::from_utf8(run.get_output().stderr.clone()).unwrap();
+        assert!(text.contains(why) && text.contains("help: use --solver gmres"), "{text}");
+    }
+    fredholm(folder.path(), &["radiosity", "cornell", "--factors", "both", "--solver", "all"]).assert().code(2);
+}
+
 /// Extrapolation shows its error and its noise: the plain sum is not amplified, and a known rate helps most at first.
 #[test]
 fn the_series_is_extrapolated_beside_the_solvers() {

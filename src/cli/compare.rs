@@ -1,13 +1,42 @@
 //! `fredholm compare A B`: two results, verdict per term, z map.
 
-use super::{Ending, Failure, args, facts, output, write};
+use super::args::{fraction, probability};
+use super::{Ending, Failure, facts, output, write};
+use clap::Args;
 use fredholm::report::{exr, summary, table, typeset::Caption, zmap};
 use fredholm::stats::{Criterion, compare, discretisation};
 use fredholm::terms::{Series, World};
 use std::path::{Path, PathBuf};
 
+/// Arguments of `compare`.
+#[derive(Clone, Debug, Args)]
+pub struct Compare {
+    /// A result: an output folder or its summary.json
+    pub a: PathBuf,
+    /// Another result
+    pub b: PathBuf,
+    /// δ as a fraction of the term
+    #[arg(long, default_value_t = 0.02, value_name = "FRACTION", value_parser = fraction)]
+    pub of_term: f64,
+    /// δ as a fraction of the whole image, added
+    #[arg(long, default_value_t = 1e-4, value_name = "FRACTION", value_parser = fraction)]
+    pub of_total: f64,
+    /// Chance that equal results are told apart anywhere
+    #[arg(long, default_value_t = 1e-3, value_name = "P", value_parser = probability)]
+    pub alpha: f64,
+    /// Where the z map goes [default: fredholm-out/compare]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace what another run left in the output folder
+    #[arg(long)]
+    pub force: bool,
+    /// Print JSON instead of tables
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Compares two results.
-pub fn run(args: &args::Compare) -> Result<Ending, Failure> {
+pub fn run(args: &Compare) -> Result<Ending, Failure> {
     let (a, b) = (read(&args.a)?, read(&args.b)?);
     if (a.1.width, a.1.height) != (b.1.width, b.1.height) {
         return Err(Failure::Input(format!(

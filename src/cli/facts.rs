@@ -2,13 +2,16 @@
 
 use super::solve::Found;
 use fredholm::operator::guided::warp::CELLS;
+use fredholm::report::extrapolation::{self, Measured};
 use fredholm::report::summary;
 use fredholm::stats::{self, Comparison, TermMeans, observed_rate};
 use fredholm::terms::Series;
+use fredholm::terms::functional::Replicates;
 use fredholm::worlds::discrete::Discrete;
 use fredholm::worlds::guided::Prepared;
 use fredholm::worlds::realisation::{Difference, Sampling};
 use fredholm::worlds::sampled::Estimator;
+use nalgebra::DMatrix;
 
 /// One line: the outcome, and what would decide.
 pub fn judgement(c: &Comparison) -> String {
@@ -134,6 +137,36 @@ pub fn decay_facts(found: &Found) -> Vec<String> {
         });
     }
     out
+}
+
+/// What the first half of the terms says about the whole, in the slowest channel.
+pub fn extrapolated(found: &Found) -> Option<String> {
+    let last = found.settings.max_bounces / 2 + 1;
+    // two terms are too few for what is shown, and without a tail there is no whole
+    if last < 3 || found.surface.is_empty() || !found.settings.roulette.ends() {
+        return None;
+    }
+    let radii = found.radiosity.as_ref().map(|r| r.matrix.spectral.each_ref().map(|s| s.radius));
+    let by = radii.unwrap_or(found.scene.max_albedo().as_dvec3().to_array());
+    let slowest = (0..3).fold(0, |best, c| if by[c] > by[best] { c } else { best });
+    let measured = |(estimator, r): &(Estimator, Replicates)| {
+        let n = r.mean.len() - 1;
+        Measured {
+            label: estimator.to_string(),
+            mean: r.mean[1..].iter().map(|m| m[slowest]).collect(),
+            covariance: DMatrix::from_fn(n, n, |i, j| r.covariance(i + 1, j + 1)[slowest]),
+            used: last,
+        }
+    };
+    let measured: Vec<Measured> = found.surface.iter().map(measured).collect();
+    let rate = radii.map_or(f64::NAN, |r| r[slowest]);
+    let note = if rate.is_nan() { "" } else { "; the known rate is r(T)" };
+    Some(format!(
+        "L − E from its terms k = 1 to {last}: mean over all surfaces, {}, in units of L − E as measured;\n\
+         noise: standard error; gain: how much noisier than the sum of these terms{note}\n{}",
+        ["red", "green", "blue"][slowest],
+        extrapolation::table(&measured, rate)
+    ))
 }
 
 /// The fitted order of convergence of the radiosity, from three meshes.

@@ -1,6 +1,7 @@
 //! `fredholm info [SCENE]`: what a scene holds, and what is known about ‖T‖ before anything is rendered.
 
-use super::{Ending, Failure, args};
+use super::{Ending, Failure};
+use clap::Args;
 use fredholm::report::table;
 use fredholm::scene::description::{
     BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
@@ -8,8 +9,24 @@ use fredholm::scene::description::{
 use fredholm::scene::{Scene, SurfaceSensor, builtin, load};
 use serde_json::json;
 
+/// Arguments of `info`.
+#[derive(Clone, Debug, Args)]
+pub struct Info {
+    /// Built-in scene, .toml, or .obj; nothing lists the built-in scenes
+    pub scene: Option<String>,
+    /// Override a key of the scene
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Let a material emit
+    #[arg(long, value_name = "MATERIAL=R,G,B")]
+    pub emit: Vec<String>,
+    /// Print JSON instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Prints what is known, or lists the built-in scenes.
-pub fn run(args: &args::Info) -> Result<Ending, Failure> {
+pub fn run(args: &Info) -> Result<Ending, Failure> {
     let Some(name) = &args.scene else {
         let lines: Vec<String> = builtin::ALL.iter().map(|s| format!("{:15} {}", s.name, s.summary)).collect();
         super::say(&lines.join("\n"))?;

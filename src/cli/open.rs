@@ -17,8 +17,11 @@ pub struct Shared {
     /// Let a material emit: lamp=17,12,4
     #[arg(long, value_name = "MATERIAL=R,G,B")]
     pub emit: Vec<String>,
-    /// Output folder [default: a folder in fredholm-out, named after scene and study]
-    #[arg(short, long, value_name = "DIR")]
+    /// Output folder [default: one in fredholm-out, named after scene and study]
+    ///
+    /// The same command replaces its own output. Where another run's stands, the default becomes
+    /// NAME-2, and a folder given here is refused without --force.
+    #[arg(short, long, value_name = "DIR", verbatim_doc_comment)]
     pub out: Option<PathBuf>,
     /// Replace what another run left in the output folder
     #[arg(long)]
@@ -64,7 +67,7 @@ pub fn scene(name: &str, set: &[String], emit: &[String], size: Option<[u32; 2]>
 
 /// Threads and scene of a command that renders.
 pub fn run(run: &Run) -> Result<Opened, Failure> {
-    threads(run.threads)?;
-    let opened = scene(&run.scene, &run.set, &run.emit, run.size)?;
+    threads(run.shared.threads)?;
+    let opened = scene(&run.scene, &run.shared.set, &run.shared.emit, run.size)?;
     Ok(Opened { scene: opened.scene.select_lights(run.lights), ..opened })
 }

@@ -99,10 +99,10 @@ pub fn radiosity(run: &Run) -> Result<Ending, Failure> {
 
 fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let started = Instant::now();
-    open::threads(run.threads)?;
+    open::threads(run.shared.threads)?;
     let built_in_size = if run.scene == "cornell" { default.size } else { None };
     let Opened { command, description, scene, hash } =
-        open::scene(&run.scene, &run.set, &run.emit, run.size.or(built_in_size))?;
+        open::scene(&run.scene, &run.shared.set, &run.shared.emit, run.size.or(built_in_size))?;
     let scene = scene.select_lights(run.lights);
 
     // what to do with it
@@ -159,10 +159,10 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         guard::rows_fit_in_memory(&settings)?;
     }
     guard::light_is_lost(&scene, &settings, &worlds)?;
-    let folder = output::folder(run.out.as_deref(), &description.name, &command, run.force)?;
+    let folder = output::folder(run.shared.out.as_deref(), &description.name, &command, run.shared.force)?;
     let stop = stop_flag();
     let preview = write::preview(&folder, &description, &command, run.seed);
-    let progress = Progress::new(run.quiet, preview);
+    let progress = Progress::new(run.shared.quiet, preview);
     let stopped = || stop.load(Ordering::Relaxed);
 
     let mut found = Found {
@@ -254,7 +254,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     found.radii = radii(&found);
     found.verdicts = verdicts(&found);
     let summary = write::all(&found)?;
-    if run.json {
+    if run.shared.json {
         facts::warnings(&found).iter().for_each(|w| super::note(&format!("warning: {w}")));
         super::say(&serde_json::to_string_pretty(&summary)?)?;
     } else {
@@ -418,6 +418,7 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     lines.extend(facts::decay_facts(found));
     lines.extend(facts::orders(&found.orders));
     blocks.push(lines.join("\n"));
+    blocks.extend(facts::extrapolated(found));
     if !found.verdicts.is_empty() {
         blocks.push(table::verdicts(&found.verdicts));
     }

@@ -50,8 +50,9 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         guard::light_is_seen(&scene, &[case.estimator], &case.settings, &[])?;
         guard::light_is_lost(&scene, &case.settings, &[WorldName::Terms])?;
     }
-    let folder = output::folder(run.out.as_deref(), &format!("{}-{over}", description.name), &command, run.force)?;
-    let progress = Progress::new(run.quiet, |_: &TermFilm| {});
+    let folder =
+        output::folder(run.shared.out.as_deref(), &format!("{}-{over}", description.name), &command, run.shared.force)?;
+    let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
     for case in cases.iter_mut().filter(|c| c.optimal) {
         if let Some(best) = roulette::optimal(&scene, &case.settings, &progress, stop_flag()) {
             case.settings.roulette = best.roulette;
@@ -101,7 +102,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     record.series = series;
     record.seconds = started.elapsed().as_secs_f64();
     write(&folder, &sweep, &mut record)?;
-    if run.json {
+    if run.shared.json {
         super::say(&serde_json::to_string_pretty(&record)?)?;
     } else {
         super::say(&people(&sweep, &record, &description, &cases[0].settings, &folder))?;

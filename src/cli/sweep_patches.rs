@@ -51,8 +51,13 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     };
     guard::fits_in_memory(&settings, description.camera.size)?;
     guard::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
-    let folder = output::folder(run.out.as_deref(), &format!("{}-patches", description.name), &command, run.force)?;
-    let progress = Progress::new(run.quiet, |_: &TermFilm| {});
+    let folder = output::folder(
+        run.shared.out.as_deref(),
+        &format!("{}-patches", description.name),
+        &command,
+        run.shared.force,
+    )?;
+    let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
     let found = refine::refine(&description, &scene, &sizes, &settings, &progress, stop_flag())?;
     progress.finish();
     let stopped = stop_flag().load(Ordering::Relaxed);
@@ -87,7 +92,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let old = output::left_by_the_last_run(&folder);
     summary::write(&folder.join("summary.json"), &record)?;
     output::remove_stale(&folder, &old, &record.files);
-    if run.json {
+    if run.shared.json {
         super::say(&serde_json::to_string_pretty(&record)?)?;
     } else {
         let head = format!(

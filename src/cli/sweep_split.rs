@@ -38,8 +38,9 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     guard::fits_in_memory(&settings, description.camera.size)?;
     guard::light_is_seen(&scene, &[Estimator::Prefix], &settings, &[])?;
     guard::light_is_lost(&scene, &settings, &[WorldName::Terms])?;
-    let folder = output::folder(run.out.as_deref(), &format!("{}-split", description.name), &command, run.force)?;
-    let progress = Progress::new(run.quiet, |_: &TermFilm| {});
+    let folder =
+        output::folder(run.shared.out.as_deref(), &format!("{}-split", description.name), &command, run.shared.force)?;
+    let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
     let pilot = args.pilot.unwrap_or(spp / 4);
     let study = split::study(&scene, &settings, pilot, &progress, stop_flag());
     progress.finish();
@@ -73,7 +74,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let old = output::left_by_the_last_run(&folder);
     summary::write(&folder.join("summary.json"), &record)?;
     output::remove_stale(&folder, &old, &record.files);
-    if run.json {
+    if run.shared.json {
         return super::say(&serde_json::to_string_pretty(&record)?).map(|()| Ending::Ok);
     }
     let head = format!(

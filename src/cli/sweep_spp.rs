@@ -208,8 +208,9 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         guard::light_is_lost(&scene, &case.settings, &[world])?;
     }
     let planned = plan_reference(args, &scene, &description, &cases[0].settings)?;
-    let folder = output::folder(run.out.as_deref(), &format!("{}-spp", description.name), &command, run.force)?;
-    let progress = Progress::new(run.quiet, |_: &TermFilm| {});
+    let folder =
+        output::folder(run.shared.out.as_deref(), &format!("{}-spp", description.name), &command, run.shared.force)?;
+    let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
     let stopped = || stop_flag().load(Ordering::Relaxed);
     for case in cases.iter_mut().filter(|c| c.optimal) {
         if let Some(best) = roulette::optimal(&scene, &case.settings, &progress, stop_flag()) {
@@ -269,7 +270,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         ..summary::Summary::default()
     };
     write(&folder, &falls, &mut record)?;
-    if run.json {
+    if run.shared.json {
         super::say(&serde_json::to_string_pretty(&record)?)?;
     } else {
         super::say(&people(&falls, &record, reference.as_ref(), &folder))?;

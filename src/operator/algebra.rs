@@ -14,13 +14,14 @@
 //! | S + T, c T, S T, T^k | combinations | [`Expression::plus`], [`Expression::scaled`], [`Expression::times`], [`Expression::power`] |
 //! | (I − T)⁻¹ | everything that ever arrives | [`Expression::resolvent`] |
 //! | T* | walked from the lights | [`Expression::adjoint`] |
+//! | ½ (T + w⁻¹A T* A⁻¹w) | the part that is self-adjoint in the weight w | [`Expression::symmetric_part`] |
 //!
 //! Operators can be combined if they act on the same space: as many patches, of the same areas. Anything else is an
 //! error that says where the spaces differ.
 //!
 //! Reference: Arvo, *Analytic Methods for Simulated Light Transport* (1995), chapter 6.
 
-use super::matrix::LinearOperator;
+use super::matrix::{LinearOperator, Weight};
 use std::borrow::Cow;
 
 /// Why operators cannot be combined or applied.
@@ -148,6 +149,22 @@ impl<'a> Expression<'a> {
     /// T*, in the area inner product.
     pub fn adjoint(&self) -> Self {
         self.with(Node::Adjoint(self.boxed()))
+    }
+
+    /// ½ (T + T^w), T^w the adjoint in ⟨u, v⟩_w = Σ wᵢ uᵢ vᵢ: T itself where T is self-adjoint in w. Its spectrum lies between
+    /// the ends of the numerical range of T, and so do the real parts of all eigenvalues of T.
+    ///
+    /// # Panics
+    /// If there is not one weight per patch.
+    pub fn symmetric_part(&self, weight: &Weight) -> Self {
+        let w = weight.values();
+        assert_eq!(w.len(), self.area.len(), "one weight per patch");
+        let diagonal = |d: Vec<f64>| Box::new(Node::Diagonal(d));
+        let into = w.iter().zip(&*self.area).map(|(w, a)| w / a).collect();
+        let back = w.iter().zip(&*self.area).map(|(w, a)| if *w > 0.0 { a / w } else { 0.0 }).collect();
+        let adjoint = Node::Product(Box::new(Node::Adjoint(self.boxed())), diagonal(into));
+        let adjoint = Node::Product(diagonal(back), Box::new(adjoint));
+        self.with(Node::Scaled(0.5, Box::new(Node::Sum(self.boxed(), Box::new(adjoint)))))
     }
 
     /// (I − T)⁻¹ as the Neumann series, summed until its terms fall below rounding.

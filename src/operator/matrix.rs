@@ -14,13 +14,17 @@
 //!
 //! Every sum runs in a fixed order, so results do not depend on the number of threads.
 
+mod columns;
 mod lanczos;
 mod spectrum;
+mod weight;
 
 use super::form_factor::FormFactors;
+pub use columns::{Columns, PatchColumns, Transposed};
 pub use lanczos::{Extremes, extremes};
 use rayon::prelude::*;
 pub use spectrum::{Spectral, spectral_radius};
+pub use weight::Weight;
 
 /// Something that can be applied to radiance per patch, and so can its adjoint.
 pub trait LinearOperator: Sync {
@@ -105,15 +109,19 @@ impl<'a> PatchOperator<'a> {
         y.into_iter().fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
     }
 
-    /// ⟨u, v⟩_w = Σ Aᵢ uᵢ vᵢ / ρᵢ, in which T is self-adjoint. Patches with ρ = 0 do not count: T u vanishes there.
+    /// A/ρ, in which T is self-adjoint.
+    pub fn weight(&self) -> Weight {
+        Weight::new(&self.factors.area, &self.rho)
+    }
+
+    /// ⟨u, v⟩_w in that weight.
     pub fn weighted_inner(&self, u: &[f64], v: &[f64]) -> f64 {
-        let terms = u.iter().zip(v).zip(self.rho.iter().zip(&self.factors.area));
-        terms.filter(|(_, (r, _))| **r > 0.0).map(|((u, v), (r, a))| a * u * v / r).sum()
+        self.weight().inner(u, v)
     }
 
     /// √⟨x, x⟩_w.
     pub fn weighted_norm(&self, x: &[f64]) -> f64 {
-        self.weighted_inner(x, x).sqrt()
+        self.weight().norm(x)
     }
 }
 

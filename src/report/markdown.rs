@@ -1,6 +1,6 @@
 //! Tables for the pages of the book: what a chapter found, as Markdown that its text includes.
 
-use super::table::{average, mark, outcome, significant};
+use super::table::{average, mark, outcome, plus_minus, significant};
 use crate::stats::{Comparison, Verdict};
 use crate::terms::{Estimate, Functional};
 
@@ -76,12 +76,7 @@ pub fn verdicts(name: &str, comparison: &Comparison) -> String {
 /// Mean over channels and half its 95 % interval, in multiples of 1/`unit`, to the first digit of the latter.
 fn value(estimate: &Estimate, unit: f64) -> String {
     let (mean, half) = average(estimate);
-    let (mean, half) = (mean * unit, half * unit);
-    if !(half > 0.0 && half.is_finite()) {
-        return significant(mean, 4);
-    }
-    let decimals = (-half.log10().floor()).max(0.0) as usize;
-    format!("{mean:.decimals$} ± {half:.decimals$}")
+    plus_minus(mean * unit, half * unit, 1)
 }
 
 #[cfg(test)]

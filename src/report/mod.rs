@@ -19,6 +19,7 @@
 //! | `summary.json` | [`summary`] |
 //! | `modes.svg`, `modes-painted.png` | [`modes`] |
 //! | `solvers.svg`, its PNG, `history.csv` | [`solvers`] |
+//! | the whole from its first terms | [`extrapolation`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
 
@@ -30,6 +31,7 @@ pub mod diagnosis;
 pub mod equilibrium;
 mod error;
 pub mod exr;
+pub mod extrapolation;
 mod files;
 pub mod html;
 mod interval;

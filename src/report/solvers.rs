@@ -5,7 +5,7 @@
 //! |---|---|
 //! | products | applications of T, or work worth as much, until the error is below the value at the head |
 //! | seconds | the same on the clock; of this machine, and of this run |
-//! | error | ‖x − L‖_w/‖L‖_w, in the weight A/ρ, against LU |
+//! | error | ‖x − L‖_w/‖L‖_w, in the weight A/ρ, against LU, or GMRES to rounding |
 //! | residual | ‖E − (I − T) x‖ in the area inner product, at the last step |
 
 use super::{
@@ -161,7 +161,7 @@ fn panels(page: &Page, histories: &[History], radius: f64, title: &str) -> Drawn
     let drawn: Vec<(usize, &History)> = histories.iter().enumerate().filter(|(_, h)| h.points.len() > 1).collect();
     let points = || drawn.iter().flat_map(|(_, h)| &h.points).filter(|p| p.error > 0.0);
     let last = points().map(|p| p.applications).fold(1.0, f64::max).ceil() as usize;
-    let y = Axis::log("error   ‖x − L‖ / ‖L‖", points().map(|p| p.error));
+    let y = Axis::log("relative error of x", points().map(|p| p.error));
     let x = Axis::counts("products with T", last, 12);
     let panel = Panel::draw(page, "Error against work", [84.0, 72.0, 600.0, 420.0], x, y)?;
     let end = last as f64 + 0.5;

@@ -116,6 +116,25 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}")
 }
 
+/// `value ± error`, the error with `digits` significant digits and the value with as many decimals; a value that is exact,
+/// or whose error is not known, alone.
+///
+/// ```
+/// use fredholm::report::table::plus_minus;
+/// assert_eq!(plus_minus(-1.00316, 0.00124, 2), "−1.0032 ± 0.0012");
+/// assert_eq!(plus_minus(12.3456, 2.5, 1), "12 ± 2");
+/// assert_eq!(plus_minus(0.5, 0.0, 2), "0.5000");
+/// ```
+pub fn plus_minus(value: f64, error: f64, digits: i32) -> String {
+    let text = if error > 0.0 && error.is_finite() {
+        let decimals = (f64::from(digits - 1) - error.log10().floor()).max(0.0) as usize;
+        format!("{value:.decimals$} ± {error:.decimals$}")
+    } else {
+        significant(value, 4)
+    };
+    text.replace('-', "−").replace("e−", "e-")
+}
+
 /// A count in thousands, millions or billions.
 ///
 /// ```

@@ -18,6 +18,7 @@ use super::{
     canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
     panel::Panel,
     plot::{Curve, Figure, GREY, figure},
+    table::plus_minus,
     typeset::Caption,
 };
 
@@ -69,7 +70,9 @@ fn panel(page: &Page, variance: &Variance) -> Drawn {
     let mut entries = vec![Entry::new(Sample::Heading, "Estimators, 95 % intervals")];
     entries.extend(variance.curves.iter().map(|f| {
         let label = match f.slope {
-            Some((slope, error)) => format!("{}: slope\u{a0}{}\u{a0}±\u{a0}{error:.2}", f.curve.label, signed(slope)),
+            Some((slope, error)) => {
+                format!("{}: slope\u{a0}{}", f.curve.label, plus_minus(slope, error, 2).replace(' ', "\u{a0}"))
+            }
             None => f.curve.label.clone(),
         };
         Entry::new(Sample::Mark(f.curve.look), label)
@@ -80,9 +83,4 @@ fn panel(page: &Page, variance: &Variance) -> Drawn {
     }
     page.legend((646.0, 68.0), 300.0, &entries)?;
     Ok(())
-}
-
-/// Two decimals with a real minus sign.
-fn signed(value: f64) -> String {
-    format!("{value:.2}").replace('-', "−")
 }

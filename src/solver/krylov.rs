@@ -1,7 +1,7 @@
 //! Iterations that look for the best x in E + span{T E, T² E, …}.
 //!
 //! ```text
-//! CG          self-adjoint in ⟨u, v⟩_w = Σ Aᵢ uᵢ vᵢ/ρᵢ:   ‖L − xₙ‖_e ≤ 2 qⁿ/(1 + q²ⁿ) ‖L − x₀‖_e,  ‖u‖_e² = ⟨u, (I − T) u⟩_w
+//! CG          self-adjoint in ⟨u, v⟩_w = Σ wᵢ uᵢ vᵢ:      ‖L − xₙ‖_e ≤ 2 qⁿ/(1 + q²ⁿ) ‖L − x₀‖_e,  ‖u‖_e² = ⟨u, (I − T) u⟩_w
 //! GMRES       any T:   ‖E − (I − T) xₙ‖_A is least, so never above that of the Neumann sum, ‖T^{n+1} E‖_A
 //!
 //! q = (√c − 1)/(√c + 1)        c = (1 − λ_min)/(1 − λ_max)
@@ -12,21 +12,23 @@
 //! | D^½ A^½ F A^−½ D^½ | the symmetrised T; in ⟨·,·⟩_w it is T itself | [`ConjugateGradients`] |
 //! | V, H | orthonormal basis of the Krylov space and T in it, by Arnoldi | [`Gmres`] |
 //!
-//! The weight 1/ρ leaves black patches out: there L = E, which the start x₀ = E has right already, and every direction
+//! The weight w = A/ρ leaves black patches out: there L = E, which the start x₀ = E has right already, and every direction
 //! T p vanishes there. The first residual, T E, costs one application.
 //!
 //! Reference: Hestenes and Stiefel (1952); Saad and Schultz (1986); Saad, *Iterative Methods for Sparse Linear Systems*
 //! (2003), chapter 6.
 
 use super::iteration::Iteration;
-use crate::operator::matrix::{LinearOperator, PatchOperator};
+use crate::operator::matrix::{LinearOperator, Weight};
 
 /// Conjugate gradients on I − T in the inner product in which T is self-adjoint.
 ///
-/// Needs A F symmetric and r(T) < 1: dense form factors. Sampled rows are not symmetric; use [`Gmres`] there.
+/// Needs r(T) < 1 and a weight in which T is self-adjoint: A/ρ for dense form factors, and for what is built of them by sums
+/// and powers. Sampled rows are self-adjoint only within their noise; use [`Gmres`] there.
 #[derive(Clone, Debug)]
-pub struct ConjugateGradients<'a> {
-    operator: &'a PatchOperator<'a>,
+pub struct ConjugateGradients<'a, T: ?Sized> {
+    operator: &'a T,
+    weight: Weight,
     x: Vec<f64>,
     residual: Vec<f64>,
     direction: Vec<f64>,
@@ -36,31 +38,31 @@ pub struct ConjugateGradients<'a> {
     applications: usize,
 }
 
-impl<'a> ConjugateGradients<'a> {
+impl<'a, T: LinearOperator + ?Sized> ConjugateGradients<'a, T> {
     /// Starts at E.
-    pub fn new(operator: &'a PatchOperator<'a>, emission: &[f64]) -> Self {
+    pub fn new(operator: &'a T, weight: Weight, emission: &[f64]) -> Self {
         let mut residual = vec![0.0; emission.len()];
         operator.apply(emission, &mut residual);
-        let square = operator.weighted_inner(&residual, &residual);
+        let square = weight.inner(&residual, &residual);
         let direction = residual.clone();
         let image = vec![0.0; emission.len()];
-        Self { operator, x: emission.to_vec(), residual, direction, image, square, applications: 1 }
+        Self { operator, weight, x: emission.to_vec(), residual, direction, image, square, applications: 1 }
     }
 }
 
-impl Iteration for ConjugateGradients<'_> {
+impl<T: LinearOperator + ?Sized> Iteration for ConjugateGradients<'_, T> {
     fn advance(&mut self) -> bool {
         if self.square == 0.0 {
             return false;
         }
-        let Self { operator, x, residual, direction, image, square, applications } = self;
+        let Self { operator, weight, x, residual, direction, image, square, applications } = self;
         operator.apply(direction, image);
         *applications += 1;
         image.iter_mut().zip(&*direction).for_each(|(y, p)| *y = p - *y); // (I − T) p
-        let step = *square / operator.weighted_inner(direction, image);
+        let step = *square / weight.inner(direction, image);
         x.iter_mut().zip(&*direction).for_each(|(x, p)| *x += step * p);
         residual.iter_mut().zip(&*image).for_each(|(r, y)| *r -= step * y);
-        let next = operator.weighted_inner(residual, residual);
+        let next = weight.inner(residual, residual);
         let turn = next / *square;
         direction.iter_mut().zip(&*residual).for_each(|(p, r)| *p = r + turn * *p);
         *square = next;

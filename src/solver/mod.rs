@@ -8,6 +8,7 @@
 //! |---|---|
 //! | term by term | [`Neumann`] |
 //! | by LU | [`direct`] |
+//! | to rounding without a matrix | [`settle`] |
 //! | step by step, to be watched ([`Watched`]) | [`PartialSums`], [`Jacobi`], [`Sor`], [`Southwell`], [`Chebyshev`], [`ConjugateGradients`], [`Gmres`] |
 //! | all of them beside each other | [`study`] |
 //! | by extrapolation of the series | [`accelerate`] |
@@ -19,6 +20,7 @@ mod iteration;
 mod krylov;
 pub mod neumann;
 mod radiosity;
+mod settle;
 mod southwell;
 mod stationary;
 pub mod study;
@@ -28,5 +30,6 @@ pub use iteration::{Iteration, Step, Watched, residual};
 pub use krylov::{ConjugateGradients, Gmres};
 pub use neumann::Neumann;
 pub use radiosity::{Radiosity, Solution};
+pub use settle::{Settled, settle};
 pub use southwell::Southwell;
 pub use stationary::{Jacobi, PartialSums, Sor};

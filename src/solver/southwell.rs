@@ -10,46 +10,52 @@
 //! | Aᵢ rᵢ | unshot power, up to π |
 //!
 //! With E ≥ 0 and T ≥ 0 the residual stays ≥ 0, every shot only adds, and x ≤ L throughout: the picture gets brighter and is
-//! never too bright. It starts at x₀ = 0, r = E, so nothing is shot yet; n shots are the work of one application.
+//! never too bright. It starts at x₀ = 0, r = E, so nothing is shot yet. A shot takes a column of T, and counts as its share
+//! of an application: 1/n of a matrix, the share of the rays that arrive of stored rays. Both are copied by columns first.
 //!
 //! Reference: Southwell (1940); Cohen, Chen, Wallace, Greenberg, *A Progressive Refinement Approach to Fast Radiosity Image
 //! Generation* (1988); Gortler, Cohen, Slusallek, *Radiosity and Relaxation Methods* (1994).
 
 use super::iteration::Iteration;
-use crate::operator::matrix::PatchOperator;
-use rayon::prelude::*;
+use super::stationary::diagonal;
+use crate::operator::matrix::{Columns, Transposed};
 
 /// Progressive shooting.
 #[derive(Clone, Debug)]
-pub struct Southwell<'a> {
-    operator: &'a PatchOperator<'a>,
-    /// F by columns: `n·j + i` is the share that i sees of j.
-    columns: Vec<f32>,
+pub struct Southwell<C> {
+    columns: C,
+    area: Vec<f64>,
+    diagonal: Vec<f64>,
     x: Vec<f64>,
     unshot: Vec<f64>,
-    /// The patch with the most unshot power.
-    next: usize,
+    /// Unshot power of every patch, as a tournament.
+    power: Tournament,
     shots: usize,
+    multiplications: usize,
     per_step: usize,
 }
 
-impl<'a> Southwell<'a> {
-    /// Starts with everything unshot; a step is n shots, the work of one application.
-    pub fn new(operator: &'a PatchOperator<'a>, emission: &[f64]) -> Self {
+impl<C: Columns> Southwell<C> {
+    /// Starts with everything unshot; a step is n shots, about the work of one application.
+    pub fn new<T: Transposed<Columns = C> + ?Sized>(operator: &T, emission: &[f64]) -> Self {
         Self::with_shots(operator, emission, emission.len())
     }
 
     /// The same with `per_step` shots in a step.
-    pub fn with_shots(operator: &'a PatchOperator<'a>, emission: &[f64], per_step: usize) -> Self {
-        let n = emission.len();
-        let mut columns = vec![0.0; n * n];
-        columns.par_chunks_mut(n.max(1)).enumerate().for_each(|(j, column)| {
-            column.iter_mut().enumerate().for_each(|(i, f)| *f = operator.factors.f[n * i + j]);
-        });
-        let (x, unshot) = (vec![0.0; n], emission.to_vec());
-        let mut out = Self { operator, columns, x, unshot, next: 0, shots: 0, per_step };
-        out.next = out.brightest();
-        out
+    pub fn with_shots<T: Transposed<Columns = C> + ?Sized>(operator: &T, emission: &[f64], per_step: usize) -> Self {
+        let (area, unshot) = (operator.area().to_vec(), emission.to_vec());
+        let power = Tournament::new(unshot.iter().zip(&area).map(|(r, a)| a * r.abs()));
+        Self {
+            columns: operator.columns(),
+            area,
+            diagonal: diagonal(operator),
+            x: vec![0.0; unshot.len()],
+            unshot,
+            power,
+            shots: 0,
+            multiplications: 0,
+            per_step,
+        }
     }
 
     /// E − (I − T) x as it is kept up to date.
@@ -57,33 +63,30 @@ impl<'a> Southwell<'a> {
         &self.unshot
     }
 
-    fn power(&self, i: usize) -> f64 {
-        self.operator.factors.area[i] * self.unshot[i].abs()
-    }
-
-    fn brightest(&self) -> usize {
-        (0..self.unshot.len()).fold(0, |best, i| if self.power(i) > self.power(best) { i } else { best })
-    }
-
     fn shoot(&mut self, j: usize) {
-        let n = self.x.len();
-        let column = &self.columns[n * j..n * (j + 1)];
-        let rho = &self.operator.rho;
-        let own = rho[j] * f64::from(column[j]);
-        let sent = self.unshot[j] / (1.0 - own);
+        let Self { columns, area, unshot, power, .. } = self;
+        let sent = unshot[j] / (1.0 - self.diagonal[j]);
         self.x[j] += sent;
-        self.unshot.iter_mut().zip(rho).zip(column).for_each(|((r, rho), f)| *r += rho * f64::from(*f) * sent);
-        self.unshot[j] = 0.0; // r − (1 − Tⱼⱼ) δ
+        columns.visit(j, |i, t| unshot[i] += t * sent);
+        unshot[j] = 0.0; // r − (1 − Tⱼⱼ) δ
+        let now = |i: usize| area[i] * unshot[i].abs();
+        if power.is_cheaper(columns.work(j)) {
+            columns.visit(j, |i, _| power.set(i, now(i)));
+            power.set(j, 0.0);
+        } else {
+            power.set_all((0..area.len()).map(now));
+        }
         self.shots += 1;
-        self.next = self.brightest();
+        self.multiplications += columns.work(j);
     }
 }
 
-impl Iteration for Southwell<'_> {
+impl<C: Columns> Iteration for Southwell<C> {
     fn advance(&mut self) -> bool {
         let before = self.shots;
-        while self.shots - before < self.per_step && self.unshot.get(self.next).is_some_and(|r| *r != 0.0) {
-            self.shoot(self.next);
+        while self.shots - before < self.per_step {
+            let Some(next) = self.power.first().filter(|j| self.unshot[*j] != 0.0) else { break };
+            self.shoot(next);
         }
         self.shots > before
     }
@@ -93,6 +96,57 @@ impl Iteration for Southwell<'_> {
     }
 
     fn applications(&self) -> f64 {
-        self.shots as f64 / self.x.len() as f64
+        self.multiplications as f64 / self.columns.whole().max(1) as f64
+    }
+}
+
+/// The largest of n numbers of which a few change at a time: a binary tree of maxima over the leaves `size..`.
+#[derive(Clone, Debug)]
+struct Tournament {
+    size: usize,
+    nodes: Vec<f64>,
+}
+
+impl Tournament {
+    fn new(values: impl ExactSizeIterator<Item = f64>) -> Self {
+        let size = values.len().next_power_of_two();
+        let mut out = Self { size, nodes: vec![0.0; 2 * size] };
+        out.set_all(values);
+        out
+    }
+
+    /// Whether so many leaves are sooner set one by one than all at once.
+    fn is_cheaper(&self, leaves: usize) -> bool {
+        leaves * self.size.ilog2() as usize <= self.size
+    }
+
+    fn set(&mut self, leaf: usize, value: f64) {
+        let mut at = self.size + leaf;
+        self.nodes[at] = value;
+        while at > 1 {
+            at /= 2;
+            let most = self.nodes[2 * at].max(self.nodes[2 * at + 1]);
+            if most == self.nodes[at] {
+                break;
+            }
+            self.nodes[at] = most;
+        }
+    }
+
+    fn set_all(&mut self, values: impl Iterator<Item = f64>) {
+        self.nodes[self.size..].iter_mut().zip(values).for_each(|(n, v)| *n = v);
+        for at in (1..self.size).rev() {
+            self.nodes[at] = self.nodes[2 * at].max(self.nodes[2 * at + 1]);
+        }
+    }
+
+    /// The first leaf with the largest value; none if all are 0.
+    fn first(&self) -> Option<usize> {
+        let most = *self.nodes.get(1).filter(|m| **m > 0.0)?;
+        let mut at = 1;
+        while at < self.size {
+            at = 2 * at + usize::from(self.nodes[2 * at] != most);
+        }
+        Some(at - self.size)
     }
 }

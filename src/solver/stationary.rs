@@ -141,6 +141,6 @@ impl<T: Rows + ?Sized> Iteration for Sor<'_, T> {
     }
 }
 
-fn diagonal<T: Rows + ?Sized>(t: &T) -> Vec<f64> {
+pub(super) fn diagonal<T: Rows + ?Sized>(t: &T) -> Vec<f64> {
     (0..t.len()).map(|i| t.entry(i, i)).collect()
 }

@@ -1,123 +1,63 @@
-//! Every solver on the same system, step by step, against the direct solution.
+//! Every solver on the same system, step by step, against its solution to rounding.
 //!
 //! ```text
-//! error of a step = ‖x − L‖_w / ‖L‖_w        ⟨u, v⟩_w = Σ Aᵢ uᵢ vᵢ/ρᵢ        L by LU
+//! error of a step = ‖x − L‖_w / ‖L‖_w        ⟨u, v⟩_w = Σ Aᵢ uᵢ vᵢ/ρᵢ        L by LU, or by GMRES to rounding
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | applications | products with T, or work worth as much: n² multiplications | [`Point::applications`] |
-//! | λ_min, λ_max | ends of the spectrum, by Lanczos; their cost is charged to Chebyshev and SOR | [`System::ends`] |
+//! | applications | products with T, or work worth as much | [`Point::applications`] |
+//! | λ_min, λ_max | ends of the spectrum, by Lanczos, once; Chebyshev and SOR are charged for them | [`System::ends`] |
 //!
 //! The weight 1/ρ is that in which T is self-adjoint: there the error of every stationary method falls by its eigenvalues,
 //! and the bounds of Chebyshev's iteration hold.
+//!
+//! T as sampled is self-adjoint within its noise only. There is no LU of it and no [`ConjugateGradients`]; the ends are those of
+//! its symmetric part, which hold the real parts of all eigenvalues.
+
+mod history;
 
 use super::direct::{self, Singular};
-use super::{Chebyshev, ConjugateGradients, Gmres, Iteration, Jacobi, PartialSums, Sor, Southwell, Watched};
-use crate::operator::matrix::{Extremes, LinearOperator, PatchOperator, extremes};
+use super::{Chebyshev, ConjugateGradients, Gmres, Iteration, Jacobi, PartialSums, Sor, Southwell, Watched, settle};
+use crate::operator::algebra::Expression;
+use crate::operator::matrix::{Extremes, PatchOperator, Transposed, Weight, extremes};
+use crate::operator::rays::RayOperator;
+pub use history::{History, Point, Solver};
 use std::time::Instant;
 
-/// A way to solve (I − T) L = E.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Solver {
-    /// Partial sums of the series.
-    Neumann,
-    /// Jacobi's iteration.
-    Jacobi,
-    /// Gauss–Seidel.
-    GaussSeidel,
-    /// Over-relaxation with Young's ω.
-    Sor,
-    /// Progressive shooting.
-    Southwell,
-    /// Chebyshev's semi-iteration with the ends found by Lanczos.
-    Chebyshev,
-    /// Conjugate gradients in the weight 1/ρ.
-    ConjugateGradients,
-    /// GMRES without restarts.
-    Gmres,
-    /// LU factorisation.
-    Lu,
-}
-
-impl Solver {
-    /// All of them; the direct one is last.
-    pub const ALL: [Self; 9] = [
-        Self::Neumann,
-        Self::Jacobi,
-        Self::GaussSeidel,
-        Self::Sor,
-        Self::Southwell,
-        Self::Chebyshev,
-        Self::ConjugateGradients,
-        Self::Gmres,
-        Self::Lu,
-    ];
-
-    /// Its name, as in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Neumann => "Neumann",
-            Self::Jacobi => "Jacobi",
-            Self::GaussSeidel => "Gauss–Seidel",
-            Self::Sor => "SOR",
-            Self::Southwell => "Southwell",
-            Self::Chebyshev => "Chebyshev",
-            Self::ConjugateGradients => "CG",
-            Self::Gmres => "GMRES",
-            Self::Lu => "LU",
-        }
-    }
-}
-
-/// One step of a solver.
+/// Where L comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
-    /// Steps so far.
-    pub step: usize,
-    /// Work so far, in products with T.
-    pub applications: f64,
-    /// ‖x‖_A.
-    pub norm: f64,
-    /// ‖E − (I − T) x‖_A.
-    pub residual: f64,
-    /// ‖x − L‖_w/‖L‖_w.
-    pub error: f64,
-    /// Seconds so far.
-    pub seconds: f64,
-}
-
-/// What a solver did.
-#[derive(Clone, Debug, PartialEq)]
-pub struct History {
-    /// Which one.
-    pub solver: Solver,
-    /// Its steps, the start first.
-    pub points: Vec<Point>,
-}
-
-impl History {
-    /// The first step with an error of at most `error`.
-    pub fn reaches(&self, error: f64) -> Option<&Point> {
-        self.points.iter().find(|p| p.error <= error)
-    }
+pub enum Reference {
+    /// LU.
+    Lu {
+        /// Its time.
+        seconds: f64,
+    },
+    /// GMRES, until its residual fell no more.
+    Gmres {
+        /// Products with T.
+        applications: usize,
+    },
 }
 
 /// (I − T) L = E with what is known about it.
 #[derive(Clone, Debug)]
-pub struct System<'a> {
+pub struct System<'a, T> {
     /// T of one channel.
-    pub operator: &'a PatchOperator<'a>,
+    pub operator: &'a T,
     /// E.
     pub emission: Vec<f64>,
     /// L.
     pub light: Vec<f64>,
-    /// Seconds that LU took.
-    pub direct_seconds: f64,
+    /// Who found L.
+    pub reference: Reference,
     /// λ_min and λ_max.
     pub ends: Extremes,
+    /// Products with T that they took.
+    pub ends_applications: usize,
     /// Seconds that they took.
     ends_seconds: f64,
+    weight: Weight,
 }
 
 /// When a study stops.
@@ -135,7 +75,10 @@ pub struct Limits<'a> {
 /// it saves.
 const ENDS: f64 = 1e-3;
 
-impl<'a> System<'a> {
+/// Steps that Lanczos may take.
+const STEPS: usize = 200;
+
+impl<'a> System<'a, PatchOperator<'a>> {
     /// Solves by LU and finds the ends of the spectrum.
     ///
     /// # Errors
@@ -143,10 +86,42 @@ impl<'a> System<'a> {
     pub fn new(operator: &'a PatchOperator<'a>, emission: Vec<f64>) -> Result<Self, Singular> {
         let clock = Instant::now();
         let light = direct::solve(operator, &emission)?.x;
-        let direct_seconds = clock.elapsed().as_secs_f64();
-        let clock = Instant::now();
-        let ends = extremes(operator, ENDS, 200);
-        Ok(Self { operator, emission, light, direct_seconds, ends, ends_seconds: clock.elapsed().as_secs_f64() })
+        let reference = Reference::Lu { seconds: clock.elapsed().as_secs_f64() };
+        let (clock, weight) = (Instant::now(), operator.weight());
+        let ends = extremes(operator, &weight, ENDS, STEPS);
+        let ends_seconds = clock.elapsed().as_secs_f64();
+        let ends_applications = ends.steps;
+        Ok(Self { operator, emission, light, reference, ends, ends_applications, ends_seconds, weight })
+    }
+}
+
+impl<'a> System<'a, RayOperator<'a>> {
+    /// Solves by GMRES to rounding and finds the ends of the symmetric part's spectrum.
+    ///
+    /// # Errors
+    /// [`Singular`] if the channel keeps all its light.
+    pub fn sampled(operator: &'a RayOperator<'a>, emission: Vec<f64>) -> Result<Self, Singular> {
+        let settled = settle(operator, &emission)?;
+        let reference = Reference::Gmres { applications: settled.applications };
+        let (clock, weight) = (Instant::now(), Weight::new(&operator.rays.area, &operator.rho));
+        let ends = extremes(&Expression::from(operator).symmetric_part(&weight), &weight, ENDS, STEPS);
+        let ends_seconds = clock.elapsed().as_secs_f64();
+        // T and its adjoint
+        let ends_applications = 2 * ends.steps;
+        Ok(Self { operator, emission, light: settled.x, reference, ends, ends_applications, ends_seconds, weight })
+    }
+}
+
+impl<T: Transposed> System<'_, T> {
+    /// The solvers that are possible here.
+    pub fn solvers(&self) -> Vec<Solver> {
+        Solver::ALL.into_iter().filter(|s| self.dense() || s.suits_rays()).collect()
+    }
+
+    /// ‖E − (I − T) L‖/‖E‖ in the area inner product.
+    pub fn residual(&self) -> f64 {
+        let left = super::residual(self.operator, &self.emission, &self.light);
+        self.operator.norm(&left) / self.operator.norm(&self.emission)
     }
 
     /// [a, b] that holds the spectrum, b < 1.
@@ -158,25 +133,28 @@ impl<'a> System<'a> {
     /// ‖x − L‖_w/‖L‖_w.
     pub fn error(&self, x: &[f64]) -> f64 {
         let difference: Vec<f64> = x.iter().zip(&self.light).map(|(x, l)| x - l).collect();
-        self.operator.weighted_norm(&difference) / self.operator.weighted_norm(&self.light)
+        self.weight.norm(&difference) / self.weight.norm(&self.light)
     }
 
-    /// Runs a solver until its error is small enough, or it can go no further.
+    /// Runs a solver until its error is small enough, or it can go no further. One that is not possible here has no steps.
     pub fn history(&self, solver: Solver, limits: Limits<'_>) -> History {
         let (t, e) = (self.operator, &self.emission);
         let radius = self.bracket().map(f64::abs).into_iter().fold(0.0, f64::max);
         // the ends are known before the first step, and have to be paid for
-        let informed = (self.ends.steps as f64, self.ends_seconds);
+        let informed = (self.ends_applications as f64, self.ends_seconds);
         let points = match solver {
             Solver::Neumann => self.watch(|| PartialSums::new(t, e), limits, (0.0, 0.0)),
             Solver::Jacobi => self.watch(|| Jacobi::new(t, e), limits, (0.0, 0.0)),
             Solver::GaussSeidel => self.watch(|| Sor::gauss_seidel(t, e), limits, (0.0, 0.0)),
-            Solver::Sor => self.watch(|| Sor::new(t, e, Sor::<PatchOperator<'_>>::young(radius)), limits, informed),
+            Solver::Sor => self.watch(|| Sor::new(t, e, Sor::<T>::young(radius)), limits, informed),
             Solver::Southwell => self.watch(|| Southwell::new(t, e), limits, (0.0, 0.0)),
             Solver::Chebyshev => self.watch(|| Chebyshev::new(t, e, self.bracket()), limits, informed),
-            Solver::ConjugateGradients => self.watch(|| ConjugateGradients::new(t, e), limits, (0.0, 0.0)),
+            Solver::ConjugateGradients if self.dense() => {
+                self.watch(|| ConjugateGradients::new(t, self.weight.clone(), e), limits, (0.0, 0.0))
+            }
+            Solver::ConjugateGradients => vec![],
             Solver::Gmres => self.watch(|| Gmres::new(t, e), limits, (0.0, 0.0)),
-            Solver::Lu => vec![self.direct()],
+            Solver::Lu => self.direct().into_iter().collect(),
         };
         History { solver, points }
     }
@@ -208,16 +186,21 @@ impl<'a> System<'a> {
         points
     }
 
+    fn dense(&self) -> bool {
+        matches!(self.reference, Reference::Lu { .. })
+    }
+
     /// LU: n³/3 multiplications, n/3 products with T.
-    fn direct(&self) -> Point {
+    fn direct(&self) -> Option<Point> {
+        let Reference::Lu { seconds } = self.reference else { return None };
         let residual = super::residual(self.operator, &self.emission, &self.light);
-        Point {
+        Some(Point {
             step: 1,
             applications: self.light.len() as f64 / 3.0,
             norm: self.operator.norm(&self.light),
             residual: self.operator.norm(&residual),
             error: 0.0,
-            seconds: self.direct_seconds,
-        }
+            seconds,
+        })
     }
 }

@@ -107,7 +107,7 @@ fn scene_of(command: &str) -> Option<Description> {
         Some(args::Command::Tour(run) | args::Command::Series(run) | args::Command::Render(run)) => run,
         Some(_) => return None,
     };
-    let options = Options { set: run.set.clone(), emit: run.emit.clone() };
+    let options = Options { set: run.shared.set.clone(), emit: run.shared.emit.clone() };
     Some(load::scene(&run.scene, &options).ok()?.description)
 }
 

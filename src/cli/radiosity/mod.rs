@@ -13,9 +13,11 @@ use fredholm::report::summary;
 use fredholm::report::typeset::Caption;
 use fredholm::solver::{self, study::Solver};
 use fredholm::terms::TermFilm;
+use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::{self, Matrix, MatrixError};
-use fredholm::worlds::realisation::Factors;
+use fredholm::worlds::realisation::{Factors, Realisation};
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 /// Arguments of `radiosity`.
 #[derive(Clone, Debug, Args)]
@@ -26,6 +28,8 @@ pub struct Radiosity {
     /// gauss-seidel, sor: patch by patch; southwell: progressive shooting, brightest first;
     /// chebyshev: needs the ends of the spectrum; cg: conjugate gradients in the weight 1/ρ;
     /// gmres; lu: the direct solve that all others are held against.
+    /// Stored rays (--factors rays) are self-adjoint only within their noise: there is no cg and no
+    /// lu, and all others are held against GMRES to rounding.
     #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
     pub solver: Option<SolverName>,
     /// red, green or blue, for --solver and --modes [default: the slowest]
@@ -70,10 +74,10 @@ pub enum SolverName {
 }
 
 impl SolverName {
-    /// What it stands for; LU is the reference and always there.
-    fn solvers(self) -> Vec<Solver> {
-        let one = match self {
-            Self::All => return Solver::ALL.to_vec(),
+    /// The one it stands for; none is all.
+    fn solver(self) -> Option<Solver> {
+        Some(match self {
+            Self::All => return None,
             Self::Neumann => Solver::Neumann,
             Self::Jacobi => Solver::Jacobi,
             Self::GaussSeidel => Solver::GaussSeidel,
@@ -82,9 +86,8 @@ impl SolverName {
             Self::Chebyshev => Solver::Chebyshev,
             Self::Cg => Solver::ConjugateGradients,
             Self::Gmres => Solver::Gmres,
-            Self::Lu => return vec![Solver::Lu],
-        };
-        vec![one, Solver::Lu]
+            Self::Lu => Solver::Lu,
+        })
     }
 }
 
@@ -119,27 +122,57 @@ pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
 }
 
 /// A scene, its matrix and where the results go.
-struct Laboratory {
+struct Laboratory<R = solver::Radiosity> {
     opened: Opened,
-    matrix: Matrix<solver::Radiosity>,
+    matrix: Matrix<R>,
+    /// Their number.
+    patches: usize,
     folder: PathBuf,
 }
 
 impl Laboratory {
-    /// Loads, meshes and computes form factors; `None` if interrupted.
+    /// Loads, meshes and computes form factors as a matrix; `None` if interrupted.
     fn new(run: &Run, what: &str) -> Result<Option<Self>, Failure> {
+        Laboratory::prepare(run, what, Factors::Dense, |opened, settings, progress, stop| {
+            let Opened { description, scene, .. } = opened;
+            let matrix = discrete::dense_matrix(description, scene, settings.patches, 0, progress, stop)?;
+            Ok((matrix.radiosity.patches.len(), matrix))
+        })
+    }
+}
+
+impl Laboratory<Realisation> {
+    /// The same in a form of choice.
+    fn held(run: &Run, what: &str, factors: Factors) -> Result<Option<Self>, Failure> {
+        Laboratory::prepare(run, what, factors, |opened, settings, progress, stop| {
+            let Opened { description, scene, .. } = opened;
+            let matrix = discrete::matrix(description, scene, settings.patches, settings, progress, stop)?;
+            Ok((matrix.radiosity.patches().len(), matrix))
+        })
+    }
+}
+
+impl<R> Laboratory<R> {
+    fn prepare(
+        run: &Run,
+        what: &str,
+        factors: Factors,
+        make: impl FnOnce(&Opened, &Settings, &Progress, &AtomicBool) -> Result<(usize, Matrix<R>), MatrixError>,
+    ) -> Result<Option<Self>, Failure> {
         let opened = open::run(run)?;
         let mut worlds = vec![WorldName::Radiosity];
         guard::suits_a_matrix(&opened.description, &mut worlds, true)?;
-        guard::fits_in_a_matrix(&opened.scene, Factors::Dense, &mut worlds, true)?;
-        let name = format!("{}-{what}", opened.description.name);
-        let folder = output::folder(run.out.as_deref(), &name, &opened.command, run.force)?;
-        let progress = Progress::new(run.quiet, |_: &TermFilm| {});
+        guard::fits_in_a_matrix(&opened.scene, factors, &mut worlds, true)?;
         let patches = run.patches.unwrap_or(600) as usize;
-        let matrix = discrete::dense_matrix(&opened.description, &opened.scene, patches, 0, &progress, stop_flag());
+        let settings = Settings { patches, factors, max_bounces: 0, seed: run.seed, ..Settings::default() };
+        guard::rows_fit_in_memory(&settings)?;
+        let name = format!("{}-{what}", opened.description.name);
+        let folder = output::folder(run.shared.out.as_deref(), &name, &opened.command, run.shared.force)?;
+        let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
+        let made = make(&opened, &settings, &progress, stop_flag());
         progress.finish();
-        match matrix {
-            Ok(matrix) => Ok(Some(Self { opened, matrix, folder })),
+        match made {
+            Ok((patches, matrix)) => Ok(Some(Self { opened, matrix, patches, folder })),
             Err(e) => {
                 let _ = std::fs::remove_dir(&folder); // only if it is empty
                 if !matches!(e, MatrixError::Stopped) {
@@ -159,7 +192,7 @@ impl Laboratory {
     }
 
     fn patches(&self) -> usize {
-        self.matrix.radiosity.patches.len()
+        self.patches
     }
 
     fn caption(&self, run: &Run) -> Caption {

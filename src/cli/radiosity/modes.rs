@@ -26,7 +26,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     let size = lab.opened.description.camera.size;
     guard::fits_in_memory(&settings, size)?;
     let stopped = || stop_flag().load(Ordering::Relaxed);
-    let progress = Progress::new(run.quiet, |_: &TermFilm| {});
+    let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
 
     // eigenvalues, channel by channel
     progress.begin(&format!("eigenvalues, {} patches", lab.patches()), 3);
@@ -85,7 +85,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     });
     write_atomically(&lab.folder.join("modes.json"), serde_json::to_string_pretty(&record)?.as_bytes())?;
     lab.sign(run, &files)?;
-    if run.json {
+    if run.shared.json {
         say(&serde_json::to_string_pretty(&record)?)?;
     } else {
         let mut blocks = vec![

@@ -1,16 +1,22 @@
 //! `--solver`: all ways to solve (I − T) L = E, step by step.
+//!
+//! | | a matrix | stored rays |
+//! |---|---|---|
+//! | solved | (I − T) L = E | (I − T) u = D, u = L − E, D the direct light by pairs of points |
+//! | reference | LU | GMRES to rounding |
 
 use super::super::progress::{Progress, stop_flag};
-use super::super::{Ending, Failure, paragraphs, say};
+use super::super::{Ending, Failure, args::FactorsName, guard, paragraphs, say};
 use super::{Laboratory, NAMES, Radiosity, SolverName};
-use fredholm::operator::matrix::{LinearOperator, Rows};
+use fredholm::operator::matrix::Transposed;
 use fredholm::report::solvers::{self, Extrapolated};
 use fredholm::report::write_atomically;
 use fredholm::solver::Neumann;
-use fredholm::solver::study::{History, Limits, System};
+use fredholm::solver::study::{History, Limits, Reference, Solver, System};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::Observer;
 use fredholm::worlds::discrete::MatrixError;
+use fredholm::worlds::realisation::{Factors, Realisation};
 use serde_json::{Value, json};
 use std::sync::atomic::Ordering;
 
@@ -20,97 +26,185 @@ const APPLICATIONS: f64 = 2000.0;
 
 /// Solves, writes and prints.
 pub fn run(args: &Radiosity, name: SolverName) -> Result<Ending, Failure> {
-    let Some(lab) = Laboratory::new(&args.run, "solvers")? else { return Ok(Ending::Interrupted) };
+    let factors = factors(args, name)?;
+    let Some(lab) = Laboratory::held(&args.run, "solvers", factors)? else { return Ok(Ending::Interrupted) };
     let channel = lab.channel(args.channel);
-    let radiosity = &lab.matrix.radiosity;
-    let operator = radiosity.operator(channel);
-    let system = System::new(&operator, radiosity.emission(channel)).map_err(|_| MatrixError::Singular)?;
-    let stopped = || stop_flag().load(Ordering::Relaxed);
-    let limits = Limits { error: ERROR, applications: APPLICATIONS, stopped: &stopped };
-    let progress = Progress::new(args.run.quiet, |_: &TermFilm| {});
-    let solvers = name.solvers();
-    progress.begin(&format!("solvers, {} patches", lab.patches()), solvers.len() as u64);
-    let mut histories: Vec<History> = vec![];
-    for solver in solvers {
-        let history = system.history(solver, limits);
-        progress.advance(1);
-        if !history.points.is_empty() {
-            histories.push(history);
+    let study = Study { args, lab: &lab, channel, name };
+    match &lab.matrix.radiosity {
+        Realisation::Dense(radiosity) => {
+            let operator = radiosity.operator(channel);
+            study.run(&System::new(&operator, radiosity.emission(channel)).map_err(|_| MatrixError::Singular)?)
+        }
+        Realisation::Rays(patches, rays) => {
+            let operator = rays.operator(patches.iter().map(|p| p.reflectance[channel]).collect());
+            let direct = (0..rays.n).map(|i| rays.direct(i)[channel]).collect();
+            study.run(&System::sampled(&operator, direct).map_err(|_| MatrixError::Singular)?)
         }
     }
-    progress.finish();
-    let files = write(args, &lab, &histories, channel)?;
-    let [low, high] = [system.ends.smallest, system.ends.largest];
-    let series = extrapolations(&system);
-    let mut record = record(args, &lab, channel, [low, high], solvers::machine(&histories));
-    record["extrapolations"] = solvers::machine_extrapolations(&series);
-    write_atomically(&lab.folder.join("solvers.json"), serde_json::to_string_pretty(&record)?.as_bytes())?;
-    if args.run.json {
-        say(&serde_json::to_string_pretty(&record)?)?;
-    } else {
-        let sees_itself = (0..operator.len()).any(|i| operator.entry(i, i) > 0.0);
-        let mut head = format!(
-            "{}\n{} patches, {} channel: eigenvalues {low:.5} to {high:.5}\n\
-             products with T, then seconds, until ‖x − L‖/‖L‖ in the weight A/ρ is below 1e-3, 1e-6, 1e-10\n\
-             LU counts as n/3 products; Chebyshev and SOR spend {} on the spectrum first",
-            lab.opened.command,
-            lab.patches(),
-            NAMES[channel],
-            system.ends.steps,
+}
+
+/// How form factors are held, if the solver can do with it.
+fn factors(args: &Radiosity, name: SolverName) -> Result<Factors, Failure> {
+    let wrong = |what: &str, help: &str| Err(Failure::Usage(format!("error: {what}\nhelp: {help}")));
+    if args.run.factors == Some(FactorsName::Both) {
+        return wrong("solvers work on one matrix at a time", "use --factors dense or --factors rays");
+    }
+    let factors = guard::factors(&args.run, args.run.patches.unwrap_or(600))?;
+    match (factors, name) {
+        (Factors::Rays(_), SolverName::Cg) => wrong(
+            "conjugate gradients need a self-adjoint T, and that of stored rays is so only within its noise",
+            "use --solver gmres or chebyshev, or --factors dense",
+        ),
+        (Factors::Rays(_), SolverName::Lu) => {
+            wrong("stored rays are no matrix that LU could take apart", "use --solver gmres, or --factors dense")
+        }
+        _ => Ok(factors),
+    }
+}
+
+/// What was asked for.
+struct Study<'a> {
+    args: &'a Radiosity,
+    lab: &'a Laboratory<Realisation>,
+    channel: usize,
+    name: SolverName,
+}
+
+impl Study<'_> {
+    fn run<T: Transposed>(&self, system: &System<'_, T>) -> Result<Ending, Failure> {
+        let Self { args, lab, .. } = self;
+        let stopped = || stop_flag().load(Ordering::Relaxed);
+        let limits = Limits { error: ERROR, applications: APPLICATIONS, stopped: &stopped };
+        let progress = Progress::new(args.run.shared.quiet, |_: &TermFilm| {});
+        let possible = system.solvers();
+        // the direct solution is the reference, and always there
+        let wanted = |s: &Solver| self.name.solver().is_none_or(|one| one == *s) || *s == Solver::Lu;
+        let solvers: Vec<Solver> = possible.into_iter().filter(wanted).collect();
+        progress.begin(&format!("solvers, {} patches", lab.patches), solvers.len() as u64);
+        let mut histories: Vec<History> = vec![];
+        for solver in solvers {
+            let history = system.history(solver, limits);
+            progress.advance(1);
+            if !history.points.is_empty() {
+                histories.push(history);
+            }
+        }
+        progress.finish();
+        let files = self.write(&histories)?;
+        let series = extrapolations(system);
+        let record = self.record(system, &histories, &series);
+        write_atomically(&lab.folder.join("solvers.json"), serde_json::to_string_pretty(&record)?.as_bytes())?;
+        if args.run.shared.json {
+            say(&serde_json::to_string_pretty(&record)?)?;
+        } else {
+            let extrapolated = format!(
+                "the series itself, Σ Aᵢ xᵢ/A of the first terms: error ×noise gain,\n\
+                 the latter if the terms had independent errors of equal relative size\n{}",
+                solvers::extrapolations(&series)
+            );
+            let written = format!("written to {}:\n{}", lab.folder.display(), files.join(", "));
+            say(&paragraphs(&[self.head(system), solvers::table(&histories), extrapolated, written]))?;
+        }
+        Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })
+    }
+
+    /// What is solved, and what the table counts.
+    fn head<T: Transposed>(&self, system: &System<'_, T>) -> String {
+        let [low, high] = [system.ends.smallest, system.ends.largest];
+        let (command, patches, channel) = (&self.lab.opened.command, self.lab.patches, NAMES[self.channel]);
+        let mut head = format!("{command}\n{patches} patches{}, {channel} channel: ", self.held());
+        head += match system.reference {
+            Reference::Lu { .. } => "eigenvalues",
+            Reference::Gmres { .. } => "(I − T) u = D for u = L − E;\neigenvalues of the symmetric part",
+        };
+        head += &format!(
+            " {low:.5} to {high:.5}\n\
+             products with T, then seconds, until ‖x − {x}‖/‖{x}‖ in the weight A/ρ is below 1e-3, 1e-6, 1e-10\n",
+            x = self.unknown()
         );
-        if !sees_itself {
+        let spent = system.ends_applications;
+        head += &match system.reference {
+            Reference::Lu { .. } => {
+                format!("LU counts as n/3 products; Chebyshev and SOR spend {spent} on the spectrum first")
+            }
+            Reference::Gmres { applications } => format!(
+                "Chebyshev and SOR spend {spent} on the spectrum first\n\
+                 held against GMRES to rounding: {applications} products, residual {:.1e} of ‖D‖; no CG, because T is\n\
+                 self-adjoint only within its noise, and no LU, because there is no matrix",
+                system.residual()
+            ),
+        };
+        let t = system.operator;
+        if (0..t.len()).all(|i| t.entry(i, i) == 0.0) {
             head += "\nno patch sees itself, so Jacobi is the Neumann series here";
         }
-        let table = solvers::table(&histories);
-        let extrapolated = format!(
-            "the series itself, Σ Aᵢ xᵢ/A of the first terms: error ×noise gain,\n\
-             the latter if the terms had independent errors of equal relative size\n{}",
-            solvers::extrapolations(&series)
-        );
-        let written = format!("written to {}:\n{}", lab.folder.display(), files.join(", "));
-        say(&paragraphs(&[head, table, extrapolated, written]))?;
+        head
     }
-    Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })
+
+    /// How the rows are held, where it is not as a matrix.
+    fn held(&self) -> String {
+        self.lab.matrix.sampling.map_or(String::new(), |s| format!(" of {} rays", s.per_row))
+    }
+
+    /// What x tends to.
+    fn unknown(&self) -> &'static str {
+        if self.lab.matrix.sampling.is_some() { "u" } else { "L" }
+    }
+
+    fn record<T: Transposed>(&self, system: &System<'_, T>, histories: &[History], series: &[Extrapolated]) -> Value {
+        let Self { args, lab, .. } = self;
+        let reference = match system.reference {
+            Reference::Lu { .. } => json!({ "solver": "LU", "residual": system.residual() }),
+            Reference::Gmres { applications } => {
+                json!({ "solver": "GMRES", "products": applications, "residual": system.residual() })
+            }
+        };
+        json!({
+            "command": lab.opened.command,
+            "scene": lab.opened.description.name,
+            "scene_hash": lab.opened.hash.clone(),
+            "seed": args.run.seed,
+            "threads": rayon::current_num_threads(),
+            "patches": lab.patches,
+            "rays": lab.matrix.sampling.map(|s| s.per_row),
+            "unknown": self.unknown(),
+            "channel": NAMES[self.channel],
+            "eigenvalues": {
+                "smallest": system.ends.smallest, "largest": system.ends.largest, "products": system.ends_applications,
+            },
+            "reference": reference,
+            "solvers": solvers::machine(histories),
+            "extrapolations": solvers::machine_extrapolations(series),
+        })
+    }
+
+    /// Writes the figure, the steps and the summary; returns the names of the files.
+    fn write(&self, histories: &[History]) -> Result<Vec<String>, Failure> {
+        let Self { args, lab, channel, .. } = self;
+        let equation = if lab.matrix.sampling.is_some() { "(I − T) u = D" } else { "(I − T) L = E" };
+        let (scene, channel_name) = (&lab.opened.description.name, NAMES[*channel]);
+        let title = format!("Solvers of {equation}: {scene}, {} patches{}, {channel_name}", lab.patches, self.held());
+        let mut files = vec!["solvers.json".to_string(), "summary.json".into()];
+        if histories.iter().any(|h| h.points.len() > 1) {
+            let radius = lab.matrix.spectral[*channel].radius;
+            solvers::draw(histories, radius, &title, &lab.caption(&args.run))?.write(&lab.folder, "solvers")?;
+            files.extend(["solvers.png", "solvers.svg"].map(String::from));
+        }
+        if let Some(name) = &args.history {
+            write_atomically(&lab.folder.join(name), solvers::csv(histories).as_bytes())?;
+            files.push(name.clone());
+        }
+        lab.sign(&args.run, &files)?;
+        Ok(files)
+    }
 }
 
 /// What extrapolation makes of the first terms: their means over all patches.
-fn extrapolations(system: &System<'_>) -> Vec<Extrapolated> {
+fn extrapolations<T: Transposed>(system: &System<'_, T>) -> Vec<Extrapolated> {
     const TERMS: [usize; 5] = [3, 5, 7, 9, 13];
     let t = system.operator;
     let ones = vec![1.0; t.len()];
     let mean = |x: &[f64]| t.inner(&ones, x) / t.inner(&ones, &ones);
     let terms: Vec<f64> = Neumann::new(t, system.emission.clone()).take(TERMS[4]).map(|x| mean(&x)).collect();
     TERMS.map(|n| Extrapolated::new(&terms[..n], mean(&system.light), system.ends.largest)).into()
-}
-
-fn record(args: &Radiosity, lab: &Laboratory, channel: usize, ends: [f64; 2], solvers: Value) -> Value {
-    json!({
-        "command": lab.opened.command,
-        "scene": lab.opened.description.name,
-        "scene_hash": lab.opened.hash.clone(),
-        "seed": args.run.seed,
-        "threads": rayon::current_num_threads(),
-        "patches": lab.patches(),
-        "channel": NAMES[channel],
-        "eigenvalues": { "smallest": ends[0], "largest": ends[1] },
-        "solvers": solvers,
-    })
-}
-
-/// Writes the figure, the steps and the summary; returns the names of the files.
-fn write(args: &Radiosity, lab: &Laboratory, histories: &[History], channel: usize) -> Result<Vec<String>, Failure> {
-    let scene = &lab.opened.description.name;
-    let title = format!("Solvers of (I − T) L = E: {scene}, {} patches, {}", lab.patches(), NAMES[channel]);
-    let mut files = vec!["solvers.json".to_string(), "summary.json".into()];
-    if histories.iter().any(|h| h.points.len() > 1) {
-        let radius = lab.matrix.spectral[channel].radius;
-        solvers::draw(histories, radius, &title, &lab.caption(&args.run))?.write(&lab.folder, "solvers")?;
-        files.extend(["solvers.png", "solvers.svg"].map(String::from));
-    }
-    if let Some(name) = &args.history {
-        write_atomically(&lab.folder.join(name), solvers::csv(histories).as_bytes())?;
-        files.push(name.clone());
-    }
-    lab.sign(&args.run, &files)?;
-    Ok(files)
 }

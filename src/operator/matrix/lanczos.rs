@@ -1,12 +1,13 @@
 //! Both ends of the spectrum of T, by the method of Lanczos, with error bounds.
 //!
 //! ```text
-//! T V = V H + β v eᵀ        V: orthonormal in ⟨u, v⟩_w = Σ Aᵢ uᵢ vᵢ/ρᵢ,  H: tridiagonal
+//! T V = V H + β v eᵀ        V: orthonormal in ⟨u, v⟩_w = Σ wᵢ uᵢ vᵢ,  H: tridiagonal
 //! H s = θ s     ⇒     some eigenvalue lies within β |s_last| of θ,  and  λ_min ≤ θ ≤ λ_max
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
+//! | w | the weight in which T is self-adjoint: A/ρ for a matrix over patches | [`Weight`] |
 //! | θ | Ritz value | [`Extremes::smallest`], [`Extremes::largest`] |
 //! | β \|s_last\| | residual ‖T u − θ u‖_w of its unit vector | [`Extremes::residual`] |
 //!
@@ -15,10 +16,10 @@
 //!
 //! Reference: Lanczos (1950); Parlett, *The Symmetric Eigenvalue Problem* (1980), chapter 13.
 
-use super::{LinearOperator, PatchOperator};
+use super::{LinearOperator, Weight};
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// The ends of the spectrum on the patches that reflect.
+/// The ends of the spectrum on the patches that count in the weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extremes {
     /// The smallest Ritz value: not below the smallest eigenvalue.
@@ -38,19 +39,23 @@ impl Extremes {
     }
 }
 
-/// Smallest and largest eigenvalue of T to a residual of `tolerance`, in at most `max_steps` applications.
+/// Smallest and largest eigenvalue of T, self-adjoint in w, to a residual of `tolerance`, in at most `max_steps`
+/// applications.
 ///
 /// ```
 /// use fredholm::operator::{form_factor::FormFactors, matrix::{PatchOperator, extremes}};
 /// let plates = FormFactors { n: 2, f: vec![0.0, 1.0, 1.0, 0.0], area: vec![1.0, 1.0], rays: 0 };
-/// let ends = extremes(&PatchOperator::new(&plates, vec![0.9, 0.4]), 1e-12, 10);
+/// let t = PatchOperator::new(&plates, vec![0.9, 0.4]);
+/// let ends = extremes(&t, &t.weight(), 1e-12, 10);
 /// assert!((ends.largest - 0.6).abs() < 1e-14 && (ends.smallest + 0.6).abs() < 1e-14);
 /// ```
-pub fn extremes(t: &PatchOperator<'_>, tolerance: f64, max_steps: usize) -> Extremes {
-    let mut v: Vec<f64> = t.rho.iter().enumerate().map(|(i, r)| r * scrambled(i as u64)).collect();
+pub fn extremes<T: LinearOperator + ?Sized>(t: &T, weight: &Weight, tolerance: f64, max_steps: usize) -> Extremes {
+    // ρ where T is diag(ρ) F: the first bounce of a room that is about uniformly lit
+    let rho = t.area().iter().zip(weight.values()).map(|(a, w)| if *w > 0.0 { a / w } else { 0.0 });
+    let mut v: Vec<f64> = rho.enumerate().map(|(i, r)| r * scrambled(i as u64)).collect();
     let (mut basis, mut diagonal, mut below): (Vec<Vec<f64>>, Vec<f64>, Vec<f64>) = (vec![], vec![], vec![]);
     let mut found = Extremes::default();
-    let mut length = t.weighted_norm(&v);
+    let mut length = weight.norm(&v);
     let start = length;
     for steps in 1..=max_steps {
         // nothing new is left: the Ritz values are eigenvalues
@@ -61,14 +66,14 @@ pub fn extremes(t: &PatchOperator<'_>, tolerance: f64, max_steps: usize) -> Extr
         basis.push(std::mem::take(&mut v));
         v = vec![0.0; t.len()];
         t.apply(&basis[steps - 1], &mut v);
-        diagonal.push(t.weighted_inner(&v, &basis[steps - 1]));
+        diagonal.push(weight.inner(&v, &basis[steps - 1]));
         for _ in 0..2 {
             for b in &basis {
-                let part = t.weighted_inner(&v, b);
+                let part = weight.inner(&v, b);
                 v.iter_mut().zip(b).for_each(|(v, b)| *v -= part * b);
             }
         }
-        length = t.weighted_norm(&v);
+        length = weight.norm(&v);
         found = ritz(&diagonal, &below, length);
         if found.residual.iter().all(|r| *r <= tolerance) {
             break;

@@ -26,12 +26,14 @@
 
 mod checks;
 mod direct;
+mod entries;
 mod operator;
 mod origin;
 mod solution;
 mod spectrum;
 
 pub use checks::RayChecks;
+pub use entries::RayColumns;
 pub use operator::{Coarse, Half, RayOperator};
 pub use solution::{Light, Solved};
 

@@ -9,8 +9,8 @@
 //! T_H is what the same rays give when every patch of I has its share of the rays of I by area, so a study in h costs no
 //! further ray.
 
-use super::{NOTHING, Rays};
-use crate::operator::matrix::LinearOperator;
+use super::Rays;
+use crate::operator::matrix::{LinearOperator, Rows};
 use rayon::prelude::*;
 
 /// Which rays of every row are used.
@@ -54,7 +54,7 @@ impl<'a> RayOperator<'a> {
     }
 
     /// The runs of ascending hits that are used of row i, and the weight of a ray.
-    fn runs(&self, i: usize) -> (impl Iterator<Item = &'a [u32]> + use<'a>, f64) {
+    pub(super) fn runs(&self, i: usize) -> (impl Iterator<Item = &'a [u32]> + use<'a>, f64) {
         let [a, b] = self.rays.row(i);
         let (runs, rays) = match self.half {
             Half::Both => ([a, b], self.rays.per_row),
@@ -71,11 +71,7 @@ impl LinearOperator for RayOperator<'_> {
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64]) {
-        y.par_iter_mut().with_min_len(64).enumerate().for_each(|(i, y)| {
-            let (runs, weight) = self.runs(i);
-            let met = |run: &[u32]| run.iter().filter(|h| **h != NOTHING).map(|h| x[*h as usize]).sum::<f64>();
-            *y = self.rho[i] * weight * runs.map(met).sum::<f64>();
-        });
+        y.par_iter_mut().with_min_len(64).enumerate().for_each(|(i, y)| *y = self.row_times(i, x));
     }
 
     fn apply_adjoint(&self, x: &[f64], y: &mut [f64]) {

@@ -14,7 +14,7 @@ use super::super::{
     half_width_95,
     panel::Panel,
     plot::{BLACK, Figure, GREY, Look, figure},
-    table::{Side, aligned, significant},
+    table::{Side, aligned, plus_minus, significant},
     typeset::{Caption, superscript},
 };
 use super::quoted;
@@ -54,8 +54,7 @@ impl Fall {
 
 /// `−1.003 ± 0.021`.
 fn slope_text(slope: Option<Slope>) -> String {
-    let text = slope.map(|s| format!("{:.3} ± {:.3}", s.slope, s.std_error));
-    text.map_or("–".into(), |t| t.replace('-', "−"))
+    slope.map_or("–".into(), |s| plus_minus(s.slope, s.std_error, 2))
 }
 
 fn number(x: f64) -> String {

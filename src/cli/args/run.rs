@@ -1,0 +1,204 @@
+//! What everything that renders takes.
+
+use super::parse::{duration, points, sampling, schedule, selection, size, technique};
+use crate::cli::open::Shared;
+use clap::{Args, ValueEnum};
+use fredholm::estimator::{Roulette, Technique};
+use fredholm::math::Points;
+use fredholm::scene::{Selection, bsdf::Sampling};
+use std::time::Duration;
+
+/// Roulette as it is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Schedule {
+    /// This schedule.
+    Given(Roulette),
+    /// The one with the most efficiency, which only the scene can tell.
+    Optimal,
+}
+
+/// A result as a choice on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum WorldName {
+    /// Each term by its own estimator
+    Terms,
+    /// The full path tracer
+    Path,
+    /// The matrix over patches
+    Radiosity,
+}
+
+/// Estimators of the terms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EstimatorName {
+    /// Each term from paths of its own
+    Single,
+    /// All terms from the prefixes of one path
+    Prefix,
+    /// A tree of paths
+    Branching,
+    /// All terms from particles, walked from the light
+    Light,
+    /// All terms from walks from both ends
+    Bidirectional,
+}
+
+/// What decides where rays look.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum GuideName {
+    /// The surface alone
+    Bsdf,
+    /// The matrix over patches
+    Radiosity,
+}
+
+/// Arguments of everything that renders.
+#[derive(Clone, Debug, Args)]
+pub struct Run {
+    /// Built-in scene, .toml, or .obj
+    #[arg(value_name = "SCENE", default_value = "cornell")]
+    pub scene: String,
+    /// Samples per pixel [default: 256]
+    ///
+    /// [default in a sweep over branching: 32]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub spp: Option<u32>,
+    /// Seed: same seed, same bits, for any number of threads
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Image size in pixels [default: the scene's; 192x192 for the tour]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// K: keep the terms k = 0..=K; k counts applications of T [default: 8]
+    ///
+    /// [default in a sweep over branching: 4]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=1000))]
+    pub max_bounces: Option<u16>,
+    /// Estimator of the terms: prefix, single, light, … [default: prefix]
+    ///
+    /// single: each term from paths of its own; prefix: all terms from the prefixes of one path;
+    /// branching: a tree, --branching children at every vertex; light: particles from the lights;
+    /// bidirectional: walks from both ends, joined in every way. The tour runs the first two.
+    #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
+    pub estimator: Option<EstimatorName>,
+    /// With --estimator bidirectional: every strategy apart
+    ///
+    /// Writes strategies.png, strategies-alone.png and strategies.exr, and prints a table:
+    /// for each term, what is found with s = 0 to k + 1 vertices walked from the light.
+    #[arg(long, verbatim_doc_comment)]
+    pub strategies: bool,
+    /// Children of every vertex of --estimator branching
+    ///
+    /// Term k takes N^k rays.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub branching: u32,
+    /// How samples lie in a pixel: independent, sobol
+    ///
+    /// independent: they know nothing of each other; sobol: Owen-scrambled Sobol points,
+    /// one scramble per replicate.
+    #[arg(long, default_value = "independent", value_parser = points, value_name = "NAME", verbatim_doc_comment)]
+    pub points: Points,
+    /// What tells rays where to look: bsdf, radiosity
+    ///
+    /// bsdf: the surface alone; radiosity: at Lambertian surfaces directions are drawn from what a
+    /// radiosity solution of the scene (--patches, default 1000) expects from them, mixed with
+    /// the cosine. Other surfaces scatter as before. The matrix is only a guide: it takes every
+    /// surface for Lambertian and glass for black; what it gets wrong costs noise, never a bias.
+    #[arg(
+        long,
+        value_enum,
+        value_name = "NAME",
+        default_value = "bsdf",
+        hide_possible_values = true,
+        verbatim_doc_comment
+    )]
+    pub guide: GuideName,
+    /// Time for each world of rays, instead of --spp: 30s, 5m
+    ///
+    /// Passes are added while they are expected to end in time; a guide's preparation counts.
+    /// The first pass, 16 samples per pixel, is always finished. The result is, bit for bit, that
+    /// of --spp with the number of samples that was reached.
+    #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with = "spp", verbatim_doc_comment)]
+    pub time: Option<Duration>,
+    /// How light is found: scatter, connect, mis, mis-power
+    ///
+    /// scatter: paths must hit it; connect: next-event estimation (and hits after a mirror);
+    /// mis: both, weighed by the balance heuristic; mis-power: by the power heuristic.
+    #[arg(long, default_value = "mis", value_parser = technique, value_name = "NAME", verbatim_doc_comment)]
+    pub technique: Technique,
+    /// How a light is selected: uniform, power
+    #[arg(long, default_value = "uniform", value_parser = selection, value_name = "NAME")]
+    pub lights: Selection,
+    /// How directions are drawn: uniform, cosine, bsdf
+    #[arg(long, default_value = "bsdf", value_parser = sampling, value_name = "NAME")]
+    pub sampling: Sampling,
+    /// Russian roulette: none, lecture, constant:Q@V, … (all: --help)
+    ///
+    /// [default: render: lecture; else none for k ≤ K, then albedo]
+    ///
+    /// q is the probability of TERMINATION, tested at vertex v = 0, 1, … after it is scored:
+    ///   none                 never; nothing longer than K is estimated
+    ///   lecture              q = 0, 0, then 0.5
+    ///   constant:Q[@V]       q = Q from vertex V on (2)
+    ///   table:q0,q1,…        as listed, the last for all that follow
+    ///   albedo[@V]           q = 1 − albedo from vertex V on (2)
+    ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
+    ///   contribution[@V]     with --guide: q = 1 − expected of the rest/expected of the pixel,
+    ///                        at most 0.9, from vertex V on (1); elsewhere as albedo
+    ///   optimal              the table with the most efficiency, found by a pilot of 2^18 paths
+    #[arg(long, value_name = "SCHEDULE", value_parser = schedule, verbatim_doc_comment)]
+    pub roulette: Option<Schedule>,
+    /// Which worlds to solve, with commas: terms, path, radiosity
+    ///
+    /// terms: each term by its own estimator; path: the full path tracer;
+    /// radiosity: the matrix over patches. [default: all; render and radiosity: their own]
+    #[arg(
+        long,
+        value_enum,
+        value_delimiter = ',',
+        value_name = "WORLD,…",
+        hide_possible_values = true,
+        verbatim_doc_comment
+    )]
+    pub worlds: Vec<WorldName>,
+    /// About how many patches the matrix has [default: 600; tour: 2400]
+    ///
+    /// Up to 20000 for a dense matrix, 2000000 for stored rays.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
+    pub patches: Option<u32>,
+    /// How form factors are held: dense, rays or both
+    ///
+    /// dense: a matrix, deterministic; rays: rows of stored rays, with an error bar;
+    /// both: the matrix, and how far rays on the same patches are from it.
+    /// [default: dense up to 10000 patches, rays beyond]
+    #[arg(long, value_enum, value_name = "HOW", hide_possible_values = true, verbatim_doc_comment)]
+    pub factors: Option<FactorsName>,
+    /// Rays of every patch, where they are stored [default: 256]
+    ///
+    /// 2 to 65536; powers of two are best.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=65_536))]
+    pub rays: Option<u32>,
+    /// Show patches as they are, without gathering a last bounce from them
+    #[arg(long)]
+    pub read_patches: bool,
+    /// Fit the order of convergence of the radiosity from three meshes
+    #[arg(long)]
+    pub orders: bool,
+    /// Scene, output, threads.
+    #[command(flatten)]
+    pub shared: Shared,
+    /// More about the matrix and the cost
+    #[arg(short, long)]
+    pub verbose: bool,
+}
+
+/// How form factors are held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FactorsName {
+    /// A matrix of deterministic form factors
+    Dense,
+    /// Rows of stored rays, with an error bar
+    Rays,
+    /// The matrix, and how far rays on the same patches are from it
+    Both,
+}

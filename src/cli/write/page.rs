@@ -1,0 +1,82 @@
+//! The page that shows a run.
+
+use super::Files;
+use crate::cli::{Failure, solve::Found};
+use fredholm::report::html::{self, Page, Plate};
+use fredholm::report::summary;
+
+pub(super) fn write_page(found: &Found, out: &Files, summary: &summary::Summary) -> Result<(), Failure> {
+    let path = |name: &str| out.path(name);
+    let [sheet, direct, decay, variance, z] =
+        ["terms.png", "direct.png", "decay.svg", "variance.svg", "z.png"].map(path);
+    let mut plates = vec![];
+    let three = out.path("three.png");
+    let candidates = [
+        (
+            "three.png",
+            Plate {
+                heading: "Three answers",
+                text: "The same picture by three programs: the sum of the terms, the full path tracer, and the solution of a linear \
+                       system over patches. One exposure for all.",
+                alt: "The scene by the series, by the path tracer and by radiosity",
+                path: &three,
+            },
+        ),
+        ("terms.png", Plate::terms(&sheet)),
+        ("direct.png", Plate::direct_and_indirect(&direct)),
+        ("decay.svg", Plate::decay(&decay)),
+        ("variance.svg", Plate::variance(&variance)),
+        (
+            "z.png",
+            Plate {
+                heading: "Where terms and path tracer differ",
+                text: "The difference of the two images in units of its standard error, pixel by pixel. Noise has no pattern here; \
+                       a bias would.",
+                alt: "Map of the standardised difference between the sum of the terms and the path tracer",
+                path: &z,
+            },
+        ),
+    ];
+    plates.extend(candidates.into_iter().filter(|(name, _)| out.has(name)).map(|(_, plate)| plate));
+    let s = &found.settings;
+    let facts = [
+        ("seed", s.seed.to_string()),
+        ("samples per pixel", summary.spp.to_string()),
+        ("size", format!("{}×{}", summary.width, summary.height)),
+        ("technique", s.technique.to_string()),
+        ("roulette of the terms (q = termination)", s.roulette.to_string()),
+        ("roulette of the path tracer", s.path_roulette.to_string()),
+        ("scene hash", found.hash.clone()),
+        ("seconds", format!("{:.1} on {} threads", summary.seconds, summary.threads)),
+    ];
+    let worlds = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
+    let page = Page {
+        title: found.description.name.clone(),
+        command: found.command.clone(),
+        facts: facts.map(|(k, v)| (k.to_string(), v)).to_vec(),
+        verdicts: &found.verdicts,
+        plates,
+        series: worlds.map(|s| (s.series.label.clone(), s.series.image())).collect(),
+        files: out.names.iter().map(|n| (n.clone(), meaning(n).to_string())).collect(),
+    };
+    html::write(&out.path("index.html"), &page)?;
+    Ok(())
+}
+
+fn meaning(name: &str) -> &'static str {
+    match name {
+        "terms.exr" => "every image with its standard error, float32, one layer each",
+        "summary.json" => "every number of this page, for programs",
+        "terms.png" => "contact sheet of the terms",
+        "direct.png" => "direct light beside the whole",
+        "path.png" => "the path tracer's image",
+        "three.png" => "the three answers at one exposure",
+        "radiosity.png" => "the matrix solution through the camera",
+        "z.png" => "standardised difference, terms − path tracer",
+        "index.html" => "this page",
+        n if n.starts_with("decay") => "decay of the terms",
+        n if n.starts_with("variance") => "variance against samples per pixel",
+        n if n.starts_with("partial") => "partial sum at the exposure of the whole",
+        _ => "one term, auto-exposed",
+    }
+}

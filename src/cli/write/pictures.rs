@@ -1,0 +1,134 @@
+//! The images of a run: every one as floats in one EXR, and what a reader looks at as PNG.
+
+use super::{Files, Pixels, attributes};
+use crate::cli::{Failure, solve::Found};
+use fredholm::report::sheet::{self, Cell, Sheet, direct_and_indirect, single};
+use fredholm::report::typeset::{Caption, superscript};
+use fredholm::report::{exr, picture, zmap};
+use fredholm::terms::TermImage;
+
+pub(super) fn write_exr(found: &Found, out: &mut Files, size: [u32; 2]) -> Result<(), Failure> {
+    let mut layers: Vec<(String, &Pixels)> = vec![];
+    fn push<'a>(layers: &mut Vec<(String, &'a Pixels)>, name: &str, image: &'a TermImage) {
+        layers.push((name.to_string(), &image.mean));
+        layers.push((format!("{name}_se"), &image.std_error));
+    }
+    let beauty = found.path.as_ref().or(found.terms.first()).map(|s| &s.total);
+    if let Some(image) = beauty.or(found.radiosity.as_ref().map(|r| &r.fine.total)) {
+        layers.push((String::new(), &image.mean));
+    }
+    if let Some(t) = found.terms.first() {
+        for (k, image) in t.terms.iter().enumerate() {
+            push(&mut layers, &format!("T{k:02}"), image);
+        }
+        push(&mut layers, "Tsum", &t.sum);
+        if !t.series.image().tail.is_none() {
+            push(&mut layers, "tail", &t.tail);
+            push(&mut layers, "Tall", &t.total);
+        }
+    }
+    if let Some(p) = &found.path {
+        push(&mut layers, "path", &p.total);
+    }
+    if let Some(r) = &found.radiosity {
+        for (k, image) in r.fine.terms.iter().enumerate() {
+            push(&mut layers, &format!("R{k:02}"), image);
+        }
+        push(&mut layers, "Rsum", &r.fine.sum);
+        push(&mut layers, "Rfull", &r.fine.total);
+    }
+    if layers.is_empty() {
+        return Ok(());
+    }
+    let layers: Vec<exr::Layer> = layers.iter().map(|(name, pixels)| exr::Layer { name, pixels }).collect();
+    exr::write(&out.add("terms.exr"), size[0] as usize, size[1] as usize, &layers, &attributes(found))?;
+    Ok(())
+}
+
+pub(super) fn write_pictures(found: &Found, out: &mut Files, size: [u32; 2], caption: &Caption) -> Result<(), Failure> {
+    let [w, h] = size.map(|s| s as usize);
+    let shown = found.terms.first().or(found.radiosity.as_ref().map(|r| &r.fine));
+    if let Some(s) = shown {
+        for (k, image) in s.terms.iter().enumerate() {
+            let (picture, _) = single(&format!("T{}E", superscript(k)), w, h, &image.mean, None)?;
+            picture.picture.write(&out.add(&format!("T{k:02}.png")))?;
+        }
+        let means: Vec<Pixels> = s.terms.iter().map(|t| t.mean.clone()).collect();
+        let note = format!("{}, {} spp", s.series.label, s.spp);
+        terms_sheet(size, &means, Some(&s.total.mean), caption, &note)?.picture.write(&out.add("terms.png"))?;
+        // partial sums at the exposure of the whole
+        let gain = Some(whole_gain(&s.total.mean, s.terms.first()));
+        let mut partial: Pixels = vec![[0.0; 3]; w * h];
+        for (k, image) in s.terms.iter().enumerate() {
+            add(&mut partial, &image.mean);
+            if k == 1 {
+                direct_and_indirect(w, h, &s.terms[0].mean, &partial, &s.total.mean, caption)?
+                    .picture
+                    .write(&out.add("direct.png"))?;
+            }
+            let (picture, _) = single(&format!("S{}", subscript(k)), w, h, &partial, gain)?;
+            picture.picture.write(&out.add(&format!("partial_{k:02}.png")))?;
+        }
+    }
+    if let Some(p) = &found.path {
+        let gain = whole_gain(&p.total.mean, shown.and_then(|s| s.terms.first()));
+        let (picture, _) = single("path tracer", w, h, &p.total.mean, Some(gain))?;
+        picture.picture.write(&out.add("path.png"))?;
+    }
+    if let (Some(t), Some(p)) = (found.terms.first(), &found.path) {
+        let z = z_values((&t.total.mean, &t.total.std_error), (&p.total.mean, &p.total.std_error));
+        zmap::draw("z of the whole image: terms − path tracer", w, h, &z, caption)?.picture.write(&out.add("z.png"))?;
+    }
+    if let Some(r) = &found.radiosity {
+        let gain = whole_gain(&r.fine.total.mean, r.fine.terms.first());
+        let (picture, _) = single("radiosity", w, h, &r.fine.total.mean, Some(gain))?;
+        picture.picture.write(&out.add("radiosity.png"))?;
+    }
+    if let (Some(t), Some(p), Some(r)) = (found.terms.first(), &found.path, &found.radiosity) {
+        let gain = Some(whole_gain(&p.total.mean, t.terms.first()));
+        let answers = [("the series: Σ TᵏE", t), ("the path tracer", p), ("the matrix: (I − T)⁻¹E", &r.fine)];
+        let cells = answers.map(|(label, s)| Cell { label: label.into(), pixels: &s.total.mean, gain });
+        sheet::grid("One scene, three answers", w, h, &cells, caption)?.picture.write(&out.add("three.png"))?;
+    }
+    Ok(())
+}
+
+/// The exposure of a whole image: without the lamps in view, where it is known where they are.
+fn whole_gain(pixels: &Pixels, emission: Option<&TermImage>) -> f64 {
+    emission.map_or_else(|| picture::auto_gain(pixels), |e| picture::auto_gain_beside_lamps(pixels, &e.mean))
+}
+
+fn subscript(k: usize) -> String {
+    const DIGITS: [char; 10] = ['₀', '₁', '₂', '₃', '₄', '₅', '₆', '₇', '₈', '₉'];
+    k.to_string().bytes().map(|b| DIGITS[usize::from(b - b'0')]).collect()
+}
+
+fn add(sum: &mut Pixels, image: &Pixels) {
+    for (s, v) in sum.iter_mut().zip(image) {
+        (0..3).for_each(|c| s[c] += v[c]);
+    }
+}
+
+pub(super) fn terms_sheet(
+    [w, h]: [u32; 2],
+    images: &[Pixels],
+    whole: Option<&Pixels>,
+    caption: &Caption,
+    note: &str,
+) -> Result<Sheet, Failure> {
+    let images: Vec<&[[f32; 3]]> = images.iter().map(Vec::as_slice).collect();
+    Ok(sheet::terms(w as usize, h as usize, &images, whole.map(Vec::as_slice), note, caption)?)
+}
+
+/// z per pixel of the mean over channels of a − b; its error takes the channels as fully correlated, which they nearly are.
+pub fn z_values(a: (&Pixels, &Pixels), b: (&Pixels, &Pixels)) -> Vec<f64> {
+    let sum = |v: &[f32; 3]| v.iter().map(|&x| f64::from(x)).sum::<f64>();
+    let z = |i: usize| {
+        let errors = (sum(&a.1[i]), sum(&b.1[i]));
+        let error = errors.0.hypot(errors.1);
+        let difference = sum(&a.0[i]) - sum(&b.0[i]);
+        // an error of 0 is that of a pixel that nothing has hit yet: not known
+        if errors.0 > 0.0 && errors.1 > 0.0 { difference / error } else { f64::NAN }
+    };
+    (0..a.0.len()).map(z).collect()
+}

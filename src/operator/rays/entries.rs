@@ -1,0 +1,71 @@
+//! Single rows and columns of stored rays.
+//!
+//! ```text
+//! (T x)ᵢ = (ρᵢ/N) Σₛ x_{hit(i,s)}        T eⱼ = Σ_{(i,s): hit(i,s) = j} (ρᵢ/N) eᵢ
+//! ```
+//!
+//! Rows are stored; columns are their transpose by counting: another u32 per ray.
+
+use super::{NOTHING, RayOperator};
+use crate::operator::matrix::{Columns, LinearOperator, Rows, Transposed};
+
+impl Rows for RayOperator<'_> {
+    fn entry(&self, i: usize, j: usize) -> f64 {
+        let (runs, weight) = self.runs(i);
+        let count =
+            |run: &[u32]| run.partition_point(|h| *h as usize <= j) - run.partition_point(|h| (*h as usize) < j);
+        self.rho[i] * weight * runs.map(count).sum::<usize>() as f64
+    }
+
+    fn row_times(&self, i: usize, x: &[f64]) -> f64 {
+        let (runs, weight) = self.runs(i);
+        // what met nothing sorts last
+        let met = |run: &[u32]| run.iter().take_while(|h| **h != NOTHING).map(|h| x[*h as usize]).sum::<f64>();
+        self.rho[i] * weight * runs.map(met).sum::<f64>()
+    }
+}
+
+/// `diag(ρ) F` of stored rays by columns.
+#[derive(Clone, Debug)]
+pub struct RayColumns {
+    /// What a ray of each row counts: ρᵢ/N.
+    weight: Vec<f64>,
+    /// Column j is `rows[first[j]..first[j + 1]]`.
+    first: Vec<usize>,
+    /// The row of every ray that met something, by what it met.
+    rows: Vec<u32>,
+}
+
+impl Transposed for RayOperator<'_> {
+    type Columns = RayColumns;
+
+    fn columns(&self) -> RayColumns {
+        let n = self.len();
+        let hits = |i: usize| self.runs(i).0.flatten().copied().filter(|h| *h != NOTHING).map(|h| h as usize);
+        let mut first = vec![0; n + 1];
+        (0..n).flat_map(hits).for_each(|j| first[j + 1] += 1);
+        (0..n).for_each(|j| first[j + 1] += first[j]);
+        let (mut next, mut rows) = (first.clone(), vec![0; first[n]]);
+        for i in 0..n {
+            for j in hits(i) {
+                rows[next[j]] = i as u32;
+                next[j] += 1;
+            }
+        }
+        RayColumns { weight: (0..n).map(|i| self.rho[i] * self.runs(i).1).collect(), first, rows }
+    }
+}
+
+impl Columns for RayColumns {
+    fn visit(&self, j: usize, mut visit: impl FnMut(usize, f64)) {
+        self.rows[self.first[j]..self.first[j + 1]].iter().for_each(|i| visit(*i as usize, self.weight[*i as usize]));
+    }
+
+    fn work(&self, j: usize) -> usize {
+        self.first[j + 1] - self.first[j]
+    }
+
+    fn whole(&self) -> usize {
+        self.rows.len()
+    }
+}
