@@ -9,7 +9,7 @@
 //! T_H is what the same rays give when every patch of I has its share of the rays of I by area, so a study in h costs no
 //! further ray.
 
-use super::{NOTHING, Rays};
+use super::{Hit, Rays};
 use crate::operator::matrix::LinearOperator;
 use rayon::prelude::*;
 
@@ -54,7 +54,7 @@ impl<'a> RayOperator<'a> {
     }
 
     /// The runs of ascending hits that are used of row i, and the weight of a ray.
-    fn runs(&self, i: usize) -> (impl Iterator<Item = &'a [u32]> + use<'a>, f64) {
+    fn runs(&self, i: usize) -> (impl Iterator<Item = &'a [Hit]> + use<'a>, f64) {
         let [a, b] = self.rays.row(i);
         let (runs, rays) = match self.half {
             Half::Both => ([a, b], self.rays.per_row),
@@ -73,7 +73,7 @@ impl LinearOperator for RayOperator<'_> {
     fn apply(&self, x: &[f64], y: &mut [f64]) {
         y.par_iter_mut().with_min_len(64).enumerate().for_each(|(i, y)| {
             let (runs, weight) = self.runs(i);
-            let met = |run: &[u32]| run.iter().filter(|h| **h != NOTHING).map(|h| x[*h as usize]).sum::<f64>();
+            let met = |run: &[Hit]| run.iter().filter(|h| **h != Hit::NOTHING).map(|h| x[h.patch()]).sum::<f64>();
             *y = self.rho[i] * weight * runs.map(met).sum::<f64>();
         });
     }
@@ -92,11 +92,9 @@ impl LinearOperator for RayOperator<'_> {
                     continue;
                 }
                 for run in runs {
-                    let from = run.partition_point(|h| (*h as usize) < first);
-                    run[from..]
-                        .iter()
-                        .take_while(|h| (**h as usize) < end)
-                        .for_each(|h| y[*h as usize - first] += weight);
+                    let from = run.partition_point(|h| h.patch() < first);
+                    let own = run[from..].iter().map(|h| h.patch()).take_while(|j| *j < end);
+                    own.for_each(|j| y[j - first] += weight);
                 }
             }
             y.iter_mut().zip(&self.rays.area[first..]).for_each(|(y, a)| *y /= a);
