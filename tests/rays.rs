@@ -6,8 +6,8 @@ use discrete::*;
 use fredholm::operator::form_factor::{FormFactors, Stopped, Watch};
 use fredholm::operator::matrix::{LinearOperator, PatchOperator, spectral_radius};
 use fredholm::operator::patches::Patches;
-use fredholm::operator::rays::{Coarse, Half, Light, NOTHING, Rays};
-use fredholm::scene::{Scene, description::*};
+use fredholm::operator::rays::{Coarse, Half, Hit, Light, Rays, record};
+use fredholm::scene::{Scene, description::*, load};
 use fredholm::solver::Radiosity;
 use fredholm::stats::{critical, ledger};
 use glam::DVec3;
@@ -36,7 +36,7 @@ fn closed_rooms_close_exactly() {
         // a ray of a wall from under the block or the ball would meet a black back; what of block and ball is outside
         // the room sees nothing, and so it should
         let walls: Vec<usize> = (0..rays.n).filter(|i| patches[*i].primitive < 6).collect();
-        let open = walls.iter().filter(|i| rays.row(**i).iter().any(|half| half.contains(&NOTHING))).count();
+        let open = walls.iter().filter(|i| rays.row(**i).iter().any(|half| half.contains(&Hit::NOTHING))).count();
         assert_eq!((open, rays.lost), (0, 0));
         let checks = Light { patches: &patches, rays: &rays }.checks();
         assert_eq!(checks.row_sum_max, 1.0);
@@ -64,7 +64,7 @@ fn a_furnace_keeps_its_share() {
         let mean = term.iter().zip(&rays.area).map(|(t, a)| *a * t.x).sum::<f64>() / 6.0;
         assert!((mean / expected - 1.0).abs() < 0.02, "{k}: {mean} {expected}");
     }
-    let radius = light.spectral_radius(&vec![DVec3::ONE; rays.n], 1e-12, 100);
+    let radius = light.spectral_radius(&vec![record(DVec3::ONE); rays.n], 1e-12, 100);
     assert!((radius[0].radius - 0.5).abs() < 1e-6, "{}", radius[0].radius);
 }
 
@@ -165,7 +165,7 @@ fn direct_light_by_pairs_pays() {
     let r = Radiosity::new(patches.clone(), dense);
     let exact = reflected(&patches, &r.solve().unwrap().radiance);
     let size = norm(&patches, exact.iter().copied());
-    let rays = shoot(&scene, &patches, 512, 5);
+    let rays = shoot(&scene, &patches, 1024, 5);
     let light = Light { patches: &patches, rays: &rays };
     let error = |u: &[f64]| norm(&patches, u.iter().zip(&exact).map(|(u, x)| u - x)) / size;
     let apart = error(&reflected(&patches, &light.solve(1e-7, 200).radiance));
@@ -198,8 +198,8 @@ fn coarse_operators_are_what_the_same_rays_give() {
     let mut counted = vec![0.0; n * n];
     for (i, p) in patches.iter().enumerate() {
         let weight = p.reflectance.x * p.area / coarse.area()[parent[i] as usize] / rays.per_row as f64;
-        for hit in rays.row(i).into_iter().flatten().filter(|h| **h != NOTHING) {
-            counted[parent[i] as usize * n + parent[*hit as usize] as usize] += weight;
+        for hit in rays.row(i).into_iter().flatten().filter(|h| **h != Hit::NOTHING) {
+            counted[parent[i] as usize * n + parent[hit.patch()] as usize] += weight;
         }
     }
     for j in 0..n {
@@ -222,7 +222,7 @@ fn the_spectral_radius_is_that_of_the_matrix() {
     let (patches, dense) = discretise(&scene, 600);
     let rays = shoot(&scene, &patches, 1024, 4);
     let light = Light { patches: &patches, rays: &rays };
-    let start: Vec<DVec3> = patches.iter().map(|p| p.reflectance).collect();
+    let start: Vec<_> = patches.iter().map(|p| record(p.reflectance)).collect();
     let sampled = light.spectral_radius(&start, 1e-9, 400);
     for (c, sampled) in sampled.iter().enumerate() {
         let rho: Vec<f64> = patches.iter().map(|p| p.reflectance[c]).collect();
@@ -259,4 +259,100 @@ fn rows_do_not_depend_on_threads_and_can_be_stopped() {
     let stop = AtomicBool::new(true);
     let watch = Watch { progress: None, stop: Some(&stop) };
     assert_eq!(Rays::new(&patches, &Scene::new(&scene), 64, 2, watch), Err(Stopped));
+}
+
+#[test]
+fn records_change_no_more_than_rounding() {
+    // terms and hits are kept in few bytes; the same series with f64 throughout, one channel at a time
+    let scene = clutter();
+    let patches = Patches::new(&scene, 300).unwrap();
+    let rays = shoot(&scene, &patches, 128, 6);
+    let light = Light { patches: &patches, rays: &rays };
+    let solved = light.solve(1e-9, 300);
+    for c in 0..3 {
+        let t = rays.operator(patches.iter().map(|p| p.reflectance[c]).collect());
+        let mut term: Vec<f64> = light.direct().iter().map(|d| d[c]).collect();
+        let mut u = term.clone();
+        for _ in 0..solved.steps + 20 {
+            let mut next = vec![0.0; rays.n];
+            t.apply(&term, &mut next);
+            u.iter_mut().zip(&next).for_each(|(u, x)| *u += x);
+            term = next;
+        }
+        let found: Vec<f64> = solved.radiance.iter().zip(patches.iter()).map(|(l, p)| l[c] - p.emission[c]).collect();
+        let off = norm(&patches, u.iter().zip(&found).map(|(a, b)| a - b)) / norm(&patches, u.iter().copied());
+        assert!(off > 0.0 && off < 2e-7, "{c}: {off:e}");
+    }
+}
+
+#[test]
+fn the_bar_covers_what_other_seeds_say() {
+    // two independent solutions differ by √2 of the error of one
+    let scene = cornell();
+    let patches = Patches::new(&scene, 2000).unwrap();
+    let solve = |seed| {
+        let rays = shoot(&scene, &patches, 256, seed);
+        let light = Light { patches: &patches, rays: &rays };
+        let radiance = light.solve(1e-7, 200).radiance;
+        let bar = norm(&patches, light.noise(&radiance).iter().map(|d| d.x));
+        (reflected(&patches, &radiance), bar)
+    };
+    let runs: Vec<_> = (0..4).map(solve).collect();
+    for (a, b) in [(0, 1), (1, 2), (2, 3), (3, 0)] {
+        let ((u, bar), (v, _)) = (&runs[a], &runs[b]);
+        let error = norm(&patches, u.iter().zip(v).map(|(u, v)| u - v)) / 2f64.sqrt();
+        // of 2000 patches: both are known to about two per cent
+        assert!(error < *bar && *bar < 1.6 * error, "{a} {b}: error {error:e}, bar {bar:e}");
+        // seeds that agree by accident would say nothing
+        assert!(error > 5e-3 * norm(&patches, u.iter().copied()));
+    }
+}
+
+#[test]
+fn a_mesh_of_many_triangles_loses_no_rays() {
+    // a closed box of triangles about a ball of triangles, as an exporter would write them
+    let folder = tempfile::tempdir().unwrap();
+    let (mut text, mut vertices) = (String::from("mtllib a.mtl\n"), 0);
+    let mut sheet = |name: &str, m: usize, at: &dyn Fn(f64, f64) -> DVec3| {
+        text += &format!("o {name}\nusemtl {name}\n");
+        for i in 0..(m + 1) * (m + 1) {
+            let p = at((i % (m + 1)) as f64 / m as f64, (i / (m + 1)) as f64 / m as f64);
+            text += &format!("v {} {} {}\n", p.x, p.y, p.z);
+        }
+        for i in 0..m * m {
+            let a = vertices + 1 + i / m * (m + 1) + i % m;
+            text += &format!("f {a} {} {}\nf {a} {} {}\n", a + 1, a + m + 2, a + m + 2, a + m + 1);
+        }
+        vertices += (m + 1) * (m + 1);
+    };
+    sheet("wall", 12, &|s, t| v(s, 0.0, 1.0 - t));
+    sheet("lamp", 12, &|s, t| v(s, 1.0, t));
+    sheet("wall", 12, &|s, t| v(s, t, 0.0));
+    sheet("wall", 12, &|s, t| v(1.0 - s, t, 1.0));
+    sheet("wall", 12, &|s, t| v(0.0, t, 1.0 - s));
+    sheet("wall", 12, &|s, t| v(1.0, t, s));
+    sheet("ball", 24, &|s, t| {
+        let (a, b) = (std::f64::consts::TAU * s, std::f64::consts::PI * (0.02 + 0.96 * t));
+        v(0.5 + 0.3 * b.sin() * a.cos(), 0.45 - 0.3 * b.cos(), 0.5 - 0.3 * b.sin() * a.sin())
+    });
+    std::fs::write(folder.path().join("a.obj"), text).unwrap();
+    let mtl = "newmtl wall\nKd 0.6 0.5 0.4\nnewmtl ball\nKd 0.5 0.6 0.7\nnewmtl lamp\nKd 0.2 0.2 0.2\nKe 1 1 1\n";
+    std::fs::write(folder.path().join("a.mtl"), mtl).unwrap();
+    let path = folder.path().join("a.obj");
+    let scene = load::scene(path.to_str().unwrap(), &load::Options::default()).unwrap().description;
+    let patches = Patches::new(&scene, 12_000).unwrap();
+    assert_eq!(patches.primitives().len(), 2 * (6 * 144 + 576));
+    assert!((patches.len() as f64 / 12_000.0 - 1.0).abs() < 0.2 && patches.covered_area() == 0.0, "{}", patches.len());
+    let rays = shoot(&scene, &patches, 64, 2);
+    let checks = Light { patches: &patches, rays: &rays }.checks();
+    assert!(checks.lost < 1e-5, "{}", checks.lost);
+    // what starts inside the room stays there; the outside of its walls sees nothing
+    let inside = |i: usize| (patches[i].centre + 1e-4 * patches[i].normal - 0.5).abs().max_element() < 0.5;
+    let met = |i: usize| rays.row(i).into_iter().flatten().filter(|h| **h != Hit::NOTHING).count();
+    let [mut within, mut out] = [0; 2];
+    for i in 0..rays.n {
+        *(if inside(i) { &mut within } else { &mut out }) += 1;
+        assert!(if inside(i) { met(i) >= 63 } else { met(i) == 0 }, "{i}: {}", met(i));
+    }
+    assert!(within > out && out > 2000, "{within} {out}");
 }

@@ -182,10 +182,10 @@ pub fn factors(run: &Run, patches: u32) -> Result<Factors, Failure> {
 /// Rows, patches, terms and solution are held at once.
 pub fn rows_fit_in_memory(settings: &Settings) -> Result<(), Failure> {
     let n = settings.patches as u64;
-    // measured: a patch of the mesh takes about 400 bytes, a vector over the patches 24
+    // measured: a patch of the mesh takes about 400 bytes, a vector over the patches 24, a stored ray 3
     let row = match settings.factors {
         Factors::Dense => 4 * n,
-        Factors::Rays(rays) => 4 * u64::from(rays),
+        Factors::Rays(rays) => 3 * u64::from(rays),
     };
     let bytes = n * (row + 400 + 24 * (settings.max_bounces as u64 + 12));
     let Some(free) = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| available(&text)) else {

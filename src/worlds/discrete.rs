@@ -10,7 +10,7 @@ use crate::operator::SceneTransport;
 use crate::operator::form_factor::{FormFactors, Invariants, Sampling, Watch};
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
-use crate::operator::rays::{Light, Rays};
+use crate::operator::rays::{Light, Rays, Record, record};
 use crate::scene::{Description, Scene, SceneError};
 use crate::solver::{Radiosity, Solution};
 use crate::terms::{TermImage, World};
@@ -175,7 +175,9 @@ fn by_rays(patches: Patches, rays: Rays, max_bounces: usize) -> Result<Matrix, M
         largest: c.largest,
     };
     let terms = light.terms(max_bounces);
-    let radiosity = Realisation::Rays(patches, rays);
+    let traced = (rays.n * rays.per_row) as u64;
+    drop(rays);
+    let radiosity = Realisation::Rays(patches, traced);
     let surface = terms.iter().map(|t| radiosity.surface_mean(t)).collect();
     Ok(Matrix { spectral, norms: None, radiosity, terms, solution, invariants, sampling: Some(sampling), surface })
 }
@@ -183,9 +185,9 @@ fn by_rays(patches: Patches, rays: Rays, max_bounces: usize) -> Result<Matrix, M
 fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], RaySampling), MatrixError> {
     let solved = light.solve(LEFT, MOST_STEPS);
     // the last term is close to the top mode; where the series has died out, start from ρ
-    let start: Vec<DVec3> = light.patches.iter().map(|p| p.reflectance).collect();
-    let died = light.norm(&solved.last).cmple(DVec3::ZERO).any();
-    let spectral = light.spectral_radius(if died { &start } else { &solved.last }, 1e-7, 500);
+    let died = (0..3).any(|c| solved.last.iter().all(|x| x[c] == 0.0));
+    let albedo = || light.patches.iter().map(|p| record(p.reflectance)).collect::<Vec<Record>>();
+    let spectral = light.spectral_radius(&if died { albedo() } else { solved.last }, 1e-7, 500);
     if spectral.iter().any(|s| s.radius >= KEEPS_ALL) {
         return Err(MatrixError::Singular);
     }

@@ -2,14 +2,14 @@
 //!
 //! | | dense | rays |
 //! |---|---|---|
-//! | F | [`FormFactors`](crate::operator::form_factor::FormFactors), n² numbers | [`Rays`], N hits a row |
+//! | F | [`FormFactors`](crate::operator::form_factor::FormFactors), n² numbers | [`Rays`](crate::operator::rays::Rays), N hits a row, let go once everything is solved |
 //! | good to | about 10⁴ patches | 10⁶ |
 //! | solve | LU | Neumann series |
 //! | error beside that of the mesh | visibility samples, not stated | the bar of the two halves, stated |
 
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
-use crate::operator::rays::{Light, RayChecks, Rays};
+use crate::operator::rays::RayChecks;
 use crate::solver::Radiosity;
 use glam::DVec3;
 
@@ -28,8 +28,9 @@ pub enum Factors {
 pub enum Realisation {
     /// The matrix.
     Dense(Radiosity),
-    /// Rays.
-    Rays(Patches, Rays),
+    /// The mesh that rays were traced on, and how many. They are three quarters of the memory, and nothing reads them after
+    /// the solve.
+    Rays(Patches, u64),
 }
 
 impl Realisation {
@@ -49,19 +50,11 @@ impl Realisation {
         }
     }
 
-    /// The rays, if they are stored.
-    pub fn light(&self) -> Option<Light<'_>> {
-        match self {
-            Self::Dense(_) => None,
-            Self::Rays(patches, rays) => Some(Light { patches, rays }),
-        }
-    }
-
     /// Rays traced: for visibility, or all.
     pub fn rays(&self) -> u64 {
         match self {
             Self::Dense(r) => r.factors.rays,
-            Self::Rays(_, rays) => (rays.n * rays.per_row) as u64,
+            Self::Rays(_, rays) => *rays,
         }
     }
 

@@ -82,16 +82,21 @@ impl BruteForce {
 
     /// The nearest surface along a ray that starts just in front of `from`.
     pub fn first_hit(&self, from: SurfacePoint, direction: DVec3) -> Option<Hit> {
-        let origin = from.position + self.offset * from.normal;
-        let hits = self.bodies.iter().enumerate().filter_map(|(i, (b, sides))| {
-            b.crossing(origin, direction, f64::INFINITY).map(|(distance, front)| Hit {
-                distance,
-                primitive: i,
-                front,
-                reflects: front || *sides == Sides::Both,
-            })
-        });
+        let origin = self.lifted(from);
+        let hits = (0..self.bodies.len()).filter_map(|i| self.meet(i, origin, direction));
         hits.min_by(|a, b| a.distance.total_cmp(&b.distance))
+    }
+
+    /// Where a ray that starts just in front of `from` starts.
+    pub(super) fn lifted(&self, from: SurfacePoint) -> DVec3 {
+        from.position + self.offset * from.normal
+    }
+
+    /// Where a ray meets primitive `i`.
+    pub(super) fn meet(&self, i: usize, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        let (body, sides) = &self.bodies[i];
+        let (distance, front) = body.crossing(origin, direction, f64::INFINITY)?;
+        Some(Hit { distance, primitive: i, front, reflects: front || *sides == Sides::Both })
     }
 
     /// No primitive of `among` crosses the segment between two points moved just off their surfaces.

@@ -5,7 +5,7 @@
 //! ```
 
 use super::{
-    Corners, Cover, CoverTest, Finder, Grid, Tree,
+    Corners, Cover, CoverTest, Finder, Grid, Near, Tree,
     finder::Walk,
     polygon::{area_vector, extent},
     sides_of,
@@ -13,6 +13,7 @@ use super::{
 };
 use crate::scene::{Primitive, description::Sides};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// More meetings with other surfaces than this on one primitive are left uncut; its cells are sampled instead.
 const MAX_CUTS: usize = 64;
@@ -69,7 +70,7 @@ pub(super) fn regions(primitives: &[(Primitive, Sides)], cover: &CoverTest) -> V
         };
         let normal = area_vector(&polygon).normalize();
         let mut tree = Tree::new(polygon.clone());
-        let sampled = !cut(&mut tree, &polygon, normal, primitives, number);
+        let sampled = !cut(&mut tree, &polygon, normal, (primitives, &cover.near), number);
         let side = |side: usize, p: &[DVec3]| {
             if !sides_of(sides).contains(&side) {
                 return Cover::Covered;
@@ -82,17 +83,28 @@ pub(super) fn regions(primitives: &[(Primitive, Sides)], cover: &CoverTest) -> V
         let pieces = tree.cells().map(|(node, p)| Piece { node, cover: [side(0, p), side(1, p)] }).collect();
         Region::Flat { tree, pieces }
     };
-    primitives.iter().enumerate().map(one).collect()
+    primitives.par_iter().enumerate().map(one).collect()
 }
 
 /// Returns whether straight cuts were enough to separate what is covered from what is free.
-fn cut(tree: &mut Tree, polygon: &[DVec3], normal: DVec3, all: &[(Primitive, Sides)], own: usize) -> bool {
+fn cut(
+    tree: &mut Tree,
+    polygon: &[DVec3],
+    normal: DVec3,
+    (all, near): (&[(Primitive, Sides)], &Near),
+    own: usize,
+) -> bool {
     let size = polygon.iter().map(|p| p.distance(polygon[0])).fold(0.0, f64::max);
     let margin = DVec3::splat(1e-9 * size);
     let fold = |p: &[DVec3]| p.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], &x| [a.min(x), b.max(x)]);
     let [lo, hi] = fold(polygon);
-    let mut cuts = 0;
-    for (_, (other, _)) in all.iter().enumerate().filter(|(i, _)| *i != own) {
+    let (mut cuts, mut close) = (0, vec![]);
+    near.within([lo - margin, hi + margin], |i| {
+        close.push(i);
+        true
+    });
+    close.sort_unstable();
+    for other in close.iter().filter(|i| **i != own).map(|i| &all[*i].0) {
         let [a, b] = other.bounds();
         if (a - margin).cmpgt(hi).any() || (b + margin).cmplt(lo).any() {
             continue;

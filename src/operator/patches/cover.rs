@@ -8,7 +8,7 @@
 //! The rays are a fixed set of 32: 16 over the hemisphere and 16 that graze the surface (slope 10⁻³), because only
 //! these leave the thin gap between a ceiling and a light hung below it.
 
-use super::{BruteForce, SurfacePoint, polygon::at};
+use super::{BruteForce, Near, SurfacePoint, polygon::at};
 use crate::scene::{Primitive, description::Sides};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -26,6 +26,9 @@ pub(super) enum Cover {
 pub(super) struct CoverTest {
     caster: BruteForce,
     primitives: Vec<(Primitive, Sides)>,
+    pub(super) near: Near,
+    /// Some surface has a black back, so that rays can meet one.
+    one_sided: bool,
     directions: Vec<DVec3>,
 }
 
@@ -38,17 +41,25 @@ impl CoverTest {
             DVec3::new(s * phi.cos(), s * phi.sin(), z)
         };
         let directions = (0..32).map(|i| turn(i, if i < 16 { (i as f64 + 0.5) / 16.0 } else { 1e-3 })).collect();
-        Self { caster, primitives, directions }
+        let near = Near::new(primitives.iter().map(|p| &p.0));
+        let one_sided = primitives.iter().any(|p| p.1 == Sides::Front);
+        Self { caster, primitives, near, one_sided, directions }
     }
 
     pub(super) fn is_covered(&self, primitive: usize, at: SurfacePoint) -> bool {
-        if self.primitives[..primitive].iter().any(|p| coincides(p, at)) {
-            return true;
+        let mut doubled = false;
+        self.near.within([at.position; 2], |i| {
+            doubled = i < primitive && coincides(&self.primitives[i], at);
+            !doubled
+        });
+        if doubled || !self.one_sided {
+            return doubled;
         }
         let (u, v) = at.normal.any_orthonormal_pair();
         self.directions
             .iter()
-            .all(|d| self.caster.first_hit(at, d.x * u + d.y * v + d.z * at.normal).is_some_and(|hit| !hit.reflects))
+            .map(|d| self.near.first_hit(&self.caster, at, d.x * u + d.y * v + d.z * at.normal))
+            .all(|hit| hit.is_some_and(|hit| !hit.reflects))
     }
 
     /// The share of an m×m grid of points of `polygon` that is free; `lift` maps them to the true surface.

@@ -6,9 +6,9 @@
 //! ```
 //!
 //! f and g run over 1, x, y, z of the patch centres, measured from the middle of the scene. The standard error is that of
-//! independent rays, which is longer than that of Sobol points: a sound z stays well below 1.
+//! independent rays, which is longer than that of lattice points: a sound z stays well below 1.
 
-use super::{Half, Light};
+use super::{Half, Hit, Light};
 use glam::DVec3;
 
 /// The invariants as measured.
@@ -37,7 +37,7 @@ impl Light<'_> {
         for i in 0..rays.n {
             let mut met = 0;
             for half in rays.row(i) {
-                met += half.partition_point(|h| *h != super::NOTHING);
+                met += half.partition_point(|h| *h != Hit::NOTHING);
             }
             (least, most) = (least.min(met as f64 / n), most.max(met as f64 / n));
             largest = largest.max(largest_count(rays.row(i)));
@@ -101,25 +101,21 @@ fn worst(a: f64, b: f64) -> f64 {
 }
 
 /// How often the patch met most often was met.
-fn largest_count([a, b]: [&[u32]; 2]) -> usize {
+fn largest_count([a, b]: [&[Hit]; 2]) -> usize {
     let (mut i, mut j, mut largest) = (0, 0, 0);
-    while i < a.len() || j < b.len() {
-        let hit = match (a.get(i), b.get(j)) {
-            (Some(x), Some(y)) => *x.min(y),
-            (Some(x), None) | (None, Some(x)) => *x,
-            (None, None) => break,
-        };
-        if hit == super::NOTHING {
-            break;
+    let at = |run: &[Hit], k: usize| run.get(k).map_or(Hit::MOST, |h| h.patch());
+    loop {
+        let hit = at(a, i).min(at(b, j));
+        if hit == Hit::MOST {
+            return largest;
         }
-        let from = (i, j);
-        while a.get(i) == Some(&hit) {
+        let from = i + j;
+        while at(a, i) == hit {
             i += 1;
         }
-        while b.get(j) == Some(&hit) {
+        while at(b, j) == hit {
             j += 1;
         }
-        largest = largest.max(i - from.0 + j - from.1);
+        largest = largest.max(i + j - from);
     }
-    largest
 }

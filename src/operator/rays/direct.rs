@@ -14,9 +14,9 @@
 //! Either way the estimate is unbiased, so the line between near and far costs no accuracy in the mean.
 
 use super::{Caster, Scratch};
-use crate::math::{Purpose, Rng};
+use crate::math::Purpose;
 use crate::operator::patches::{Patches, polygon::radius_about};
-use crate::operator::rays::origin::Origins;
+use crate::operator::rays::{lattice::Lattice, origin::Origins};
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -37,7 +37,8 @@ struct Lamp {
 /// The emitting primitives.
 pub(super) struct Lamps(Vec<Lamp>);
 
-/// Most pairs per half of a row; fewer where the row has fewer rays.
+/// Pairs per half of a row: half as many as rays, and no more than this. Their part of the error is a quarter of that of
+/// the rays.
 const PAIRS: usize = 256;
 
 impl Lamps {
@@ -107,7 +108,7 @@ impl Caster<'_> {
             }
         }
         if !self.lamps.0.iter().all(near) {
-            self.pairs(i, half_row.min(PAIRS), near, scratch, &mut light);
+            self.pairs(i, half_row.div_ceil(2).min(PAIRS), near, scratch, &mut light);
         }
         light.map(|l| (patch.reflectance * l).as_vec3().to_array())
     }
@@ -124,9 +125,10 @@ impl Caster<'_> {
         let Scratch { wave, unblocked, .. } = scratch;
         let rays = &mut wave.rays;
         let mut origins = Origins::new(self.patches, i);
+        let points = Lattice::new(self.key, i, Purpose::Connect);
         let mut facing = 0;
         for (s, unblocked) in unblocked[..2 * pairs].iter_mut().enumerate() {
-            let (x, [_, _, u, v]) = origins.next(|s| Rng::at(self.key, i as u32, s, 0, Purpose::Connect).four());
+            let (x, [u, v, ..]) = origins.next(|s| points.at(s));
             let (lamp, u) = self.lamps.choose(u.into());
             if near(lamp) {
                 continue;

@@ -6,21 +6,20 @@
 //!
 //! Rows are stored; columns are their transpose by counting: another u32 per ray.
 
-use super::{NOTHING, RayOperator};
+use super::{Hit, RayOperator};
 use crate::operator::matrix::{Columns, LinearOperator, Rows, Transposed};
 
 impl Rows for RayOperator<'_> {
     fn entry(&self, i: usize, j: usize) -> f64 {
         let (runs, weight) = self.runs(i);
-        let count =
-            |run: &[u32]| run.partition_point(|h| *h as usize <= j) - run.partition_point(|h| (*h as usize) < j);
+        let count = |run: &[Hit]| run.partition_point(|h| h.patch() <= j) - run.partition_point(|h| h.patch() < j);
         self.rho[i] * weight * runs.map(count).sum::<usize>() as f64
     }
 
     fn row_times(&self, i: usize, x: &[f64]) -> f64 {
         let (runs, weight) = self.runs(i);
         // what met nothing sorts last
-        let met = |run: &[u32]| run.iter().take_while(|h| **h != NOTHING).map(|h| x[*h as usize]).sum::<f64>();
+        let met = |run: &[Hit]| run.iter().take_while(|h| **h != Hit::NOTHING).map(|h| x[h.patch()]).sum::<f64>();
         self.rho[i] * weight * runs.map(met).sum::<f64>()
     }
 }
@@ -41,7 +40,7 @@ impl Transposed for RayOperator<'_> {
 
     fn columns(&self) -> RayColumns {
         let n = self.len();
-        let hits = |i: usize| self.runs(i).0.flatten().copied().filter(|h| *h != NOTHING).map(|h| h as usize);
+        let hits = |i: usize| self.runs(i).0.flatten().filter(|h| **h != Hit::NOTHING).map(|h| h.patch());
         let mut first = vec![0; n + 1];
         (0..n).flat_map(hits).for_each(|j| first[j + 1] += 1);
         (0..n).for_each(|j| first[j + 1] += first[j]);

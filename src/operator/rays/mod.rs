@@ -8,25 +8,26 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | N | rays of a row, all of the same weight 1/N | [`Rays::per_row`] |
-//! | hit(i, s) | patch met, or [`NOTHING`] | [`Rays::row`] |
+//! | hit(i, s) | patch met, or [`Hit::NOTHING`] | [`Rays::row`] |
 //! | T = diag(ρ) F | the operator of one channel | [`RayOperator`] |
 //! | D | T E of the emitters, by pairs of points where they are far | `direct` |
 //!
-//! The four numbers of a ray are a point of a Sobol sequence with an Owen scramble of its own in every row. Rows of a
+//! The four numbers of a ray are a point of a lattice with a random shift of its own in every row (`lattice`). Rows of a
 //! closed scene sum to exactly 1; single entries are poor, but the errors of a row cancel in T x, which converges about
 //! like N^−0.7. Restoring AᵢFᵢⱼ = AⱼFⱼᵢ by averaging both would break that cancellation and is not done: T is self-adjoint
 //! only within the sampling error, which [`Light::checks`] states.
 //!
-//! The first and the second half of a row are nets of N/2 rays each: their difference gives every result an error bar
-//! ([`Light::noise`]). Both belong to one scramble and complement each other, so the bar is a little too long (1.1 to 1.5 times)
+//! The first and the second half of a row are lattices of N/2 rays each: their difference gives every result an error bar
+//! ([`Light::noise`]). Both share one shift and complement each other, so the bar is a little too long (1.1 to 1.5 times)
 //! rather than too short.
 //!
-//! References: Owen, *Scrambled net variance for integrals of smooth functions* (1997); Pattanaik and Mudur,
-//! *Computation of global illumination by Monte Carlo simulation of the particle model of light* (1992).
+//! Reference: Pattanaik and Mudur, *Computation of global illumination by Monte Carlo simulation of the particle model of light* (1992).
 
 mod checks;
 mod direct;
 mod entries;
+mod hit;
+mod lattice;
 mod operator;
 mod origin;
 mod solution;
@@ -34,22 +35,24 @@ mod spectrum;
 
 pub use checks::RayChecks;
 pub use entries::RayColumns;
+pub use hit::Hit;
 pub use operator::{Coarse, Half, RayOperator};
-pub use solution::{Light, Solved};
+pub use solution::{Light, Record, Solved, record};
 
 use super::form_factor::{Stopped, Watch};
 use super::patches::{Lookup, Patches};
 use crate::math::direction::cosine_hemisphere;
-use crate::math::{Key, Points, Purpose, Rng};
+use crate::math::{Key, Purpose};
 use crate::scene::{Scene, Vertex, VertexWave};
 use direct::Lamps;
 use glam::DVec3;
+use lattice::Lattice;
 use origin::Origins;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 
-/// A ray that left the scene, or met a side that takes no part.
-pub const NOTHING: u32 = u32::MAX;
+/// Of a row being traced: a ray that left the scene, or met a side that takes no part.
+const NOTHING: u32 = u32::MAX;
 
 /// Rows of F as rays.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +64,7 @@ pub struct Rays {
     /// Aᵢ, m².
     pub area: Vec<f64>,
     /// Row i at `i·N`: the hits of its first half, ascending, then those of its second.
-    hits: Vec<u32>,
+    hits: Vec<Hit>,
     /// T E per patch and half, with ρ.
     direct: Vec<[[f32; 3]; 2]>,
     /// Rays that met a reflecting surface where no patch is, and count as having met nothing.
@@ -76,28 +79,26 @@ impl Rays {
     /// [`Stopped`] when the flag in `watch` was set.
     ///
     /// # Panics
-    /// If the mesh has 2³¹ patches or more.
+    /// If the mesh has more than [`Hit::MOST`] patches.
     pub fn new(patches: &Patches, scene: &Scene, per_row: usize, seed: u64, watch: Watch<'_>) -> Result<Self, Stopped> {
         let (n, per_row) = (patches.len(), per_row.max(2).next_multiple_of(2));
-        assert!(n < 1 << 31, "patches are numbered in 31 bits");
-        let caster = Caster {
-            patches,
-            scene,
-            lamps: Lamps::new(patches),
-            key: Key::new(seed, "form factors").with_points(Points::Sobol, 1),
-        };
+        assert!(n <= Hit::MOST, "patches are numbered in three bytes");
+        let caster = Caster { patches, scene, lamps: Lamps::new(patches), key: Key::new(seed, "form factors") };
         let stopped = || watch.stop.is_some_and(|s| s.load(Relaxed));
         let (done, lost) = (AtomicUsize::new(0), AtomicU64::new(0));
-        let (mut hits, mut direct) = (vec![NOTHING; n * per_row], vec![[[0.0f32; 3]; 2]; n]);
+        let (mut hits, mut direct) = (vec![Hit::NOTHING; n * per_row], vec![[[0.0f32; 3]; 2]; n]);
         hits.par_chunks_mut(per_row).zip(&mut direct).enumerate().with_min_len(16).for_each_init(
             || Scratch::new(per_row),
             |scratch, (i, (row, direct))| {
                 if stopped() {
                     return;
                 }
-                lost.fetch_add(caster.row(i, scratch, row), Relaxed);
-                *direct = caster.direct(i, row, scratch);
-                row.chunks_mut(per_row / 2).for_each(<[u32]>::sort_unstable);
+                let mut met = std::mem::take(&mut scratch.row);
+                lost.fetch_add(caster.row(i, scratch, &mut met), Relaxed);
+                *direct = caster.direct(i, &met, scratch);
+                met.chunks_mut(per_row / 2).for_each(<[u32]>::sort_unstable);
+                row.iter_mut().zip(&met).for_each(|(hit, patch)| *hit = Hit::new(*patch));
+                scratch.row = met;
                 let done = done.fetch_add(1, Relaxed) + 1;
                 if let Some(report) = watch.progress.filter(|_| done % 64 == 0 || done == n) {
                     report(done, n);
@@ -110,8 +111,8 @@ impl Rays {
         Ok(Self { n, per_row, area: patches.areas(), hits, direct, lost: lost.into_inner() })
     }
 
-    /// What the rays of patch `i` met: the halves, each ascending, with [`NOTHING`] last.
-    pub fn row(&self, i: usize) -> [&[u32]; 2] {
+    /// What the rays of patch `i` met: the halves, each ascending, with [`Hit::NOTHING`] last.
+    pub fn row(&self, i: usize) -> [&[Hit]; 2] {
         self.hits[i * self.per_row..(i + 1) * self.per_row].split_at(self.per_row / 2).into()
     }
 
@@ -126,19 +127,19 @@ impl Rays {
 
     /// Fᵢⱼ as sampled, for looking at: not accurate one by one.
     pub fn entry(&self, i: usize, j: usize) -> f64 {
-        let count =
-            |half: &[u32]| half.partition_point(|h| *h as usize <= j) - half.partition_point(|h| (*h as usize) < j);
+        let count = |half: &[Hit]| half.partition_point(|h| h.patch() <= j) - half.partition_point(|h| h.patch() < j);
         self.row(i).into_iter().map(count).sum::<usize>() as f64 / self.per_row as f64
     }
 
     /// Bytes the rows take.
     pub fn bytes(&self) -> usize {
-        4 * self.hits.len() + 24 * self.direct.len()
+        size_of_val(&*self.hits) + size_of_val(&*self.direct)
     }
 }
 
 /// Room for the rays of a row, in whole packets, and for what its pairs carry if nothing is between them.
 struct Scratch {
+    row: Vec<u32>,
     wave: VertexWave,
     lookup: Lookup,
     /// Where rays arrived: their numbers, and what they met.
@@ -150,7 +151,8 @@ impl Scratch {
     fn new(n: usize) -> Self {
         let mut wave = VertexWave::default();
         wave.resize(n.next_multiple_of(64));
-        Self { wave, lookup: Lookup::default(), met: Vec::with_capacity(n), unblocked: vec![DVec3::ZERO; n] }
+        let (row, unblocked) = (vec![NOTHING; n], vec![DVec3::ZERO; n]);
+        Self { row, wave, lookup: Lookup::default(), met: Vec::with_capacity(n), unblocked }
     }
 }
 
@@ -165,11 +167,13 @@ impl Caster<'_> {
     /// Fills row `i` with hits in the order of the sequence. Returns how many rays met a reflecting surface without a
     /// patch.
     fn row(&self, i: usize, scratch: &mut Scratch, row: &mut [u32]) -> u64 {
+        row.fill(NOTHING);
         let mut origins = Origins::new(self.patches, i);
+        let points = Lattice::new(self.key, i, Purpose::Scatter);
         let Scratch { wave, lookup, met, .. } = scratch;
         let rays = &mut wave.rays;
         for k in 0..row.len() {
-            let (at, [_, _, u, v]) = origins.next(|s| Rng::at(self.key, i as u32, s, 0, Purpose::Scatter).four());
+            let (at, [u, v, ..]) = origins.next(|s| points.at(s));
             let normal = at.normal.as_vec3();
             rays.o.set(k, self.scene.lift(at.position.as_vec3(), normal));
             rays.d.set(k, cosine_hemisphere(normal, [u, v]).0);

@@ -9,7 +9,7 @@
 //! T_H is what the same rays give when every patch of I has its share of the rays of I by area, so a study in h costs no
 //! further ray.
 
-use super::Rays;
+use super::{Hit, Rays};
 use crate::operator::matrix::{LinearOperator, Rows};
 use rayon::prelude::*;
 
@@ -54,7 +54,7 @@ impl<'a> RayOperator<'a> {
     }
 
     /// The runs of ascending hits that are used of row i, and the weight of a ray.
-    pub(super) fn runs(&self, i: usize) -> (impl Iterator<Item = &'a [u32]> + use<'a>, f64) {
+    pub(super) fn runs(&self, i: usize) -> (impl Iterator<Item = &'a [Hit]> + use<'a>, f64) {
         let [a, b] = self.rays.row(i);
         let (runs, rays) = match self.half {
             Half::Both => ([a, b], self.rays.per_row),
@@ -88,11 +88,9 @@ impl LinearOperator for RayOperator<'_> {
                     continue;
                 }
                 for run in runs {
-                    let from = run.partition_point(|h| (*h as usize) < first);
-                    run[from..]
-                        .iter()
-                        .take_while(|h| (**h as usize) < end)
-                        .for_each(|h| y[*h as usize - first] += weight);
+                    let from = run.partition_point(|h| h.patch() < first);
+                    let own = run[from..].iter().map(|h| h.patch()).take_while(|j| *j < end);
+                    own.for_each(|j| y[j - first] += weight);
                 }
             }
             y.iter_mut().zip(&self.rays.area[first..]).for_each(|(y, a)| *y /= a);

@@ -28,13 +28,13 @@ impl<'a> Origins<'a> {
         Self { patches, patch, number, partly: patch.area < whole * (1.0 - 1e-9), next: 0 }
     }
 
-    /// The next origin with the four numbers it was drawn with.
+    /// The next origin, from the last two of four numbers, and all four.
     pub(super) fn next(&mut self, numbers: impl Fn(u32) -> [f32; 4]) -> (SurfacePoint, [f32; 4]) {
         let first = self.next;
         loop {
             let four = numbers(self.next);
             self.next += 1;
-            let at = self.patch.lift(uniform(&self.patch.polygon, four[0].into(), four[1].into()));
+            let at = self.patch.lift(uniform(&self.patch.polygon, four[2].into(), four[3].into()));
             let patience = self.next - first < PATIENCE;
             if !(self.partly && patience && self.patches.is_covered(self.number, at)) {
                 return (at, four);

@@ -10,12 +10,28 @@
 //! | u | reflected light, L − E | [`Solved`] |
 //! | δ | (I − T)⁻¹ [D₁ − D₂ + (T₁ − T₂) u], to first order the difference of the halves' solutions | [`Light::noise`] |
 //!
-//! Gathering reads one 16-byte record per ray for all channels: only ρ differs between them.
+//! Gathering reads one 16-byte record per ray for all channels: only ρ differs between them. Terms are kept as records,
+//! so rounding moves u by 10⁻⁷ of itself.
 
-use super::{Half, NOTHING, Rays};
+use super::{Half, Hit, Rays};
 use crate::operator::patches::Patches;
 use glam::DVec3;
 use rayon::prelude::*;
+
+/// Three channels of a patch as gathering reads them; the fourth number is 0.
+pub type Record = [f32; 4];
+
+/// The nearest record.
+#[inline(always)]
+pub fn record(x: DVec3) -> Record {
+    [x.x as f32, x.y as f32, x.z as f32, 0.0]
+}
+
+/// The channels of a record.
+#[inline(always)]
+pub(super) fn channels([x, y, z, _]: Record) -> DVec3 {
+    DVec3::new(x.into(), y.into(), z.into())
+}
 
 /// A scene on its patches, by stored rays.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +52,7 @@ pub struct Solved {
     /// Applications of T.
     pub steps: usize,
     /// The last term: close to the top mode of every channel.
-    pub last: Vec<DVec3>,
+    pub last: Vec<Record>,
 }
 
 impl<'a> Light<'a> {
@@ -56,19 +72,28 @@ impl<'a> Light<'a> {
     }
 
     /// diag(ρ) F x.
-    pub(super) fn gathered(&self, x: &[DVec3], half: Half, rho: impl Fn(usize) -> DVec3 + Sync) -> Vec<DVec3> {
-        let records: Vec<[f32; 4]> = x.iter().map(|x| [x.x as f32, x.y as f32, x.z as f32, 0.0]).collect();
-        let one = |i: usize| {
-            let [a, b] = self.rays.row(i);
-            let (rows, rays) = match half {
-                Half::Both => ([a, b], self.rays.per_row),
-                Half::First => ([a, &b[..0]], a.len()),
-                Half::Second => ([&a[..0], b], b.len()),
-            };
-            let sum = gather(&records, rows[0]) + gather(&records, rows[1]);
-            rho(i) * (sum / rays as f64)
-        };
-        (0..self.rays.n).into_par_iter().with_min_len(64).map(one).collect()
+    pub(super) fn gathered(&self, x: &[DVec3], half: Half, rho: impl Fn(usize) -> DVec3 + Sync + Send) -> Vec<DVec3> {
+        let x: Vec<Record> = x.iter().map(|x| record(*x)).collect();
+        self.each(|i| rho(i) * self.mean(&x, half, i))
+    }
+
+    /// The same from record to record.
+    pub(super) fn mapped(&self, x: &[Record], rho: impl Fn(usize) -> DVec3 + Sync + Send) -> Vec<Record> {
+        self.each(|i| record(rho(i) * self.mean(x, Half::Both, i)))
+    }
+
+    fn each<R: Send>(&self, of: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
+        (0..self.rays.n).into_par_iter().with_min_len(64).map(of).collect()
+    }
+
+    /// (F x)ᵢ.
+    fn mean(&self, x: &[Record], half: Half, i: usize) -> DVec3 {
+        let [a, b] = self.rays.row(i);
+        match half {
+            Half::Both => (gather(x, a) + gather(x, b)) / self.rays.per_row as f64,
+            Half::First => gather(x, a) / a.len() as f64,
+            Half::Second => gather(x, b) / b.len() as f64,
+        }
     }
 
     /// T^k E for k = 0 ..= `k_max`.
@@ -83,27 +108,27 @@ impl<'a> Light<'a> {
     /// L, summed until what is left of the series is below `tolerance` times the sum (norms over the patches by area), or
     /// for `most` applications of T.
     pub fn solve(&self, tolerance: f64, most: usize) -> Solved {
-        let direct = self.direct();
-        let (sum, last, steps) = self.sum(direct, tolerance, most);
-        let residual = last.iter().fold(DVec3::ZERO, |a, x| worst(a, x.abs()));
-        let radiance = sum.iter().zip(self.patches.iter()).map(|(u, p)| *u + p.emission).collect();
+        let (mut radiance, last, steps) = self.sum(self.direct(), tolerance, most);
+        let residual = last.iter().fold(DVec3::ZERO, |a, x| worst(a, channels(*x).abs()));
+        radiance.iter_mut().zip(self.patches.iter()).for_each(|(u, p)| *u += p.emission);
         Solved { radiance, residual, steps, last }
     }
 
-    /// Σ T^k x with the first term left out of it, and how many applications that took.
-    fn sum(&self, x: Vec<DVec3>, tolerance: f64, most: usize) -> (Vec<DVec3>, Vec<DVec3>, usize) {
-        let (mut sum, mut term) = (x.clone(), x);
-        let mut before = self.norm(&term);
+    /// Σ T^k x with the last term left out of it, and how many applications that took. Terms are records, the sum is not.
+    fn sum(&self, x: Vec<DVec3>, tolerance: f64, most: usize) -> (Vec<DVec3>, Vec<Record>, usize) {
+        let mut term: Vec<Record> = x.iter().map(|x| record(*x)).collect();
+        let mut sum = x;
+        let mut before = self.length(&sum, |x| *x);
         for step in 1..=most {
-            term = self.bounce(&term, Half::Both);
-            let now = self.norm(&term);
+            term = self.mapped(&term, |i| self.patches[i].reflectance);
+            let now = self.length(&term, |x| channels(*x));
             let rate = now / before;
             // a geometric tail of the last ratio; without one, the term itself
             let left = DVec3::select(rate.cmplt(DVec3::ONE), now * rate / (1.0 - rate), now);
             if now == DVec3::ZERO || left.cmple(tolerance * self.norm(&sum)).all() {
                 return (sum, term, step);
             }
-            sum.iter_mut().zip(&term).for_each(|(s, t)| *s += *t);
+            sum.iter_mut().zip(&term).for_each(|(s, t)| *s += channels(*t));
             before = now;
         }
         (sum, term, most)
@@ -114,29 +139,34 @@ impl<'a> Light<'a> {
     /// Any output that is linear in L, applied to this, is an error bar of that output with one degree of freedom; the
     /// norm of many patches is a reliable one.
     pub fn noise(&self, radiance: &[DVec3]) -> Vec<DVec3> {
-        let u: Vec<DVec3> = radiance.iter().zip(self.patches.iter()).map(|(l, p)| *l - p.emission).collect();
-        let (a, b) = (self.bounce(&u, Half::First), self.bounce(&u, Half::Second));
-        let difference = (0..self.rays.n).map(|i| {
+        let u: Vec<Record> = radiance.iter().zip(self.patches.iter()).map(|(l, p)| record(*l - p.emission)).collect();
+        let difference = self.each(|i| {
             let direct = self.rays.direct_half(i, 0) - self.rays.direct_half(i, 1);
-            0.5 * (direct + a[i] - b[i])
+            let apart = self.mean(&u, Half::First, i) - self.mean(&u, Half::Second, i);
+            0.5 * (direct + self.patches[i].reflectance * apart)
         });
+        drop(u);
         // noise of neighbours cancels in T, so few terms do
-        self.sum(difference.collect(), 1e-2, 50).0
+        self.sum(difference, 1e-2, 50).0
     }
 
     /// Root of Σ Aᵢ xᵢ², per channel.
     pub fn norm(&self, x: &[DVec3]) -> DVec3 {
-        let square: DVec3 = x.iter().zip(&self.rays.area).map(|(x, a)| *a * *x * *x).sum();
+        self.length(x, |x| *x)
+    }
+
+    fn length<X>(&self, x: &[X], value: impl Fn(&X) -> DVec3) -> DVec3 {
+        let square: DVec3 = x.iter().zip(&self.rays.area).map(|(x, a)| *a * value(x) * value(x)).sum();
         square.powf(0.5)
     }
 }
 
-fn gather(records: &[[f32; 4]], hits: &[u32]) -> DVec3 {
+fn gather(records: &[Record], hits: &[Hit]) -> DVec3 {
     // what met nothing sorts last
-    let hits = &hits[..hits.partition_point(|h| *h != NOTHING)];
+    let hits = &hits[..hits.partition_point(|h| *h != Hit::NOTHING)];
     let mut sum = [0.0f64; 4];
     for h in hits {
-        let record = &records[*h as usize];
+        let record = &records[h.patch()];
         for c in 0..4 {
             sum[c] += f64::from(record[c]);
         }
