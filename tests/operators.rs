@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod discrete;
-#[path = "../examples/operators.rs"]
+#[path = "../chapters/operators.rs"]
 #[allow(dead_code, unreachable_pub)] // its `main`; a program, not a library
 mod example;
 use discrete::*;
