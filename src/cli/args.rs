@@ -45,7 +45,8 @@ pub fn read() -> Cli {
     // the tour's options are explained by `fredholm tour --help`; here they would hide the commands
     let cli = Cli::command().mut_args(|arg| arg.hide(true));
     // nor does a sweep know matrices
-    let matrix = ["worlds", "patches", "factors", "rays", "read_patches", "orders", "verbose", "guide", "time"];
+    let matrix =
+        ["worlds", "patches", "grading", "factors", "rays", "read_patches", "orders", "verbose", "guide", "time"];
     let cli = cli.mut_subcommand("sweep", |c| matrix.iter().fold(c, |c, name| c.mut_arg(name, |arg| arg.hide(true))));
     let cli = cli.mut_subcommand("sweep", super::sweep_spp::several_values);
     let mut matches = cli.get_matches();
@@ -79,6 +80,15 @@ tail. (Elsewhere the same images are Mitsuba's max_depth = K + 1 and pbrt's maxd
   fredholm radiosity cornell --patches 2000 --solver all --history history.csv
   fredholm radiosity cornell --solver southwell --channel green --json
   fredholm radiosity cornell --modes 8 --size 128x128
+  fredholm radiosity cornell --patches 2400 --export matrix              for another program
+
+The spectral radius is that of the mesh, then extrapolated to h → 0 from three meshes (N/16, N/4, N)
+with the span that the uncertainty of the order leaves: an estimate, no bound.
+
+With --export also written: mesh.csv (patch, primitive, front, centre, area, normal, albedo, E, L,
+corners), mesh-terms.csv ((T^k E) of every patch), norms.csv (1-, 2- and 1/ρ-weighted norm of every
+T^k E over the patches, as in summary.json); with `matrix` F.npy, n × n float32. Metres; W sr⁻¹ m⁻²;
+radiosity B = π L.
 
 With --solver nothing is rendered. Written: solvers.json, solvers.svg, solvers.png, summary.json,
 and the file of --history. A product is one application of T; LU counts as n/3 of them.
@@ -124,6 +134,8 @@ Examples:
   fredholm sweep cornell --over technique --max-bounces 4 --size 64x64
   fredholm sweep cornell --over estimator --values prefix,single --equal-rays
   fredholm sweep cornell --over patches        the matrix on finer meshes, against rays
+  fredholm sweep cube --over patches --grading 1.5 --values 96,384,1536
+  fredholm sweep cornell --over patches --values 129,516,2064 --eigenvalues 6
   fredholm sweep cornell --over spp --estimator single,prefix,path
   fredholm sweep cornell --over spp --estimator prefix --points independent,sobol --reference 4096
   fredholm sweep cornell --over split --max-bounces 6 --size 64x64
@@ -344,6 +356,13 @@ pub struct Run {
     /// Up to 20000 for a dense matrix, 2000000 for stored rays.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
     pub patches: Option<u32>,
+    /// How much narrower patches get towards edges where faces meet: 1 (not) to 8
+    ///
+    /// Widths across an edge go like distance^(1 − 1/G); about 1.5 to 2 give eigenvalues and sums
+    /// their order 2 in h where edges are all that spoils it. Quadrilaterals are graded, whole
+    /// faces and pieces cut by others; triangles and curved surfaces keep patches of equal area.
+    #[arg(long, value_name = "G", default_value_t = 1.0, value_parser = grading, verbatim_doc_comment)]
+    pub grading: f64,
     /// How form factors are held: dense, rays or both
     ///
     /// dense: a matrix, deterministic; rays: rows of stored rays, with an error bar;
@@ -458,6 +477,11 @@ pub struct Sweep {
     /// A render of its own has another stream.
     #[arg(long, value_name = "DIR|SPP", verbatim_doc_comment)]
     pub reference: Option<String>,
+    /// With --over patches: the N largest and the N most negative eigenvalues on every mesh
+    ///
+    /// Of the channel with the largest spectral radius. Also written: eigenvalues.csv, .svg, .png.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16), verbatim_doc_comment)]
+    pub eigenvalues: Option<u16>,
     /// Samples of the pilot of --over split [default: a quarter of --spp]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=1 << 24))]
     pub pilot: Option<u32>,
@@ -527,6 +551,11 @@ pub fn size(s: &str) -> Result<[u32; 2], String> {
     let (w, h) = s.split_once('x').ok_or_else(wrong)?;
     let side = |s: &str| s.parse().ok().filter(|n| (1..=32768).contains(n)).ok_or_else(wrong);
     Ok([side(w)?, side(h)?])
+}
+
+fn grading(s: &str) -> Result<f64, String> {
+    let g: f64 = s.parse().map_err(|_| format!("`{s}` is not a number"))?;
+    if (1.0..=8.0).contains(&g) { Ok(g) } else { Err("a grading is a number from 1 to 8".into()) }
 }
 
 /// `30s`, `1.5m`, `500ms`; a bare number is seconds.

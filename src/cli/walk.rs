@@ -123,7 +123,7 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
         output::folder(args.shared.out.as_deref(), &format!("{}-walk", description.name), &command, args.shared.force)?;
     let progress = Progress::new(args.shared.quiet, |_: &TermFilm| {});
     let mesh = |patches: usize| -> Result<Option<Matrix<Radiosity>>, Failure> {
-        match discrete::dense_matrix(&description, &scene, patches, max_bounces, &progress, stop_flag()) {
+        match discrete::dense_matrix(&description, &scene, patches, 1.0, max_bounces, &progress, stop_flag()) {
             Ok(m) => Ok(Some(m)),
             Err(MatrixError::Stopped) => Ok(None),
             Err(e) => Err(e.into()),

@@ -1,5 +1,6 @@
 //! What a run leaves behind: `terms.exr`, pictures, plots, `summary.json`, `index.html`.
 
+use super::radiosity::Export;
 use super::solve::Found;
 use super::{Failure, output, strategies};
 use fredholm::report::decay::{Decay, Rate, independent_ratios};
@@ -8,11 +9,11 @@ use fredholm::report::plot::{Curve, Look, Point};
 use fredholm::report::sheet::{self, Cell, Sheet, direct_and_indirect, single};
 use fredholm::report::typeset::{Caption, superscript};
 use fredholm::report::variance::{Falling, Variance};
-use fredholm::report::{decay, exr, html, picture, summary, variance, zmap};
+use fredholm::report::{decay, exr, html, patches as mesh, picture, summary, variance, write_atomically, zmap};
 use fredholm::scene::Description;
-use fredholm::stats::{TermMeans, observed_rate, variance_slope};
+use fredholm::stats::{Limit, TermMeans, observed_rate, variance_slope};
 use fredholm::terms::{Estimate, TermFilm, TermImage};
-use fredholm::worlds::discrete::Discrete;
+use fredholm::worlds::discrete::{Discrete, radius_limit};
 use fredholm::worlds::roulette;
 use fredholm::worlds::sampled::{Estimator, Sampled};
 use glam::DVec3;
@@ -48,7 +49,7 @@ fn terms_sheet(
 }
 
 /// Writes everything and returns the summary that was written.
-pub fn all(found: &Found) -> Result<summary::Summary, Failure> {
+pub fn all(found: &Found, export: Option<Export>) -> Result<summary::Summary, Failure> {
     let mut out = Files { folder: found.folder.clone(), names: vec![] };
     let caption =
         Caption { command: found.command.clone(), seed: found.settings.seed, scene: found.description.name.clone() };
@@ -60,6 +61,9 @@ pub fn all(found: &Found) -> Result<summary::Summary, Failure> {
         strategies::write(&out.folder, &found.strategies, size.map(|s| s as usize), &caption, &attributes(found))?;
     }
     write_plots(found, &mut out, &caption)?;
+    if let (Some(what), Some(r)) = (export, &found.radiosity) {
+        write_mesh(r, what, &mut out)?;
+    }
     out.names.push("index.html".into());
     out.names.push("summary.json".into());
     let summary = summarise(found, &out.names);
@@ -86,6 +90,20 @@ impl Files {
     fn has(&self, name: &str) -> bool {
         self.names.iter().any(|n| n == name)
     }
+}
+
+/// What another program needs to check the matrix, or to use it.
+fn write_mesh(r: &Discrete, what: Export, out: &mut Files) -> Result<(), Failure> {
+    let m = &r.matrix;
+    let patches = m.radiosity.patches();
+    write_atomically(&out.add("mesh.csv"), mesh::mesh(patches, &m.solution.radiance).as_bytes())?;
+    write_atomically(&out.add("mesh-terms.csv"), mesh::terms(&m.terms).as_bytes())?;
+    let norms = summary::bounce_norms(patches, &m.terms);
+    write_atomically(&out.add("norms.csv"), mesh::norms(&norms).as_bytes())?;
+    if let (Export::Matrix, Some(dense)) = (what, m.radiosity.dense()) {
+        write_atomically(&out.add("F.npy"), &mesh::npy(&dense.factors))?;
+    }
+    Ok(())
 }
 
 fn write_exr(found: &Found, out: &mut Files, size: [u32; 2]) -> Result<(), Failure> {
@@ -376,12 +394,17 @@ fn tail_bound(g: DVec3, last: DVec3) -> DVec3 {
 
 fn radiosity_summary(r: &Discrete) -> summary::Radiosity {
     let (fine, coarse) = (r.fine.series.image(), r.coarse.series.image());
+    let limit = radius_limit(&r.radii);
+    let of = |f: &dyn Fn(&Limit) -> f64| limit.map_or(DVec3::NAN, |l| DVec3::from_array(l.each_ref().map(f)));
     summary::Radiosity {
         patches: r.matrix.radiosity.patches().len(),
         terms: fine.terms.iter().map(|t| t.mean).collect(),
         sum: fine.sum.mean,
         full: fine.total.mean,
         spectral_radius: DVec3::from_array([0, 1, 2].map(|c| r.matrix.spectral[c].radius)),
+        spectral_radius_limit: of(&|l| l.value),
+        spectral_radius_limit_error: of(&|l| l.half_width),
+        norms: summary::bounce_norms(r.matrix.radiosity.patches(), &r.matrix.terms),
         discretisation: (fine.total.mean - coarse.total.mean).abs(),
     }
 }
@@ -455,6 +478,10 @@ fn meaning(name: &str) -> &'static str {
         "radiosity.png" => "the matrix solution through the camera",
         "z.png" => "standardised difference, terms − path tracer",
         "index.html" => "this page",
+        "mesh.csv" => "patches: centre, area, normal, albedo, E, L, corners",
+        "mesh-terms.csv" => "T^k E of every patch",
+        "norms.csv" => "norms of T^k E over the patches",
+        "F.npy" => "form factors, n × n float32",
         n if n.starts_with("decay") => "decay of the terms",
         n if n.starts_with("variance") => "variance against samples per pixel",
         n if n.starts_with("partial") => "partial sum at the exposure of the whole",

@@ -18,7 +18,7 @@ mod lanczos;
 mod spectrum;
 
 use super::form_factor::FormFactors;
-pub use lanczos::{Extremes, extremes};
+pub use lanczos::{Extremes, Ritz, extremes, leading};
 use rayon::prelude::*;
 pub use spectrum::{Spectral, spectral_radius};
 

@@ -18,6 +18,8 @@
 //! | `NAME-ratios.svg` of the zoo and its PNG | [`signature`] |
 //! | `summary.json` | [`summary`] |
 //! | `modes.svg`, `modes-painted.png` | [`modes`] |
+//! | `eigenvalues.svg`, `eigenvalues.csv` of a sweep over patches | [`drift`] |
+//! | `mesh.csv`, `norms.csv`, `F.npy` | [`patches`] |
 //! | `solvers.svg`, its PNG, `history.csv` | [`solvers`] |
 //! | `index.html` | [`html`] |
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
@@ -27,6 +29,7 @@ mod base64;
 mod canvas;
 pub mod decay;
 pub mod diagnosis;
+pub mod drift;
 pub mod equilibrium;
 mod error;
 pub mod exr;
@@ -37,6 +40,7 @@ pub mod markdown;
 pub mod modes;
 mod null_as_nan;
 mod panel;
+pub mod patches;
 pub mod picture;
 pub mod plot;
 pub mod pyramid;

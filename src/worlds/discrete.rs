@@ -10,9 +10,10 @@ use crate::operator::SceneTransport;
 use crate::operator::form_factor::{FormFactors, Invariants, Sampling, Watch};
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
-use crate::operator::rays::{Light, Rays};
+use crate::operator::rays::{Half, Light, Rays};
 use crate::scene::{Description, Scene, SceneError};
 use crate::solver::{Radiosity, Solution};
+use crate::stats::{Limit, limit};
 use crate::terms::{TermImage, World};
 use glam::DVec3;
 use std::sync::Mutex;
@@ -74,7 +75,7 @@ pub fn matrix(
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Matrix, MatrixError> {
-    let patches = Patches::new(description, patches)?;
+    let patches = Patches::graded(description, patches, settings.grading)?;
     match settings.factors {
         Factors::Dense => {
             let m = dense(patches, scene, settings.max_bounces, observer, stop)?;
@@ -104,11 +105,12 @@ pub fn dense_matrix(
     description: &Description,
     scene: &Scene,
     patches: usize,
+    grading: f64,
     max_bounces: usize,
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Matrix<Radiosity>, MatrixError> {
-    dense(Patches::new(description, patches)?, scene, max_bounces, observer, stop)
+    dense(Patches::graded(description, patches, grading)?, scene, max_bounces, observer, stop)
 }
 
 /// Passes the highest count of rows on.
@@ -191,8 +193,24 @@ fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], RaySampl
     }
     let u: Vec<DVec3> = solved.radiance.iter().zip(light.patches.iter()).map(|(l, p)| *l - p.emission).collect();
     let noise = light.norm(&light.noise(&solved.radiance)) / light.norm(&u);
-    let sampling = RaySampling { per_row: light.rays.per_row, noise, checks: light.checks(), steps: solved.steps };
+    let radius_noise = radius_noise(light, &spectral);
+    let checks = light.checks();
+    let sampling = RaySampling { per_row: light.rays.per_row, noise, radius_noise, checks, steps: solved.steps };
     Ok((Solution { radiance: solved.radiance, residual: solved.residual }, spectral, sampling))
+}
+
+/// The standard error of r to first order, from what the halves of every row make of the mode: rows are independent.
+fn radius_noise(light: &Light<'_>, spectral: &[Spectral; 3]) -> DVec3 {
+    let [r, g, b] = spectral.each_ref().map(|s| &s.mode);
+    let mode: Vec<DVec3> = (0..r.len()).map(|i| DVec3::new(r[i], g[i], b[i])).collect();
+    let [first, second] = [Half::First, Half::Second].map(|half| light.bounce(&mode, half));
+    let (mut square, mut length) = (DVec3::ZERO, DVec3::ZERO);
+    for (i, p) in light.patches.iter().enumerate() {
+        let weight = DVec3::select(p.reflectance.cmpgt(DVec3::ZERO), p.area / p.reflectance, DVec3::ZERO);
+        let off = weight * mode[i] * 0.5 * (first[i] - second[i]);
+        (square, length) = (square + off * off, length + weight * mode[i] * mode[i]);
+    }
+    square.powf(0.5) / length
 }
 
 impl Matrix {
@@ -263,6 +281,35 @@ impl Matrix<Radiosity> {
     }
 }
 
+/// The spectral radius on one mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Radius {
+    /// √(area/patches), m.
+    pub h: f64,
+    /// r(T_h) per channel.
+    pub value: DVec3,
+    /// Its standard error from the sampling of stored rays; 0 for a dense matrix.
+    pub noise: DVec3,
+}
+
+impl<R> Matrix<R> {
+    /// The spectral radius of a matrix on these patches.
+    pub fn radius(&self, patches: &Patches) -> Radius {
+        let area: f64 = patches.iter().map(|p| p.area).sum();
+        Radius {
+            h: (area / patches.len() as f64).sqrt(),
+            value: DVec3::from_array(self.spectral.each_ref().map(|s| s.radius)),
+            noise: self.sampling.map_or(DVec3::ZERO, |s| s.radius_noise),
+        }
+    }
+}
+
+/// The spectral radius for h → 0 per channel, from meshes, coarsest first.
+pub fn radius_limit(meshes: &[Radius]) -> Option<[Limit; 3]> {
+    let of = |c: usize| limit(&meshes.iter().map(|m| (m.h, m.value[c], m.noise[c])).collect::<Vec<_>>());
+    Some([of(0)?, of(1)?, of(2)?])
+}
+
 /// The fine matrix and its picture, and the picture of the coarse one.
 pub struct Discrete {
     /// The mesh asked for.
@@ -271,6 +318,8 @@ pub struct Discrete {
     pub fine: Sampled,
     /// The mesh twice as coarse, along the same rays.
     pub coarse: Sampled,
+    /// Spectral radii of a mesh four times as coarse (without a picture), the coarse and the fine one.
+    pub radii: [Radius; 3],
 }
 
 /// The whole discrete world.
@@ -287,9 +336,11 @@ pub fn radiosity(
     let one = |patches: usize| {
         let matrix = matrix(description, scene, patches, settings, observer, stop)?;
         let picture = matrix.through_camera(scene, settings, observer, stop);
-        Ok::<_, MatrixError>((matrix, picture))
+        let radius = matrix.radius(matrix.radiosity.patches());
+        Ok::<_, MatrixError>((matrix, picture, radius))
     };
-    let (_, coarse) = one((settings.patches / 4).max(1))?;
-    let (matrix, fine) = one(settings.patches)?;
-    Ok(Discrete { matrix, fine, coarse })
+    let coarsest = matrix(description, scene, (settings.patches / 16).max(1), settings, observer, stop)?;
+    let (_, coarse, second) = one((settings.patches / 4).max(1))?;
+    let (matrix, fine, third) = one(settings.patches)?;
+    Ok(Discrete { radii: [coarsest.radius(coarsest.radiosity.patches()), second, third], matrix, fine, coarse })
 }

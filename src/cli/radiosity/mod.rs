@@ -39,6 +39,11 @@ pub struct Radiosity {
     /// Show the spectrum of T and its N leading modes instead of L
     #[arg(long, value_name = "N", conflicts_with = "solver", value_parser = clap::value_parser!(u16).range(1..=64))]
     pub modes: Option<u16>,
+    /// Also write patches and terms for other programs; with `matrix` also F
+    ///
+    /// mesh: mesh.csv, mesh-terms.csv, norms.csv; matrix: F.npy, too.
+    #[arg(long, value_enum, value_name = "WHAT", conflicts_with_all = ["solver", "modes"], hide_possible_values = true)]
+    pub export: Option<Export>,
     /// What is solved.
     #[command(flatten)]
     pub run: Run,
@@ -88,6 +93,15 @@ impl SolverName {
     }
 }
 
+/// What is written for other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Export {
+    /// Patches, terms and norms
+    Mesh,
+    /// F as well
+    Matrix,
+}
+
 /// A colour channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Channel {
@@ -99,7 +113,8 @@ pub enum Channel {
     Blue,
 }
 
-const NAMES: [&str; 3] = ["red", "green", "blue"];
+/// Channels by number.
+pub const NAMES: [&str; 3] = ["red", "green", "blue"];
 
 fn csv_name(s: &str) -> Result<String, String> {
     let plain = std::path::Path::new(s).file_name().is_some_and(|n| n == s) && s.ends_with(".csv");
@@ -114,7 +129,7 @@ pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
         (None, None) if args.channel.is_some() => Err(Failure::Usage(
             "error: --channel is for --solver and --modes, and none of them is asked for\nhelp: add one of them".into(),
         )),
-        (None, None) => solve::radiosity(&args.run),
+        (None, None) => solve::radiosity(&args.run, args.export),
     }
 }
 
@@ -136,7 +151,8 @@ impl Laboratory {
         let folder = output::folder(run.out.as_deref(), &name, &opened.command, run.force)?;
         let progress = Progress::new(run.quiet, |_: &TermFilm| {});
         let patches = run.patches.unwrap_or(600) as usize;
-        let matrix = discrete::dense_matrix(&opened.description, &opened.scene, patches, 0, &progress, stop_flag());
+        let matrix =
+            discrete::dense_matrix(&opened.description, &opened.scene, patches, run.grading, 0, &progress, stop_flag());
         progress.finish();
         match matrix {
             Ok(matrix) => Ok(Some(Self { opened, matrix, folder })),
