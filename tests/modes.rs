@@ -121,6 +121,25 @@ fn modes_are_eigenvectors_and_each_dies_at_its_rate() {
     }
 }
 
+/// Lanczos finds the ends that the dense solver finds, and says how far off it may be.
+#[test]
+fn the_ends_of_the_spectrum_by_lanczos() {
+    let (patches, factors) = discretise(&cornell(), 300);
+    let r = Radiosity::new(patches, factors);
+    let t = r.operator(0);
+    let mut all = Modes::of(&t, 0).values;
+    all.sort_by(|a, b| b.total_cmp(a));
+    let [above, below] = leading(&t, 6, 1e-9, 200);
+    assert_eq!((above.len(), below.len()), (6, 6));
+    for (i, (a, b)) in above.iter().zip(&below).enumerate() {
+        close("largest", a.value, all[i], a.residual + SINGLE);
+        close("smallest", b.value, all[all.len() - 1 - i], b.residual + SINGLE);
+    }
+    // too few steps are said to be too few
+    let [early, _] = leading(&t, 2, 1e-9, 5);
+    assert!(early[1].residual > 1e-4 && (early[0].value - all[0]).abs() <= early[0].residual);
+}
+
 /// Inside of a sphere: T is of rank one, r = ‖T‖₁ = ρ̄ < ‖T‖₂ = √(mean ρ²) < ‖T‖∞ = max ρ.
 #[test]
 fn the_norms_of_a_rank_one_operator() {

@@ -177,7 +177,7 @@ fn sphere_bands_are_exact_on_any_mesh() {
         for (x, expected) in terms.iter().zip(rows(&case["expected"]["terms"])) {
             close(id, &means(x), &expected, SINGLE);
         }
-        let l1: Vec<f64> = terms.iter().map(|x| r.surface_mean(x).x).collect();
+        let l1: Vec<f64> = terms.iter().map(|x| r.patches.surface_mean(x).x).collect();
         close(id, &l1, &numbers(&case["expected"]["L1_mean"]), SINGLE);
         close(id, &means(&r.solve().unwrap().radiance), &numbers(&case["expected"]["L"]), 3e-6);
         let [(one, infinity), ..] = r.norms();

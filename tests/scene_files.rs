@@ -626,7 +626,7 @@ fn names_of_scenes() {
     let e = scene("cornel", &Options::default()).unwrap_err();
     insta::assert_snapshot!(e, @r"
     error: `cornel` is neither a built-in scene nor a .toml or .obj file
-    help: did you mean `cornell`? built-in scenes: cornell, furnace, sphere, shells, cornell-spheres, veach-mis, veach-ajar, env-ggx, caustic, glass-furnace, mirror-corridor, sky-bowl, many-lights
+    help: did you mean `cornell`? built-in scenes: cornell, furnace, sphere, shells, cornell-spheres, veach-mis, veach-ajar, env-ggx, caustic, glass-furnace, mirror-corridor, sky-bowl, many-lights, cube
     ");
     assert!(!scene("teapot", &Options::default()).unwrap_err().help.unwrap().contains("did you mean"));
     for missing in ["no/such.toml", "no/such.obj"] {
@@ -761,7 +761,7 @@ fn transforms_move_the_front_along() {
 fn built_ins_load_without_a_warning() {
     assert_eq!(builtin::names()[..5], ["cornell", "furnace", "sphere", "shells", "cornell-spheres"]);
     let files = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")).unwrap();
-    assert_eq!(files.filter(|f| f.as_ref().unwrap().path().extension().is_some_and(|e| e == "toml")).count(), 13);
+    assert_eq!(files.filter(|f| f.as_ref().unwrap().path().extension().is_some_and(|e| e == "toml")).count(), 14);
     let readme = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/README.md")).unwrap();
     for b in &builtin::ALL {
         let loaded = scene(b.name, &Options::default()).unwrap_or_else(|e| panic!("{e}"));

@@ -251,7 +251,7 @@ fn compare(mut account: Account, scenes: &[(&str, u32)], schedules: &[&str], pat
         // not into the lamp: its rim would be all the noise there is
         let floor = ["camera.origin=[0,0.6,0.9]", "camera.target=[0,-0.9,-0.5]"];
         let (description, scene) = seen(name, side, if name == "cornell" { &floor } else { &[] });
-        let matrix = discrete::dense_matrix(&description, &scene, 100, 0, &Unobserved, &never()).unwrap();
+        let matrix = discrete::dense_matrix(&description, &scene, 100, 1.0, 0, &Unobserved, &never()).unwrap();
         let radii = Radii::new(Some(&matrix.radiosity), &scene, LARGEST);
         assert!(radii.fourth < 0.95, "{name} at q = {LARGEST}: {radii:?}");
         let settings = Settings { max_bounces: 12, seed: account.seed(), ..Settings::default() };

@@ -47,7 +47,8 @@ pub fn read() -> Cli {
     // the tour's options are explained by `fredholm tour --help`; here they would hide the commands
     let cli = Cli::command().mut_args(|arg| arg.hide(true));
     // nor does a sweep know matrices
-    let matrix = ["worlds", "patches", "factors", "rays", "read_patches", "orders", "verbose", "guide", "time"];
+    let matrix =
+        ["worlds", "patches", "grading", "factors", "rays", "read_patches", "orders", "verbose", "guide", "time"];
     let cli = cli.mut_subcommand("sweep", |c| matrix.iter().fold(c, |c, name| c.mut_arg(name, |arg| arg.hide(true))));
     let cli = cli.mut_subcommand("sweep", super::sweep_spp::several_values);
     let mut matches = cli.get_matches();
@@ -82,6 +83,15 @@ tail. (Elsewhere the same images are Mitsuba's max_depth = K + 1 and pbrt's maxd
   fredholm radiosity cornell --patches 130000 --solver gmres             on stored rays
   fredholm radiosity cornell --solver southwell --channel green --json
   fredholm radiosity cornell --modes 8 --size 128x128
+  fredholm radiosity cornell --patches 2400 --export matrix              for another program
+
+The spectral radius is that of the mesh, then extrapolated to h → 0 from three meshes (N/16, N/4, N)
+with the span that the uncertainty of the order leaves: an estimate, no bound.
+
+With --export also written: mesh.csv (patch, primitive, front, centre, area, normal, albedo, E, L,
+corners), mesh-terms.csv ((T^k E) of every patch), norms.csv (1-, 2- and 1/ρ-weighted norm of every
+T^k E over the patches, as in summary.json); with `matrix` F.npy, n × n float32. Metres; W sr⁻¹ m⁻²;
+radiosity B = π L.
 
 With --solver nothing is rendered. Written: solvers.json, solvers.svg, solvers.png, summary.json,
 and the file of --history. A product is one application of T; LU counts as n/3 of them.
@@ -127,6 +137,8 @@ Examples:
   fredholm sweep cornell --over technique --max-bounces 4 --size 64x64
   fredholm sweep cornell --over estimator --values prefix,single --equal-rays
   fredholm sweep cornell --over patches        the matrix on finer meshes, against rays
+  fredholm sweep cube --over patches --grading 1.5 --values 96,384,1536
+  fredholm sweep cornell --over patches --values 129,516,2064 --eigenvalues 6
   fredholm sweep cornell --over spp --estimator single,prefix,path
   fredholm sweep cornell --over spp --estimator prefix --points independent,sobol --reference 4096
   fredholm sweep cornell --over split --max-bounces 6 --size 64x64

@@ -3,11 +3,11 @@
 use super::solve::Found;
 use fredholm::operator::guided::warp::CELLS;
 use fredholm::report::extrapolation::{self, Measured};
-use fredholm::report::summary;
+use fredholm::report::{refine::limit_words, summary};
 use fredholm::stats::{self, Comparison, TermMeans, observed_rate};
 use fredholm::terms::Series;
 use fredholm::terms::functional::Replicates;
-use fredholm::worlds::discrete::Discrete;
+use fredholm::worlds::discrete::{Discrete, radius_limit};
 use fredholm::worlds::guided::Prepared;
 use fredholm::worlds::realisation::{Difference, Sampling};
 use fredholm::worlds::sampled::Estimator;
@@ -49,13 +49,14 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
     let d = (r.fine.series.image().total.mean - r.coarse.series.image().total.mean).abs();
     let mut out = format!(
         "F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4}, {reciprocity}\n\
-         residual of the solve {:.1e}; spectral radius ({rho})\n\
+         residual of the solve {:.1e}; spectral radius ({rho})\n{}\
          |R_h − R_2h| of the image mean {:.1e}",
         i.row_sum_min,
         i.row_sum_max,
         i.smallest,
         i.largest,
         m.solution.residual.max_element(),
+        radius_limit(&r.radii).map_or(String::new(), |l| limit_words(&l) + "\n"),
         d.element_sum() / 3.0
     );
     if let Some(s) = &m.sampling {

@@ -82,7 +82,11 @@ pub fn suits_a_matrix(description: &Description, worlds: &mut Vec<WorldName>, as
         return Ok(());
     }
     if asked {
-        let help = "leave the radiosity world out: --worlds terms,path";
+        let help = if description.lights.is_empty() {
+            "--lambertian takes all its surfaces for Lambertian; rays take it as it is: --worlds terms,path"
+        } else {
+            "rays take it as it is: --worlds terms,path"
+        };
         return Err(Failure::Usage(format!("error: no radiosity matrix can hold this scene: {why}\nhelp: {help}")));
     }
     worlds.retain(|w| *w != WorldName::Radiosity);

@@ -14,12 +14,9 @@ use serde_json::json;
 pub struct Info {
     /// Built-in scene, .toml, or .obj; nothing lists the built-in scenes
     pub scene: Option<String>,
-    /// Override a key of the scene
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
-    /// Let a material emit
-    #[arg(long, value_name = "MATERIAL=R,G,B")]
-    pub emit: Vec<String>,
+    /// How the scene is changed.
+    #[command(flatten)]
+    pub changes: super::open::Changes,
     /// Print JSON instead of text
     #[arg(long)]
     pub json: bool,
@@ -32,7 +29,7 @@ pub fn run(args: &Info) -> Result<Ending, Failure> {
         super::say(&lines.join("\n"))?;
         return Ok(Ending::Ok);
     };
-    let loaded = load::scene(name, &load::Options { set: args.set.clone(), emit: args.emit.clone() })?;
+    let loaded = load::scene(name, &args.changes.options(None))?;
     for warning in &loaded.warnings {
         super::note(&format!("warning: {warning}"));
     }

@@ -6,9 +6,9 @@ use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
 use std::path::PathBuf;
 
-/// What every study of a scene takes.
+/// What changes a scene.
 #[derive(Clone, Debug, Args)]
-pub struct Shared {
+pub struct Changes {
     /// Override a key of the scene
     ///
     /// For example materials.white.reflectance=[0.6,0.6,0.6]
@@ -17,6 +17,38 @@ pub struct Shared {
     /// Let a material emit: lamp=17,12,4
     #[arg(long, value_name = "MATERIAL=R,G,B")]
     pub emit: Vec<String>,
+    /// Take every surface for Lambertian, with its albedo as one colour: what a matrix can hold
+    ///
+    /// Another scene with another solution, for every world. Glass is black.
+    #[arg(long)]
+    pub lambertian: bool,
+}
+
+impl Changes {
+    /// The same, and a size in pixels.
+    pub fn options(&self, size: Option<[u32; 2]>) -> Options {
+        let size = size.map(|[w, h]| format!("camera.size=[{w},{h}]"));
+        Options {
+            set: self.set.iter().cloned().chain(size).collect(),
+            emit: self.emit.clone(),
+            lambertian: self.lambertian,
+        }
+    }
+
+    /// The first option that is given, if any is.
+    pub fn first(&self) -> Option<&'static str> {
+        let given =
+            [("--set", !self.set.is_empty()), ("--emit", !self.emit.is_empty()), ("--lambertian", self.lambertian)];
+        given.iter().find(|f| f.1).map(|f| f.0)
+    }
+}
+
+/// What every study of a scene takes.
+#[derive(Clone, Debug, Args)]
+pub struct Shared {
+    /// How the scene is changed.
+    #[command(flatten)]
+    pub changes: Changes,
     /// Output folder [default: one in fredholm-out, named after scene and study]
     ///
     /// The same command replaces its own output. Where another run's stands, the default becomes
@@ -54,11 +86,9 @@ pub fn threads(n: Option<u16>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The scene of that name, changed by `--set`, `--emit` and `--size`; warnings go to stderr.
-pub fn scene(name: &str, set: &[String], emit: &[String], size: Option<[u32; 2]>) -> Result<Opened, Failure> {
-    let mut set = set.to_vec();
-    set.extend(size.map(|[w, h]| format!("camera.size=[{w},{h}]")));
-    let loaded = load::scene(name, &Options { set, emit: emit.to_vec() })?;
+/// The scene of that name, changed by the options; warnings go to stderr.
+pub fn scene(name: &str, changes: &Changes, size: Option<[u32; 2]>) -> Result<Opened, Failure> {
+    let loaded = load::scene(name, &changes.options(size))?;
     loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
     let scene = Scene::new(&loaded.description);
     let hash = solve::scene_hash(&loaded.canonical);
@@ -68,6 +98,6 @@ pub fn scene(name: &str, set: &[String], emit: &[String], size: Option<[u32; 2]>
 /// Threads and scene of a command that renders.
 pub fn run(run: &Run) -> Result<Opened, Failure> {
     threads(run.shared.threads)?;
-    let opened = scene(&run.scene, &run.shared.set, &run.shared.emit, run.size)?;
+    let opened = scene(&run.scene, &run.shared.changes, run.size)?;
     Ok(Opened { scene: opened.scene.select_lights(run.lights), ..opened })
 }

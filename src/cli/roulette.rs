@@ -8,7 +8,7 @@ use fredholm::report::roulette::{self as rows, Row};
 use fredholm::report::typeset::Caption;
 use fredholm::report::{summary, table, write_atomically};
 use fredholm::scene::bsdf::Sampling;
-use fredholm::scene::load::{self, Options};
+use fredholm::scene::load;
 use fredholm::scene::{Description, Scene, Selection};
 use fredholm::stats::Noise;
 use fredholm::terms::cross_moments::{Recorded, Value};
@@ -223,11 +223,7 @@ fn schedules(args: &Args) -> Result<Vec<Asked>, Failure> {
 
 fn scene(args: &Args) -> Result<(Description, Scene, String), Failure> {
     const SIDE: u32 = 64;
-    let load = |size: Option<[u32; 2]>| {
-        let mut set = args.shared.set.clone();
-        set.extend(size.map(|[w, h]| format!("camera.size=[{w},{h}]")));
-        load::scene(&args.scene, &Options { set, emit: args.shared.emit.clone() })
-    };
+    let load = |size: Option<[u32; 2]>| load::scene(&args.scene, &args.shared.changes.options(size));
     let mut loaded = load(args.size)?;
     let [w, h] = loaded.description.camera.size;
     if args.size.is_none() && w.max(h) > SIDE {

@@ -2,6 +2,7 @@
 
 use super::args::{EstimatorName, FactorsName, GuideName, Run, Schedule, WorldName};
 use super::progress::{Progress, stop_flag};
+use super::radiosity::Export;
 use super::{Ending, Failure, facts, guard, output, write};
 use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
@@ -15,7 +16,7 @@ use fredholm::terms::{Recorded, Series};
 use fredholm::worlds::discrete::{self, Discrete, Matrix, MatrixError};
 use fredholm::worlds::guided::{self, Prepared};
 use fredholm::worlds::pyramid::{self, Strategy};
-use fredholm::worlds::realisation::Difference;
+use fredholm::worlds::realisation::{Difference, Factors};
 use fredholm::worlds::roulette::Radii;
 use fredholm::worlds::sampled::{self, Estimator, Sampled};
 use fredholm::worlds::{Settings, Unobserved, roulette, surface};
@@ -61,18 +62,29 @@ struct Default {
     size: Option<[u32; 2]>,
     roulette: Option<Roulette>,
     patches: u32,
+    export: Option<Export>,
 }
 
 const ALL: &[WorldName] = &[WorldName::Terms, WorldName::Path, WorldName::Radiosity];
 
 /// The tour: all worlds, both estimators.
 pub fn tour(run: &Run) -> Result<Ending, Failure> {
-    solve(run, Default { worlds: ALL, both_estimators: true, size: Some([192, 192]), roulette: None, patches: 2400 })
+    solve(
+        run,
+        Default {
+            worlds: ALL,
+            both_estimators: true,
+            size: Some([192, 192]),
+            roulette: None,
+            patches: 2400,
+            export: None,
+        },
+    )
 }
 
 /// Each T^k E and the sum.
 pub fn series(run: &Run) -> Result<Ending, Failure> {
-    solve(run, Default { worlds: ALL, both_estimators: false, size: None, roulette: None, patches: 600 })
+    solve(run, Default { worlds: ALL, both_estimators: false, size: None, roulette: None, patches: 600, export: None })
 }
 
 /// The full path tracer, with the lecture's roulette.
@@ -85,16 +97,15 @@ pub fn render(run: &Run) -> Result<Ending, Failure> {
             size: None,
             roulette: Some(Roulette::LECTURE),
             patches: 600,
+            export: None,
         },
     )
 }
 
 /// The matrix.
-pub fn radiosity(run: &Run) -> Result<Ending, Failure> {
-    solve(
-        run,
-        Default { worlds: &[WorldName::Radiosity], both_estimators: false, size: None, roulette: None, patches: 600 },
-    )
+pub fn radiosity(run: &Run, export: Option<Export>) -> Result<Ending, Failure> {
+    let worlds = &[WorldName::Radiosity];
+    solve(run, Default { worlds, both_estimators: false, size: None, roulette: None, patches: 600, export })
 }
 
 fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
@@ -102,7 +113,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     open::threads(run.shared.threads)?;
     let built_in_size = if run.scene == "cornell" { default.size } else { None };
     let Opened { command, description, scene, hash } =
-        open::scene(&run.scene, &run.shared.set, &run.shared.emit, run.size.or(built_in_size))?;
+        open::scene(&run.scene, &run.shared.changes, run.size.or(built_in_size))?;
     let scene = scene.select_lights(run.lights);
 
     // what to do with it
@@ -123,6 +134,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         patches: patches as usize,
         factors: guard::factors(run, patches)?,
         read_patches: run.read_patches,
+        grading: run.grading,
     };
     let mut worlds: Vec<WorldName> = if run.worlds.is_empty() { default.worlds.to_vec() } else { run.worlds.clone() };
     let by_name = !run.worlds.is_empty() || default.worlds.len() == 1;
@@ -159,6 +171,10 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         guard::rows_fit_in_memory(&settings)?;
     }
     guard::light_is_lost(&scene, &settings, &worlds)?;
+    if default.export == Some(Export::Matrix) && settings.factors != Factors::Dense {
+        let help = "use --factors dense (up to 20000 patches), or --export mesh";
+        return Err(Failure::Usage(format!("error: stored rays have no matrix to write\nhelp: {help}")));
+    }
     let folder = output::folder(run.shared.out.as_deref(), &description.name, &command, run.shared.force)?;
     let stop = stop_flag();
     let preview = write::preview(&folder, &description, &command, run.seed);
@@ -253,7 +269,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     }
     found.radii = radii(&found);
     found.verdicts = verdicts(&found);
-    let summary = write::all(&found)?;
+    let summary = write::all(&found, default.export)?;
     if run.shared.json {
         facts::warnings(&found).iter().for_each(|w| super::note(&format!("warning: {w}")));
         super::say(&serde_json::to_string_pretty(&summary)?)?;
@@ -291,7 +307,7 @@ pub fn coarse(description: &Description, scene: &Scene) -> Option<Matrix<Radiosi
     if scene.sides() > 400 || description.radiosity_suits().is_err() {
         return None;
     }
-    discrete::dense_matrix(description, scene, 150, 0, &Unobserved, stop_flag()).ok()
+    discrete::dense_matrix(description, scene, 150, 1.0, 0, &Unobserved, stop_flag()).ok()
 }
 
 /// The schedule that was typed; none if there is none, or if it is yet to be found.

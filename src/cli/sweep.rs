@@ -149,6 +149,9 @@ fn refuse_what_has_no_part(args: &args::Sweep) -> Result<(), Failure> {
     if let Some((name, _)) = given.iter().find(|g| g.1) {
         return Err(usage(&format!("{name} has no part in a sweep, which renders the terms"), "leave it out"));
     }
+    if args.eigenvalues.is_some() || run.grading != 1.0 {
+        return Err(usage("--eigenvalues and --grading are for matrices", "leave them out, or use --over patches"));
+    }
     if args.equal_rays && args.over == Over::Spp {
         return Err(usage("--equal-rays would make every spp the same", "leave it out, or sweep something else"));
     }

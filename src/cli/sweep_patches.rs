@@ -5,7 +5,7 @@ use super::{Ending, Failure, args, guard, output, solve};
 use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::report::typeset::Caption;
-use fredholm::report::{refine as report, summary, write_atomically};
+use fredholm::report::{drift, refine as report, summary, write_atomically};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::{Settings, realisation::Factors, refine};
 use std::sync::atomic::Ordering;
@@ -47,6 +47,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         sampling: run.sampling,
         roulette: solve::fixed(run.roulette.as_ref())?.unwrap_or(Roulette::Albedo { from: 2 }.after(max_bounces)),
         read_patches: run.read_patches,
+        grading: run.grading,
         ..Settings::default()
     };
     guard::fits_in_memory(&settings, description.camera.size)?;
@@ -58,7 +59,8 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         run.shared.force,
     )?;
     let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
-    let found = refine::refine(&description, &scene, &sizes, &settings, &progress, stop_flag())?;
+    let eigenvalues = args.eigenvalues.unwrap_or(0).into();
+    let found = refine::refine(&description, &scene, &sizes, eigenvalues, &settings, &progress, stop_flag())?;
     progress.finish();
     let stopped = stop_flag().load(Ordering::Relaxed);
     if found.meshes.is_empty() {
@@ -71,6 +73,15 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     report::draw(&found, max_bounces, &caption)?.write(&folder, "patches")?;
     let [w, h] = description.camera.size.map(|s| s as usize);
     report::places(&found, [w, h], 0.1, &caption)?.picture.write(&folder.join("places.png"))?;
+    let mut files: Vec<String> =
+        ["summary.json", "patches.csv", "patches.png", "patches.svg", "places.png"].map(String::from).into();
+    let channel = found.meshes.last().and_then(|m| m.spectrum.as_ref()).map(|e| super::radiosity::NAMES[e.channel]);
+    if let Some(channel) = channel {
+        let title = format!("Eigenvalues and the mesh: {}, {channel}", description.name);
+        write_atomically(&folder.join("eigenvalues.csv"), drift::csv(&found).as_bytes())?;
+        drift::draw(&found, &title, &caption)?.write(&folder, "eigenvalues")?;
+        files.extend(["eigenvalues.csv", "eigenvalues.png", "eigenvalues.svg"].map(String::from));
+    }
     let record = summary::Summary {
         command: command.clone(),
         scene: description.name.clone(),
@@ -82,7 +93,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         seconds: started.elapsed().as_secs_f64(),
         width: w,
         height: h,
-        files: ["summary.json", "patches.csv", "patches.png", "patches.svg", "places.png"].map(String::from).into(),
+        files,
         series: std::iter::once(&found.truth)
             .chain(found.meshes.iter().map(|m| &m.picture))
             .map(|s| s.series.clone())
@@ -103,7 +114,10 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
                     An order stands where two or more errors exceed 3 standard errors and have one sign."
             .to_string();
         let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
-        super::say(&super::paragraphs(&[head, report::table(&found, max_bounces), foot, files]))?;
+        let mut blocks = vec![head, report::table(&found, max_bounces), foot];
+        blocks.extend(channel.map(|c| drift::table(&found, c)));
+        blocks.push(files);
+        super::say(&super::paragraphs(&blocks))?;
     }
     Ok(if stopped { Ending::Interrupted } else { Ending::Ok })
 }

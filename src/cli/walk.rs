@@ -96,8 +96,7 @@ fn walker(args: &Walk) -> Option<Walker> {
 pub fn run(args: &Walk) -> Result<Ending, Failure> {
     let started = Instant::now();
     open::threads(args.shared.threads)?;
-    let Opened { command, description, scene, hash } =
-        open::scene(&args.scene, &args.shared.set, &args.shared.emit, None)?;
+    let Opened { command, description, scene, hash } = open::scene(&args.scene, &args.shared.changes, None)?;
     let mut worlds = vec![args::WorldName::Radiosity];
     guard::suits_a_matrix(&description, &mut worlds, true)?;
     guard::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
@@ -123,7 +122,7 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
         output::folder(args.shared.out.as_deref(), &format!("{}-walk", description.name), &command, args.shared.force)?;
     let progress = Progress::new(args.shared.quiet, |_: &TermFilm| {});
     let mesh = |patches: usize| -> Result<Option<Matrix<Radiosity>>, Failure> {
-        match discrete::dense_matrix(&description, &scene, patches, max_bounces, &progress, stop_flag()) {
+        match discrete::dense_matrix(&description, &scene, patches, 1.0, max_bounces, &progress, stop_flag()) {
             Ok(m) => Ok(Some(m)),
             Err(MatrixError::Stopped) => Ok(None),
             Err(e) => Err(e.into()),

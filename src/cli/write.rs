@@ -1,17 +1,19 @@
 //! What a run leaves behind: `terms.exr`, pictures, plots, `summary.json`, `index.html`.
 
+mod mesh;
 mod page;
 mod pictures;
 mod plots;
 
+use super::radiosity::Export;
 use super::solve::Found;
 use super::{Failure, output, strategies};
 use fredholm::report::summary;
 use fredholm::report::typeset::Caption;
 use fredholm::scene::Description;
-use fredholm::stats::{TermMeans, observed_rate};
+use fredholm::stats::{Limit, TermMeans, observed_rate};
 use fredholm::terms::{Estimate, TermFilm, TermImage};
-use fredholm::worlds::discrete::Discrete;
+use fredholm::worlds::discrete::{Discrete, radius_limit};
 use fredholm::worlds::roulette;
 use fredholm::worlds::sampled::Estimator;
 use glam::DVec3;
@@ -38,7 +40,7 @@ pub fn preview(folder: &Path, d: &Description, command: &str, seed: u64) -> impl
 }
 
 /// Writes everything and returns the summary that was written.
-pub fn all(found: &Found) -> Result<summary::Summary, Failure> {
+pub fn all(found: &Found, export: Option<Export>) -> Result<summary::Summary, Failure> {
     let mut out = Files { folder: found.folder.clone(), names: vec![] };
     let caption =
         Caption { command: found.command.clone(), seed: found.settings.seed, scene: found.description.name.clone() };
@@ -50,6 +52,9 @@ pub fn all(found: &Found) -> Result<summary::Summary, Failure> {
         strategies::write(&out.folder, &found.strategies, size.map(|s| s as usize), &caption, &attributes(found))?;
     }
     plots::write_plots(found, &mut out, &caption)?;
+    if let (Some(what), Some(r)) = (export, &found.radiosity) {
+        mesh::write_mesh(r, what, &mut out)?;
+    }
     out.names.push("index.html".into());
     out.names.push("summary.json".into());
     let summary = summarise(found, &out.names);
@@ -141,12 +146,17 @@ fn tail_bound(g: DVec3, last: DVec3) -> DVec3 {
 
 fn radiosity_summary(r: &Discrete) -> summary::Radiosity {
     let (fine, coarse) = (r.fine.series.image(), r.coarse.series.image());
+    let limit = radius_limit(&r.radii);
+    let of = |f: &dyn Fn(&Limit) -> f64| limit.map_or(DVec3::NAN, |l| DVec3::from_array(l.each_ref().map(f)));
     summary::Radiosity {
         patches: r.matrix.radiosity.patches().len(),
         terms: fine.terms.iter().map(|t| t.mean).collect(),
         sum: fine.sum.mean,
         full: fine.total.mean,
         spectral_radius: DVec3::from_array([0, 1, 2].map(|c| r.matrix.spectral[c].radius)),
+        spectral_radius_limit: of(&|l| l.value),
+        spectral_radius_limit_error: of(&|l| l.half_width),
+        norms: summary::bounce_norms(r.matrix.radiosity.patches(), &r.matrix.terms),
         discretisation: (fine.total.mean - coarse.total.mean).abs(),
     }
 }

@@ -21,7 +21,7 @@ mod weight;
 
 use super::form_factor::FormFactors;
 pub use columns::{Columns, PatchColumns, Transposed};
-pub use lanczos::{Extremes, extremes};
+pub use lanczos::{Extremes, Ritz, extremes, leading};
 use rayon::prelude::*;
 pub use spectrum::{Spectral, spectral_radius};
 pub use weight::Weight;

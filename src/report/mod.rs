@@ -18,6 +18,8 @@
 //! | `NAME-ratios.svg` of the zoo and its PNG | [`signature`] |
 //! | `summary.json` | [`summary`] |
 //! | `modes.svg`, `modes-painted.png` | [`modes`] |
+//! | `eigenvalues.svg`, `eigenvalues.csv` of a sweep over patches | [`drift`] |
+//! | `mesh.csv`, `norms.csv`, `F.npy` | [`patches`] |
 //! | `solvers.svg`, its PNG, `history.csv` | [`solvers`] |
 //! | the whole from its first terms | [`extrapolation`] |
 //! | `index.html` | [`html`] |
@@ -28,6 +30,7 @@ mod base64;
 mod canvas;
 pub mod decay;
 pub mod diagnosis;
+pub mod drift;
 pub mod equilibrium;
 mod error;
 pub mod exr;
@@ -39,6 +42,7 @@ pub mod markdown;
 pub mod modes;
 mod null_as_nan;
 mod panel;
+pub mod patches;
 pub mod picture;
 pub mod plot;
 pub mod pyramid;

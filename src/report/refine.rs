@@ -14,7 +14,8 @@ use super::{
     table::{Side, aligned, significant},
     typeset::{Caption, superscript},
 };
-use crate::stats::{Order, convergence_order};
+use crate::stats::{Limit, Order, convergence_order};
+use crate::worlds::discrete::radius_limit;
 use crate::worlds::refine::{Mesh, Quantity, Refinement};
 
 /// Quantity by quantity: the error of the image mean on every mesh and the fitted order, of the mean and of the image.
@@ -39,15 +40,28 @@ pub fn table(r: &Refinement, max_bounces: usize) -> String {
     let mesh = |m: &Mesh| {
         format!(
             "{}: h = {:.3} m, ρ(T_h) = ({:.5}, {:.5}, {:.5}), {:.1} s",
-            m.patches, m.h, m.radius.x, m.radius.y, m.radius.z, m.seconds
+            m.patches, m.h, m.radius.value.x, m.radius.value.y, m.radius.value.z, m.seconds
         )
     };
     let all = Quantity::all(max_bounces);
     let means = rows_of(&all, &|m, q| r.mean_error(m, q));
     let images = rows_of(&all[..=max_bounces], &|m, q| image_error(r, m, q));
     format!(
-        "{}\n\nerror of the image mean, by patches (± standard error)\n{means}\nerror over the image ‖R_h − R‖/‖R‖, noise taken out; negative: noise is all there is\n{images}",
-        r.meshes.iter().map(mesh).collect::<Vec<_>>().join("\n")
+        "{}{}\n\nerror of the image mean, by patches (± standard error)\n{means}\nerror over the image ‖R_h − R‖/‖R‖, noise taken out; negative: noise is all there is\n{images}",
+        r.meshes.iter().map(mesh).collect::<Vec<_>>().join("\n"),
+        radius_limit(&r.meshes.iter().map(|m| m.radius).collect::<Vec<_>>())
+            .map_or(String::new(), |l| format!("\n{}", limit_words(&l)))
+    )
+}
+
+/// The spectral radius for h → 0, with what it rests on.
+pub fn limit_words(limit: &[Limit; 3]) -> String {
+    let each = |f: &dyn Fn(&Limit) -> String| limit.each_ref().map(f).join(", ");
+    format!(
+        "extrapolated to h → 0: ({})\n±({}), for orders {} in h; an estimate, no bound",
+        each(&|l| format!("{:.5}", l.value)),
+        each(&|l| format!("{:.0e}", l.half_width)),
+        each(&|l| format!("{:.1} to {:.1}", l.orders[0], l.orders[1])),
     )
 }
 
@@ -94,9 +108,9 @@ pub fn csv(r: &Refinement, max_bounces: usize) -> String {
                 q,
                 number(i),
                 number(t),
-                m.radius.x,
-                m.radius.y,
-                m.radius.z,
+                m.radius.value.x,
+                m.radius.value.y,
+                m.radius.value.z,
                 m.seconds
             );
         }

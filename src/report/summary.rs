@@ -16,7 +16,7 @@
 //! | `tail` | estimate: everything longer than K; all `null` with `replicates` 0 where paths are cut at K (`--roulette none`) |
 //! | `sum` | estimate: Σ_{k≤K} of the terms |
 //! | `path` | estimate by the full path tracer, or `null` |
-//! | `radiosity` | the matrix world, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solve), `spectral_radius` per channel, `discretisation` (abs. difference to half as many patches) |
+//! | `radiosity` | the matrix world, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solve), `spectral_radius` per channel, `spectral_radius_limit` and its `…_error` (h → 0, from three meshes), `norms` (k, 1-, 2- and 1/ρ-weighted norm of T_h^k E over the patches), `discretisation` (abs. difference to half as many patches) |
 //! | `bounds` | `max_albedo` per channel (the guarantee ‖T‖₁ ≤ max albedo), `observed_rate` and `observed_rate_error` (fitted, no guarantee), `tail_bound` (a-posteriori bound of the surface norm beyond K) |
 //! | `cross_moments` | of paths without roulette up to vertex K, or `null` where none were recorded: `max_bounces` (their own K), `paths`, `beyond` (q from vertex K on), `slots` (per slot `vertex`, `kind` `hit`, `connect` or `tail`, and `term`), `second` and `product` (per channel M_ab and m_ab, rows of numbers), `rays` (per path, by slot); see [`crate::stats::schedule`] for what they predict |
 //! | `verdicts` | list of `name`, `effect`, `interval`, `p`, `min_detectable`, `outcome` (`agrees`, `differs`, `inconclusive`) |
@@ -30,6 +30,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ReportError, files, null_as_nan::NullAsNan, write_atomically};
 use crate::estimator::Vertices;
+use crate::operator::patches::{Patch, Patches};
 use crate::stats;
 use crate::terms::{Estimate, Recorded, Series};
 
@@ -138,10 +139,53 @@ pub struct Radiosity {
     pub sum: DVec3,
     /// The solve of L = E + T L.
     pub full: DVec3,
-    /// Spectral radius of T, per channel.
+    /// Spectral radius of T_h, per channel.
     pub spectral_radius: DVec3,
+    /// Extrapolated to h → 0 from three meshes; NaN if not known.
+    #[serde(default = "not_known")]
+    pub spectral_radius_limit: DVec3,
+    /// Half width of what is allowed for there: an estimate, no bound.
+    #[serde(default = "not_known")]
+    pub spectral_radius_limit_error: DVec3,
+    /// Norms of T_h^k E over the patches, k = 0..=K.
+    #[serde(default)]
+    pub norms: Vec<BounceNorms>,
     /// |R_h − R_2h| of the image mean: how much the mesh may matter.
     pub discretisation: DVec3,
+}
+
+fn not_known() -> DVec3 {
+    DVec3::NAN
+}
+
+/// Norms of one term over the surfaces, per channel; radiance in W sr⁻¹ m⁻².
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BounceNorms {
+    /// Applications of T.
+    pub k: usize,
+    /// ‖x‖₁ = Σ Aᵢ |xᵢ|.
+    pub norm_1: DVec3,
+    /// ‖x‖₂ = √Σ Aᵢ xᵢ².
+    pub norm_2: DVec3,
+    /// ‖x‖_w = √Σ Aᵢ xᵢ²/ρᵢ over the patches with ρ > 0: the norm in which ratios never fall.
+    pub norm_w: DVec3,
+}
+
+/// The norms of every term.
+pub fn bounce_norms(patches: &Patches, terms: &[Vec<DVec3>]) -> Vec<BounceNorms> {
+    let norms = |(k, term): (usize, &Vec<DVec3>)| {
+        let sum = |f: &dyn Fn(&Patch, DVec3) -> DVec3| patches.iter().zip(term).map(|(p, x)| f(p, *x)).sum::<DVec3>();
+        BounceNorms {
+            k,
+            norm_1: sum(&|p, x| p.area * x.abs()),
+            norm_2: sum(&|p, x| p.area * x * x).powf(0.5),
+            norm_w: sum(&|p, x| {
+                DVec3::select(p.reflectance.cmpgt(DVec3::ZERO), p.area * x * x / p.reflectance, DVec3::ZERO)
+            })
+            .powf(0.5),
+        }
+    };
+    terms.iter().enumerate().map(norms).collect()
 }
 
 /// What is known about the decay.

@@ -12,7 +12,7 @@ pub struct Builtin {
 }
 
 /// Every built-in scene; the first is the default of the program.
-pub const ALL: [Builtin; 13] = [
+pub const ALL: [Builtin; 14] = [
     Builtin {
         name: "cornell",
         summary: "a Cornell box of quads and two blocks, colours bleeding",
@@ -77,6 +77,11 @@ pub const ALL: [Builtin; 13] = [
         name: "many-lights",
         summary: "96 lamps from 0.01 to 10 W: choosing lights by power or uniformly",
         source: include_str!("../../scenes/many-lights.toml"),
+    },
+    Builtin {
+        name: "cube",
+        summary: "a closed cube under a glowing ceiling: means and r(T) of three problems, known exactly",
+        source: include_str!("../../scenes/cube.toml"),
     },
 ];
 

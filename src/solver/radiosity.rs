@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | T_h | diag(ρ) F of one channel | [`Radiosity::operator`] |
 //! | E | emission per patch | [`Radiosity::emission`] |
-//! | A | area of all reflecting sides, covered or not | [`Radiosity::surface_mean`] |
+//! | A | area of all reflecting sides, covered or not | [`Patches::surface_mean`] |
 //! | M | diag(ρ²/s) F: second moments of a walk with survival s | [`Radiosity::second_moment_radius`] |
 //! | | diag(ρ⁴/s³) F: moments of fourth order | [`Radiosity::fourth_moment_radius`] |
 
@@ -99,12 +99,6 @@ impl Radiosity {
             direct::residual(&self.operator(c), &self.emission(c), &values)
         };
         DVec3::new(one(0), one(1), one(2))
-    }
-
-    /// Σ Aᵢ xᵢ / A: the mean over all reflecting sides, with zero on what is covered.
-    pub fn surface_mean(&self, x: &[DVec3]) -> DVec3 {
-        let sum: DVec3 = x.iter().zip(&self.factors.area).map(|(x, a)| *a * *x).sum();
-        sum / self.patches.surface_area()
     }
 
     /// r(T_h) per channel, to 10⁻¹² per step.

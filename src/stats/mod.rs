@@ -44,7 +44,7 @@ pub use detector::{Detector, Finding};
 pub use hypothesis::{Measured, critical, difference, holm, two_sided_p};
 pub use moments::{Moments, estimate};
 pub use optimal::optimal_reach;
-pub use order::{Order, convergence_order};
+pub use order::{Limit, Order, convergence_order, limit};
 pub use power::{min_detectable, needed_samples};
 pub use schedule::{Noise, Part, Separable};
 pub use sequential::MeanSequence;

@@ -1,7 +1,8 @@
-//! The observed order of convergence.
+//! The observed order of convergence, and the limit of what is known on a few meshes.
 //!
 //! ```text
 //! |e(h)| ≈ c h^p      ln |e| = ln c + p ln h,   Var ln |e| ≈ (s/e)²
+//! v ≈ v(h) + (v(h) − v(H)) / ((H/h)^p − 1)       p: (v(H) − v(G))/(v(h) − v(H)) = (G^p − H^p)/(H^p − h^p),  G > H > h
 //! ```
 //!
 //! | symbol | meaning | place |
@@ -9,10 +10,15 @@
 //! | h | width of the mesh | `points` |
 //! | e, s | error at that width, its standard error | `points` |
 //! | p | the order | [`Order::order`] |
+//! | v | limit for h → 0 (Richardson) | [`Limit::value`] |
 //!
 //! The logarithm is taken to first order, so only errors above [`CLEAR`] standard errors count. Errors that share their noise (one
 //! reference for all meshes) move together; that is left out, and makes the error of p a little too large where the noise is that of
 //! the reference. A sign that changes between meshes has no order.
+
+//!
+//! Reference: Richardson and Gaunt, *The deferred approach to the limit* (1927); Roache, *Perspective: a method for uniform
+//! reporting of grid refinement studies* (1994).
 
 use super::line;
 use nalgebra::DMatrix;
@@ -69,4 +75,62 @@ pub fn convergence_order(points: &[(f64, f64, f64)]) -> Option<Order> {
         meshes: x.len(),
         p,
     })
+}
+
+/// The orders that a limit allows for: 1 + 2β of an edge with exponent β ≥ 0, and 2 of smooth light.
+pub const ORDERS: [f64; 2] = [1.0, 2.0];
+/// How far the order may be from the one that three meshes show.
+pub const SLACK: f64 = 0.25;
+
+/// A value for h → 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// The middle of what the orders give.
+    pub value: f64,
+    /// Half of the span of what they give, and two standard errors of the noise: an estimate, no bound.
+    pub half_width: f64,
+    /// The least and the largest order allowed for.
+    pub orders: [f64; 2],
+}
+
+/// The limit of a value of which `points` = (h, v, s) are known, coarsest first; the last three are used.
+///
+/// Three meshes show an order; it is taken to be right within [`SLACK`], inside [`ORDERS`]. Where two are all there is, or
+/// three that turn back, all of [`ORDERS`] is allowed for. None with fewer than two.
+///
+/// ```
+/// use fredholm::stats::limit;
+/// let points = [0.4, 0.2, 0.1].map(|h: f64| (h, 0.7 - h.powf(1.6), 0.0));
+/// let found = limit(&points).unwrap();
+/// assert!((found.value - 0.7).abs() < found.half_width && found.half_width < 0.2 * 0.1f64.powf(1.6));
+/// assert!((0.5 * (found.orders[0] + found.orders[1]) - 1.6).abs() < 1e-9);
+/// assert_eq!(limit(&points[1..]).unwrap().orders, [1.0, 2.0]);
+/// ```
+pub fn limit(points: &[(f64, f64, f64)]) -> Option<Limit> {
+    let [.., (wide, before, noise), (h, value, own)] = *points else { return None };
+    let step = value - before;
+    let shown = match *points {
+        [.., (widest, first, _), _, _] => {
+            let ratio = |p: f64| (widest.powf(p) - wide.powf(p)) / (wide.powf(p) - h.powf(p));
+            let seen = (before - first) / step;
+            (seen > 0.0 && seen.is_finite()).then(|| solve(ratio, seen))
+        }
+        _ => None,
+    };
+    let orders = shown.map_or(ORDERS, |p| [(p - SLACK).max(ORDERS[0]), (p + SLACK).min(ORDERS[1])]);
+    let factor = |p: f64| 1.0 / ((wide / h).powf(p) - 1.0);
+    let [most, least] = orders.map(factor);
+    let middle = 0.5 * (most + least);
+    let noise = ((1.0 + middle) * own).hypot(middle * noise);
+    Some(Limit { value: value + middle * step, half_width: 0.5 * (most - least) * step.abs() + 2.0 * noise, orders })
+}
+
+/// The p of [`ORDERS`] with `f(p)` nearest to `seen`, f increasing.
+fn solve(f: impl Fn(f64) -> f64, seen: f64) -> f64 {
+    let [mut low, mut high] = ORDERS;
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if f(middle) < seen { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
 }

@@ -3,16 +3,17 @@
 //! `T_h = diag(ρ) F` as a matrix or as stored rays ([`realisation`](super::realisation)), `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
 //! same camera rays, gives the discretisation error |R_h − R_2h| that stands beside the Monte Carlo error in every verdict.
 
-use super::realisation::{Difference, Factors, Realisation, Sampling as RaySampling};
+use super::realisation::{Difference, Factors, Realisation, Sampling as RaySampling, Stored};
 use super::{Observer, Settings, sampled, sampled::Sampled};
 use crate::estimator::Gather;
 use crate::operator::SceneTransport;
 use crate::operator::form_factor::{FormFactors, Invariants, Sampling, Watch};
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
-use crate::operator::rays::{Light, Rays, Record, record};
+use crate::operator::rays::{Half, Light, Rays, Record, record};
 use crate::scene::{Description, Scene, SceneError};
 use crate::solver::{Radiosity, Solution};
+use crate::stats::{Limit, limit};
 use crate::terms::{TermImage, World};
 use glam::DVec3;
 use std::sync::Mutex;
@@ -74,26 +75,15 @@ pub fn matrix(
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Matrix, MatrixError> {
-    let patches = Patches::new(description, patches)?;
-    match settings.factors {
+    Ok(match settings.factors {
         Factors::Dense => {
-            let m = dense(patches, scene, settings.max_bounces, observer, stop)?;
-            Ok(Matrix {
-                radiosity: Realisation::Dense(m.radiosity),
-                terms: m.terms,
-                solution: m.solution,
-                invariants: m.invariants,
-                spectral: m.spectral,
-                norms: m.norms,
-                sampling: None,
-                surface: m.surface,
-            })
+            let (k, grading) = (settings.max_bounces, settings.grading);
+            dense_matrix(description, scene, patches, grading, k, observer, stop)?.held_as(Realisation::from)
         }
-        Factors::Rays(per_row) => {
-            let rays = trace(&patches, scene, per_row, settings.seed, observer, stop)?;
-            by_rays(patches, rays, settings.max_bounces)
+        Factors::Rays(n) => {
+            sampled_matrix(description, scene, patches, n, settings, observer, stop)?.held_as(Realisation::from)
         }
-    }
+    })
 }
 
 /// The same as a dense matrix, for what asks for its entries.
@@ -104,11 +94,30 @@ pub fn dense_matrix(
     description: &Description,
     scene: &Scene,
     patches: usize,
+    grading: f64,
     max_bounces: usize,
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Matrix<Radiosity>, MatrixError> {
-    dense(Patches::new(description, patches)?, scene, max_bounces, observer, stop)
+    dense(Patches::graded(description, patches, grading)?, scene, max_bounces, observer, stop)
+}
+
+/// The same as `per_row` stored rays, for what applies T once more.
+///
+/// # Errors
+/// See [`MatrixError`].
+pub fn sampled_matrix(
+    description: &Description,
+    scene: &Scene,
+    patches: usize,
+    per_row: u32,
+    settings: &Settings,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Result<Matrix<Stored>, MatrixError> {
+    let patches = Patches::graded(description, patches, settings.grading)?;
+    let rays = trace(&patches, scene, per_row, settings.seed, observer, stop)?;
+    by_rays(Stored { patches, rays }, settings.max_bounces)
 }
 
 /// Passes the highest count of rows on.
@@ -143,7 +152,7 @@ fn dense(
     }
     let terms = radiosity.terms(max_bounces);
     let solution = radiosity.solve().map_err(|_| MatrixError::Singular)?;
-    let surface = terms.iter().map(|t| radiosity.surface_mean(t)).collect();
+    let surface = terms.iter().map(|t| radiosity.patches.surface_mean(t)).collect();
     let norms = Some(radiosity.norms());
     Ok(Matrix { spectral, norms, radiosity, terms, solution, invariants, sampling: None, surface })
 }
@@ -162,8 +171,8 @@ fn trace(
     Rays::new(patches, scene, per_row as usize, seed, watch).map_err(|_| MatrixError::Stopped)
 }
 
-fn by_rays(patches: Patches, rays: Rays, max_bounces: usize) -> Result<Matrix, MatrixError> {
-    let light = Light { patches: &patches, rays: &rays };
+fn by_rays(stored: Stored, max_bounces: usize) -> Result<Matrix<Stored>, MatrixError> {
+    let light = Light { patches: &stored.patches, rays: &stored.rays };
     let (solution, spectral, sampling) = solve_by_rays(&light)?;
     let c = sampling.checks;
     let invariants = Invariants {
@@ -175,11 +184,9 @@ fn by_rays(patches: Patches, rays: Rays, max_bounces: usize) -> Result<Matrix, M
         largest: c.largest,
     };
     let terms = light.terms(max_bounces);
-    let traced = (rays.n * rays.per_row) as u64;
-    drop(rays);
-    let radiosity = Realisation::Rays(patches, traced);
-    let surface = terms.iter().map(|t| radiosity.surface_mean(t)).collect();
-    Ok(Matrix { spectral, norms: None, radiosity, terms, solution, invariants, sampling: Some(sampling), surface })
+    let surface = terms.iter().map(|t| stored.patches.surface_mean(t)).collect();
+    let sampling = Some(sampling);
+    Ok(Matrix { radiosity: stored, terms, solution, invariants, spectral, norms: None, sampling, surface })
 }
 
 fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], RaySampling), MatrixError> {
@@ -193,8 +200,24 @@ fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], RaySampl
     }
     let u: Vec<DVec3> = solved.radiance.iter().zip(light.patches.iter()).map(|(l, p)| *l - p.emission).collect();
     let noise = light.norm(&light.noise(&solved.radiance)) / light.norm(&u);
-    let sampling = RaySampling { per_row: light.rays.per_row, noise, checks: light.checks(), steps: solved.steps };
+    let radius_noise = radius_noise(light, &spectral);
+    let checks = light.checks();
+    let sampling = RaySampling { per_row: light.rays.per_row, noise, radius_noise, checks, steps: solved.steps };
     Ok((Solution { radiance: solved.radiance, residual: solved.residual }, spectral, sampling))
+}
+
+/// The standard error of r to first order, from what the halves of every row make of the mode: rows are independent.
+fn radius_noise(light: &Light<'_>, spectral: &[Spectral; 3]) -> DVec3 {
+    let [r, g, b] = spectral.each_ref().map(|s| &s.mode);
+    let mode: Vec<DVec3> = (0..r.len()).map(|i| DVec3::new(r[i], g[i], b[i])).collect();
+    let [first, second] = [Half::First, Half::Second].map(|half| light.bounce(&mode, half));
+    let (mut square, mut length) = (DVec3::ZERO, DVec3::ZERO);
+    for (i, p) in light.patches.iter().enumerate() {
+        let weight = DVec3::select(p.reflectance.cmpgt(DVec3::ZERO), p.area / p.reflectance, DVec3::ZERO);
+        let off = weight * mode[i] * 0.5 * (first[i] - second[i]);
+        (square, length) = (square + off * off, length + weight * mode[i] * mode[i]);
+    }
+    square.powf(0.5) / length
 }
 
 impl Matrix {
@@ -265,6 +288,49 @@ impl Matrix<Radiosity> {
     }
 }
 
+/// The spectral radius on one mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Radius {
+    /// √(area/patches), m.
+    pub h: f64,
+    /// r(T_h) per channel.
+    pub value: DVec3,
+    /// Its standard error from the sampling of stored rays; 0 for a dense matrix.
+    pub noise: DVec3,
+}
+
+impl<R> Matrix<R> {
+    /// The same, with T held in another way.
+    fn held_as<S>(self, form: impl FnOnce(R) -> S) -> Matrix<S> {
+        Matrix {
+            radiosity: form(self.radiosity),
+            terms: self.terms,
+            solution: self.solution,
+            invariants: self.invariants,
+            spectral: self.spectral,
+            norms: self.norms,
+            sampling: self.sampling,
+            surface: self.surface,
+        }
+    }
+
+    /// The spectral radius of a matrix on these patches.
+    pub fn radius(&self, patches: &Patches) -> Radius {
+        let area: f64 = patches.iter().map(|p| p.area).sum();
+        Radius {
+            h: (area / patches.len() as f64).sqrt(),
+            value: DVec3::from_array(self.spectral.each_ref().map(|s| s.radius)),
+            noise: self.sampling.map_or(DVec3::ZERO, |s| s.radius_noise),
+        }
+    }
+}
+
+/// The spectral radius for h → 0 per channel, from meshes, coarsest first.
+pub fn radius_limit(meshes: &[Radius]) -> Option<[Limit; 3]> {
+    let of = |c: usize| limit(&meshes.iter().map(|m| (m.h, m.value[c], m.noise[c])).collect::<Vec<_>>());
+    Some([of(0)?, of(1)?, of(2)?])
+}
+
 /// The fine matrix and its picture, and the picture of the coarse one.
 pub struct Discrete {
     /// The mesh asked for.
@@ -273,6 +339,8 @@ pub struct Discrete {
     pub fine: Sampled,
     /// The mesh twice as coarse, along the same rays.
     pub coarse: Sampled,
+    /// Spectral radii of a mesh four times as coarse (without a picture), the coarse and the fine one.
+    pub radii: [Radius; 3],
 }
 
 /// The whole discrete world.
@@ -289,9 +357,11 @@ pub fn radiosity(
     let one = |patches: usize| {
         let matrix = matrix(description, scene, patches, settings, observer, stop)?;
         let picture = matrix.through_camera(scene, settings, observer, stop);
-        Ok::<_, MatrixError>((matrix, picture))
+        let radius = matrix.radius(matrix.radiosity.patches());
+        Ok::<_, MatrixError>((matrix, picture, radius))
     };
-    let (_, coarse) = one((settings.patches / 4).max(1))?;
-    let (matrix, fine) = one(settings.patches)?;
-    Ok(Discrete { matrix, fine, coarse })
+    let coarsest = matrix(description, scene, (settings.patches / 16).max(1), settings, observer, stop)?;
+    let (_, coarse, second) = one((settings.patches / 4).max(1))?;
+    let (matrix, fine, third) = one(settings.patches)?;
+    Ok(Discrete { radii: [coarsest.radius(coarsest.radiosity.patches()), second, third], matrix, fine, coarse })
 }

@@ -65,6 +65,8 @@ pub struct Settings {
     pub path_roulette: Roulette,
     /// About how many patches the matrix has.
     pub patches: usize,
+    /// How much narrower its patches get towards edges; 1: not at all ([`Patches::graded`](crate::operator::patches::Patches::graded)).
+    pub grading: f64,
     /// How its form factors are held.
     pub factors: realisation::Factors,
     /// Read the patch under the pixel instead of gathering.
@@ -86,6 +88,7 @@ impl Default for Settings {
             roulette: end.clone().after(max_bounces),
             path_roulette: end,
             patches: 600,
+            grading: 1.0,
             factors: realisation::Factors::Dense,
             read_patches: false,
         }

@@ -2,14 +2,14 @@
 //!
 //! | | dense | rays |
 //! |---|---|---|
-//! | F | [`FormFactors`](crate::operator::form_factor::FormFactors), n² numbers | [`Rays`](crate::operator::rays::Rays), N hits a row, let go once everything is solved |
+//! | F | [`FormFactors`](crate::operator::form_factor::FormFactors), n² numbers | [`Rays`], N hits a row, let go once everything is solved |
 //! | good to | about 10⁴ patches | 10⁶ |
 //! | solve | LU | Neumann series |
 //! | error beside that of the mesh | visibility samples, not stated | the bar of the two halves, stated |
 
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
-use crate::operator::rays::RayChecks;
+use crate::operator::rays::{RayChecks, Rays};
 use crate::solver::Radiosity;
 use glam::DVec3;
 
@@ -31,6 +31,28 @@ pub enum Realisation {
     /// The mesh that rays were traced on, and how many. They are three quarters of the memory, and nothing reads them after
     /// the solve.
     Rays(Patches, u64),
+}
+
+/// Stored rays with their mesh, for what applies T once more.
+#[derive(Clone, Debug)]
+pub struct Stored {
+    /// The mesh.
+    pub patches: Patches,
+    /// Its rows.
+    pub rays: Rays,
+}
+
+impl From<Radiosity> for Realisation {
+    fn from(matrix: Radiosity) -> Self {
+        Self::Dense(matrix)
+    }
+}
+
+/// Lets the rays go.
+impl From<Stored> for Realisation {
+    fn from(Stored { patches, rays }: Stored) -> Self {
+        Self::Rays(patches, (rays.n * rays.per_row) as u64)
+    }
 }
 
 impl Realisation {
@@ -57,12 +79,6 @@ impl Realisation {
             Self::Rays(_, rays) => *rays,
         }
     }
-
-    /// Σ Aᵢ xᵢ / A: the mean over all reflecting sides, with zero on what is covered.
-    pub fn surface_mean(&self, x: &[DVec3]) -> DVec3 {
-        let patches = self.patches();
-        patches.iter().zip(x).map(|(p, x)| p.area * *x).sum::<DVec3>() / patches.surface_area()
-    }
 }
 
 /// What is known about the sampling of stored rays.
@@ -72,6 +88,8 @@ pub struct Sampling {
     pub per_row: usize,
     /// Relative L² error bar of the reflected light u, per channel, from the halves of the rows.
     pub noise: DVec3,
+    /// Standard error of the spectral radius, per channel, from the halves of the rows: too large by about a third.
+    pub radius_noise: DVec3,
     /// What must hold, as measured.
     pub checks: RayChecks,
     /// Applications of T that the solve took.

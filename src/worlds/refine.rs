@@ -15,10 +15,13 @@
 //! All meshes are read along the same camera rays, so that what changes from one to the next is the mesh. T⁰ and T¹ are no
 //! question to a matrix (what is read is E itself) and serve as controls.
 
-use super::discrete::{self, MatrixError};
+use super::discrete::{self, MatrixError, Radius};
 use super::sampled::{self, Estimator, Sampled};
 use super::{Observer, Settings};
+use crate::operator::edges::essential_band;
+use crate::operator::matrix::{Ritz, leading};
 use crate::scene::{Description, Scene};
+use crate::solver::Radiosity;
 use crate::terms::Estimate;
 use glam::DVec3;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -33,9 +36,33 @@ pub struct Mesh {
     /// Through the camera.
     pub picture: Sampled,
     /// Spectral radius per channel.
-    pub radius: DVec3,
+    pub radius: Radius,
+    /// Leading eigenvalues of one channel, where they were asked for.
+    pub spectrum: Option<Ends>,
     /// Seconds for form factors, terms and solve.
     pub seconds: f64,
+}
+
+/// The ends of the spectrum of a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ends {
+    /// The largest eigenvalues, falling, and the most negative, rising.
+    pub values: [Vec<Ritz>; 2],
+    /// Half width of the band of the edges.
+    pub band: f64,
+    /// 0, 1 or 2: that of the largest spectral radius.
+    pub channel: usize,
+}
+
+/// Applications of T that eigenvalues may take, and how well they are known.
+const STEPS: usize = 200;
+const TOLERANCE: f64 = 1e-5;
+
+fn ends(radiosity: &Radiosity, radius: DVec3, count: usize) -> Ends {
+    let channel = (0..3).fold(0, |best, c| if radius[c] > radius[best] { c } else { best });
+    let t = radiosity.operator(channel);
+    let band = essential_band(&radiosity.patches, &radiosity.factors, &t.rho).half_width;
+    Ends { values: leading(&t, &t.weight(), count, TOLERANCE, STEPS), band, channel }
 }
 
 /// Meshes, coarsest first, and the truth.
@@ -113,7 +140,8 @@ impl Refinement {
     }
 }
 
-/// Solves on about as many patches as asked for, coarsest first, and renders the truth with `spp` samples per pixel.
+/// Solves on about as many patches as asked for, coarsest first, and renders the truth with `spp` samples per pixel. Of
+/// dense matrices the `eigenvalues` leading eigenvalues of either sign are found, if that is not 0.
 ///
 /// # Errors
 /// See [`MatrixError`]; what was finished before an interruption comes back.
@@ -121,6 +149,7 @@ pub fn refine(
     description: &Description,
     scene: &Scene,
     patches: &[usize],
+    eigenvalues: usize,
     settings: &Settings,
     observer: &dyn Observer,
     stop: &AtomicBool,
@@ -139,10 +168,10 @@ pub fn refine(
         };
         let seconds = started.elapsed().as_secs_f64();
         let picture = matrix.through_camera(scene, settings, observer, stop);
-        let area: f64 = matrix.radiosity.patches().iter().map(|p| p.area).sum();
+        let radius = matrix.radius(matrix.radiosity.patches());
+        let spectrum = matrix.radiosity.dense().filter(|_| eigenvalues > 0).map(|r| ends(r, radius.value, eigenvalues));
         let patches = matrix.radiosity.patches().len();
-        let radius = DVec3::from_array([0, 1, 2].map(|c| matrix.spectral[c].radius));
-        meshes.push(Mesh { patches, h: (area / patches as f64).sqrt(), picture, radius, seconds });
+        meshes.push(Mesh { patches, h: radius.h, picture, radius, spectrum, seconds });
     }
     Ok(Refinement { meshes, truth })
 }

@@ -13,6 +13,11 @@ pub fn size(s: &str) -> Result<[u32; 2], String> {
     Ok([side(w)?, side(h)?])
 }
 
+pub fn grading(s: &str) -> Result<f64, String> {
+    let g: f64 = s.parse().map_err(|_| format!("`{s}` is not a number"))?;
+    if (1.0..=8.0).contains(&g) { Ok(g) } else { Err("a grading is a number from 1 to 8".into()) }
+}
+
 /// `30s`, `1.5m`, `500ms`; a bare number is seconds.
 pub fn duration(s: &str) -> Result<Duration, String> {
     let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];

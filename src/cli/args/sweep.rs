@@ -57,6 +57,11 @@ pub struct Sweep {
     /// A render of its own has another stream.
     #[arg(long, value_name = "DIR|SPP", verbatim_doc_comment)]
     pub reference: Option<String>,
+    /// With --over patches: the N largest and the N most negative eigenvalues on every mesh
+    ///
+    /// Of the channel with the largest spectral radius. Also written: eigenvalues.csv, .svg, .png.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16), verbatim_doc_comment)]
+    pub eigenvalues: Option<u16>,
     /// Samples of the pilot of --over split [default: a quarter of --spp]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=1 << 24))]
     pub pilot: Option<u32>,

@@ -54,7 +54,7 @@ impl Common {
     /// The scene, in a small picture unless a size was asked for.
     fn load(&self, name: &str, most: u32) -> Result<Opened, Failure> {
         open::threads(self.shared.threads)?;
-        let mut opened = open::scene(name, &self.shared.set, &self.shared.emit, None)?;
+        let mut opened = open::scene(name, &self.shared.changes, None)?;
         let size = self.size.unwrap_or_else(|| small(opened.description.camera.size, most));
         opened.description.camera.size = size;
         Ok(Opened { scene: Scene::new(&opened.description), ..opened })

@@ -8,7 +8,7 @@ use fredholm::diagnosis::candidates::own_seed;
 use fredholm::diagnosis::picture::{Code, Layer, Pictures, Slot, shrink_factor};
 use fredholm::diagnosis::{Region, WIDEST, regions};
 use fredholm::report::{exr, summary};
-use fredholm::scene::load::{self, Options};
+use fredholm::scene::load;
 use fredholm::scene::{Description, Scene};
 use fredholm::worlds::sampled::{self, Estimator};
 use fredholm::worlds::{Settings, Unobserved};
@@ -46,15 +46,13 @@ pub struct Right {
 pub fn source(args: &Diagnose) -> Result<Source, Failure> {
     let path = Path::new(&args.against);
     if path.is_dir() || path.file_name().is_some_and(|n| n == "summary.json") {
-        if let Some(flag) =
-            [("--set", !args.shared.set.is_empty()), ("--emit", !args.shared.emit.is_empty())].iter().find(|f| f.1)
-        {
-            let what = format!("error: {} changes a scene, and {} is a finished run", flag.0, args.against);
+        if let Some(flag) = args.shared.changes.first() {
+            let what = format!("error: {flag} changes a scene, and {} is a finished run", args.against);
             return Err(Failure::Usage(format!("{what}\nhelp: give the scene itself to --against")));
         }
         return finished(path);
     }
-    let loaded = load::scene(&args.against, &Options { set: args.shared.set.clone(), emit: args.shared.emit.clone() })?;
+    let loaded = load::scene(&args.against, &args.shared.changes.options(None))?;
     for warning in &loaded.warnings {
         super::super::note(&format!("warning: {warning}"));
     }
@@ -107,8 +105,7 @@ fn scene_of(command: &str) -> Option<Description> {
         Some(args::Command::Tour(run) | args::Command::Series(run) | args::Command::Render(run)) => run,
         Some(_) => return None,
     };
-    let options = Options { set: run.shared.set.clone(), emit: run.shared.emit.clone() };
-    Some(load::scene(&run.scene, &options).ok()?.description)
+    Some(load::scene(&run.scene, &run.shared.changes.options(None)).ok()?.description)
 }
 
 /// The words of a command line as this program writes them: only single quotes.

@@ -15,7 +15,7 @@ use fredholm::solver::{self, study::Solver};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::{self, Matrix, MatrixError};
-use fredholm::worlds::realisation::{Factors, Realisation};
+use fredholm::worlds::realisation::{Factors, Stored};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -43,6 +43,11 @@ pub struct Radiosity {
     /// Show the spectrum of T and its N leading modes instead of L
     #[arg(long, value_name = "N", conflicts_with = "solver", value_parser = clap::value_parser!(u16).range(1..=64))]
     pub modes: Option<u16>,
+    /// Also write patches and terms for other programs; with `matrix` also F
+    ///
+    /// mesh: mesh.csv, mesh-terms.csv, norms.csv; matrix: F.npy, too.
+    #[arg(long, value_enum, value_name = "WHAT", conflicts_with_all = ["solver", "modes"], hide_possible_values = true)]
+    pub export: Option<Export>,
     /// What is solved.
     #[command(flatten)]
     pub run: Run,
@@ -91,6 +96,15 @@ impl SolverName {
     }
 }
 
+/// What is written for other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Export {
+    /// Patches, terms and norms
+    Mesh,
+    /// F as well
+    Matrix,
+}
+
 /// A colour channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Channel {
@@ -102,7 +116,8 @@ pub enum Channel {
     Blue,
 }
 
-const NAMES: [&str; 3] = ["red", "green", "blue"];
+/// Channels by number.
+pub const NAMES: [&str; 3] = ["red", "green", "blue"];
 
 fn csv_name(s: &str) -> Result<String, String> {
     let plain = std::path::Path::new(s).file_name().is_some_and(|n| n == s) && s.ends_with(".csv");
@@ -117,7 +132,7 @@ pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
         (None, None) if args.channel.is_some() => Err(Failure::Usage(
             "error: --channel is for --solver and --modes, and none of them is asked for\nhelp: add one of them".into(),
         )),
-        (None, None) => solve::radiosity(&args.run),
+        (None, None) => solve::radiosity(&args.run, args.export),
     }
 }
 
@@ -133,21 +148,21 @@ struct Laboratory<R = solver::Radiosity> {
 impl Laboratory {
     /// Loads, meshes and computes form factors as a matrix; `None` if interrupted.
     fn new(run: &Run, what: &str) -> Result<Option<Self>, Failure> {
-        Laboratory::prepare(run, what, Factors::Dense, |opened, settings, progress, stop| {
+        Laboratory::prepare(run, what, Factors::Dense, |opened, s, progress, stop| {
             let Opened { description, scene, .. } = opened;
-            let matrix = discrete::dense_matrix(description, scene, settings.patches, 0, progress, stop)?;
+            let matrix = discrete::dense_matrix(description, scene, s.patches, s.grading, 0, progress, stop)?;
             Ok((matrix.radiosity.patches.len(), matrix))
         })
     }
 }
 
-impl Laboratory<Realisation> {
-    /// The same in a form of choice.
-    fn held(run: &Run, what: &str, factors: Factors) -> Result<Option<Self>, Failure> {
-        Laboratory::prepare(run, what, factors, |opened, settings, progress, stop| {
+impl Laboratory<Stored> {
+    /// The same as stored rays.
+    fn sampled(run: &Run, what: &str, per_row: u32) -> Result<Option<Self>, Failure> {
+        Laboratory::prepare(run, what, Factors::Rays(per_row), |opened, s, progress, stop| {
             let Opened { description, scene, .. } = opened;
-            let matrix = discrete::matrix(description, scene, settings.patches, settings, progress, stop)?;
-            Ok((matrix.radiosity.patches().len(), matrix))
+            let matrix = discrete::sampled_matrix(description, scene, s.patches, per_row, s, progress, stop)?;
+            Ok((matrix.radiosity.patches.len(), matrix))
         })
     }
 }
@@ -164,7 +179,8 @@ impl<R> Laboratory<R> {
         guard::suits_a_matrix(&opened.description, &mut worlds, true)?;
         guard::fits_in_a_matrix(&opened.scene, factors, &mut worlds, true)?;
         let patches = run.patches.unwrap_or(600) as usize;
-        let settings = Settings { patches, factors, max_bounces: 0, seed: run.seed, ..Settings::default() };
+        let settings =
+            Settings { patches, factors, grading: run.grading, max_bounces: 0, seed: run.seed, ..Settings::default() };
         guard::rows_fit_in_memory(&settings)?;
         let name = format!("{}-{what}", opened.description.name);
         let folder = output::folder(run.shared.out.as_deref(), &name, &opened.command, run.shared.force)?;

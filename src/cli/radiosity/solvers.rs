@@ -16,7 +16,7 @@ use fredholm::solver::study::{History, Limits, Reference, Solver, System};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::Observer;
 use fredholm::worlds::discrete::MatrixError;
-use fredholm::worlds::realisation::{Factors, Realisation};
+use fredholm::worlds::realisation::{Factors, Stored};
 use serde_json::{Value, json};
 use std::sync::atomic::Ordering;
 
@@ -27,17 +27,19 @@ const APPLICATIONS: f64 = 2000.0;
 /// Solves, writes and prints.
 pub fn run(args: &Radiosity, name: SolverName) -> Result<Ending, Failure> {
     let factors = factors(args, name)?;
-    let Some(lab) = Laboratory::held(&args.run, "solvers", factors)? else { return Ok(Ending::Interrupted) };
-    let channel = lab.channel(args.channel);
-    let study = Study { args, lab: &lab, channel, name };
-    match &lab.matrix.radiosity {
-        Realisation::Dense(radiosity) => {
-            let operator = radiosity.operator(channel);
-            study.run(&System::new(&operator, radiosity.emission(channel)).map_err(|_| MatrixError::Singular)?)
+    match factors {
+        Factors::Dense => {
+            let Some(lab) = Laboratory::new(&args.run, "solvers")? else { return Ok(Ending::Interrupted) };
+            let (study, radiosity) = (Study::new(args, &lab, name), &lab.matrix.radiosity);
+            let operator = radiosity.operator(study.channel);
+            study.run(&System::new(&operator, radiosity.emission(study.channel)).map_err(|_| MatrixError::Singular)?)
         }
-        Realisation::Rays(patches, rays) => {
-            let operator = rays.operator(patches.iter().map(|p| p.reflectance[channel]).collect());
-            let direct = (0..rays.n).map(|i| rays.direct(i)[channel]).collect();
+        Factors::Rays(per_row) => {
+            let lab = Laboratory::sampled(&args.run, "solvers", per_row)?;
+            let Some(lab) = lab else { return Ok(Ending::Interrupted) };
+            let (study, Stored { patches, rays }) = (Study::new(args, &lab, name), &lab.matrix.radiosity);
+            let operator = rays.operator(patches.iter().map(|p| p.reflectance[study.channel]).collect());
+            let direct = (0..rays.n).map(|i| rays.direct(i)[study.channel]).collect();
             study.run(&System::sampled(&operator, direct).map_err(|_| MatrixError::Singular)?)
         }
     }
@@ -63,14 +65,18 @@ fn factors(args: &Radiosity, name: SolverName) -> Result<Factors, Failure> {
 }
 
 /// What was asked for.
-struct Study<'a> {
+struct Study<'a, R> {
     args: &'a Radiosity,
-    lab: &'a Laboratory<Realisation>,
+    lab: &'a Laboratory<R>,
     channel: usize,
     name: SolverName,
 }
 
-impl Study<'_> {
+impl<'a, R> Study<'a, R> {
+    fn new(args: &'a Radiosity, lab: &'a Laboratory<R>, name: SolverName) -> Self {
+        Self { args, lab, channel: lab.channel(args.channel), name }
+    }
+
     fn run<T: Transposed>(&self, system: &System<'_, T>) -> Result<Ending, Failure> {
         let Self { args, lab, .. } = self;
         let stopped = || stop_flag().load(Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! Both ends of the spectrum of T, by the method of Lanczos, with error bounds.
+//! The ends of the spectrum of T, by the method of Lanczos, with error bounds.
 //!
 //! ```text
 //! T V = V H + β v eᵀ        V: orthonormal in ⟨u, v⟩_w = Σ wᵢ uᵢ vᵢ,  H: tridiagonal
@@ -50,18 +50,76 @@ impl Extremes {
 /// assert!((ends.largest - 0.6).abs() < 1e-14 && (ends.smallest + 0.6).abs() < 1e-14);
 /// ```
 pub fn extremes<T: LinearOperator + ?Sized>(t: &T, weight: &Weight, tolerance: f64, max_steps: usize) -> Extremes {
+    let ends = |values: &[Ritz], steps: usize| {
+        let [low, high] = [values[0], values[values.len() - 1]];
+        Extremes { smallest: low.value, largest: high.value, residual: [low.residual, high.residual], steps }
+    };
+    let mut found = Extremes::default();
+    iterate(t, weight, 1, max_steps, |values, steps| {
+        found = ends(values, steps);
+        found.residual.iter().all(|r| *r <= tolerance)
+    });
+    found
+}
+
+/// A Ritz value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ritz {
+    /// θ.
+    pub value: f64,
+    /// Some eigenvalue lies within this of it.
+    pub residual: f64,
+}
+
+/// The `count` largest and the `count` smallest eigenvalues of T, self-adjoint in w, by falling distance from 0, to a residual of `tolerance`, in at
+/// most `max_steps` applications. Only positive ones come first, only negative ones second; one that is several times
+/// there may be listed once.
+///
+/// ```
+/// use fredholm::operator::{form_factor::FormFactors, matrix::{PatchOperator, leading}};
+/// let plates = FormFactors { n: 2, f: vec![0.0, 1.0, 1.0, 0.0], area: vec![1.0, 1.0], rays: 0 };
+/// let t = PatchOperator::new(&plates, vec![0.9, 0.4]);
+/// let [above, below] = leading(&t, &t.weight(), 3, 1e-12, 10);
+/// assert!(above.len() == 1 && (above[0].value - 0.6).abs() < 1e-14);
+/// assert!(below.len() == 1 && (below[0].value + 0.6).abs() < 1e-14);
+/// ```
+pub fn leading<T: LinearOperator + ?Sized>(
+    t: &T,
+    weight: &Weight,
+    count: usize,
+    tolerance: f64,
+    max_steps: usize,
+) -> [Vec<Ritz>; 2] {
+    let mut found = [vec![], vec![]];
+    iterate(t, weight, 10, max_steps, |values, _| {
+        found = [
+            values.iter().rev().take(count).take_while(|r| r.value > 0.0).copied().collect(),
+            values.iter().take(count).take_while(|r| r.value < 0.0).copied().collect(),
+        ];
+        let settled = |list: &Vec<Ritz>| list.len() == count && list.iter().all(|r| r.residual <= tolerance);
+        found.iter().all(settled)
+    });
+    found
+}
+
+/// Shows the Ritz values, ascending, after every `every` steps and at the end, until `done` says so.
+fn iterate<T: LinearOperator + ?Sized>(
+    t: &T,
+    weight: &Weight,
+    every: usize,
+    max_steps: usize,
+    mut done: impl FnMut(&[Ritz], usize) -> bool,
+) {
     // ρ where T is diag(ρ) F: the first bounce of a room that is about uniformly lit
     let rho = t.area().iter().zip(weight.values()).map(|(a, w)| if *w > 0.0 { a / w } else { 0.0 });
     let mut v: Vec<f64> = rho.enumerate().map(|(i, r)| r * scrambled(i as u64)).collect();
     let (mut basis, mut diagonal, mut below): (Vec<Vec<f64>>, Vec<f64>, Vec<f64>) = (vec![], vec![], vec![]);
-    let mut found = Extremes::default();
     let mut length = weight.norm(&v);
     let start = length;
+    if start == 0.0 {
+        return;
+    }
     for steps in 1..=max_steps {
-        // nothing new is left: the Ritz values are eigenvalues
-        if length <= 1e-14 * start || length == 0.0 {
-            break;
-        }
         v.iter_mut().for_each(|v| *v /= length);
         basis.push(std::mem::take(&mut v));
         v = vec![0.0; t.len()];
@@ -74,17 +132,18 @@ pub fn extremes<T: LinearOperator + ?Sized>(t: &T, weight: &Weight, tolerance: f
             }
         }
         length = weight.norm(&v);
-        found = ritz(&diagonal, &below, length);
-        if found.residual.iter().all(|r| *r <= tolerance) {
-            break;
+        // nothing new is left: the Ritz values are eigenvalues
+        let last = steps == max_steps || length <= 1e-14 * start;
+        let looked = (last || steps % every == 0) && done(&ritz(&diagonal, &below, length), steps);
+        if looked || last {
+            return;
         }
         below.push(length);
     }
-    found
 }
 
-/// The extreme Ritz values of a tridiagonal matrix, and their residuals.
-fn ritz(diagonal: &[f64], below: &[f64], next: f64) -> Extremes {
+/// The Ritz values of a tridiagonal matrix, ascending.
+fn ritz(diagonal: &[f64], below: &[f64], next: f64) -> Vec<Ritz> {
     let m = diagonal.len();
     let entry = |i: usize, j: usize| match i.abs_diff(j) {
         0 => diagonal[i],
@@ -92,14 +151,10 @@ fn ritz(diagonal: &[f64], below: &[f64], next: f64) -> Extremes {
         _ => 0.0,
     };
     let eigen = SymmetricEigen::new(DMatrix::from_fn(m, m, entry));
-    let last = |i: usize| next * eigen.eigenvectors[(m - 1, i)].abs();
-    let (low, high) = (eigen.eigenvalues.imin(), eigen.eigenvalues.imax());
-    Extremes {
-        smallest: eigen.eigenvalues[low],
-        largest: eigen.eigenvalues[high],
-        residual: [last(low), last(high)],
-        steps: m,
-    }
+    let one = |i: usize| Ritz { value: eigen.eigenvalues[i], residual: next * eigen.eigenvectors[(m - 1, i)].abs() };
+    let mut values: Vec<Ritz> = (0..m).map(one).collect();
+    values.sort_by(|a, b| a.value.total_cmp(&b.value));
+    values
 }
 
 /// A fixed pseudo-random number in [0.5, 1.5), by the finaliser of `SplitMix64`.

@@ -5,7 +5,7 @@
 //! ```
 
 use super::{
-    Corners, Cover, CoverTest, Finder, Grid, Near, Tree,
+    Chart, Corners, Cover, CoverTest, Finder, Grid, Near, Tree,
     finder::Walk,
     polygon::{area_vector, extent},
     sides_of,
@@ -29,6 +29,8 @@ pub(super) enum Region {
 pub(super) struct Piece {
     node: usize,
     cover: [Cover; 2],
+    /// On a graded mesh, where it has four corners.
+    chart: Option<Chart>,
 }
 
 /// A primitive after the division.
@@ -63,7 +65,7 @@ pub(super) fn outline(p: &Primitive) -> Option<Vec<DVec3>> {
 }
 
 /// Cuts every flat primitive where others meet it and finds out which pieces are covered.
-pub(super) fn regions(primitives: &[(Primitive, Sides)], cover: &CoverTest) -> Vec<Region> {
+pub(super) fn regions(primitives: &[(Primitive, Sides)], cover: &CoverTest, grading: f64) -> Vec<Region> {
     let one = |(number, &(primitive, sides)): (usize, &(Primitive, Sides))| {
         let Some(polygon) = outline(&primitive) else {
             return Region::Curved { primitive, sides: sides_of(sides).count() };
@@ -80,7 +82,9 @@ pub(super) fn regions(primitives: &[(Primitive, Sides)], cover: &CoverTest) -> V
             }
             cover.classify(number, p, if side == 0 { normal } else { -normal })
         };
-        let pieces = tree.cells().map(|(node, p)| Piece { node, cover: [side(0, p), side(1, p)] }).collect();
+        let chart = |p: &[DVec3]| if grading == 1.0 { None } else { Chart::new(grading, p, primitives, number) };
+        let piece = |(node, p)| Piece { node, cover: [side(0, p), side(1, p)], chart: chart(p) };
+        let pieces = tree.cells().map(piece).collect();
         Region::Flat { tree, pieces }
     };
     primitives.par_iter().enumerate().map(one).collect()
@@ -177,7 +181,11 @@ impl Region {
                 for piece in pieces {
                     let cells = tree.cells().find(|(i, _)| *i == piece.node).map_or(1, |(_, p)| share(p, a));
                     let first = tree.len();
-                    tree.bisect(piece.node, if piece.sides() == 0 { 1 } else { cells });
+                    let cells = if piece.sides() == 0 { 1 } else { cells };
+                    match &piece.chart {
+                        None => tree.bisect(piece.node, cells),
+                        Some(chart) => tree.grade(piece.node, cells, chart, [[0.0, 1.0]; 2]),
+                    }
                     cover[piece.node] = piece.cover;
                     cover.resize(first, [Cover::Covered; 2]);
                     cover.resize(tree.len(), piece.cover);

@@ -7,6 +7,7 @@
 
 use super::Corners;
 use super::finder::{Finder, LEAF};
+use super::grading::{Chart, Part};
 use super::polygon::{area_vector, clip, equal_area_line, extent};
 use glam::DVec3;
 
@@ -99,6 +100,18 @@ impl Tree {
         let children = self.split(cell, axis, offset);
         self.bisect(children[0], low);
         self.bisect(children[1], count - low);
+    }
+
+    /// Replaces a quadrilateral cell, the part `part` of its chart, by `count` cells.
+    pub(super) fn grade(&mut self, cell: usize, count: usize, chart: &Chart, part: Part) {
+        if count < 2 {
+            return;
+        }
+        let low = count / 2;
+        let (parts, (axis, offset)) = chart.cut(part, low as f64 / count as f64);
+        let children = self.split(cell, axis, offset);
+        self.grade(children[0], low, chart, parts[0]);
+        self.grade(children[1], count - low, chart, parts[1]);
     }
 
     fn split(&mut self, cell: usize, axis: DVec3, offset: f64) -> [usize; 2] {

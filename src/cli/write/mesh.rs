@@ -1,0 +1,20 @@
+//! `--export`: what another program needs to check the matrix, or to use it.
+
+use super::super::Failure;
+use super::super::radiosity::Export;
+use super::Files;
+use fredholm::report::{patches as mesh, summary, write_atomically};
+use fredholm::worlds::discrete::Discrete;
+
+pub(super) fn write_mesh(r: &Discrete, what: Export, out: &mut Files) -> Result<(), Failure> {
+    let m = &r.matrix;
+    let patches = m.radiosity.patches();
+    write_atomically(&out.add("mesh.csv"), mesh::mesh(patches, &m.solution.radiance).as_bytes())?;
+    write_atomically(&out.add("mesh-terms.csv"), mesh::terms(&m.terms).as_bytes())?;
+    let norms = summary::bounce_norms(patches, &m.terms);
+    write_atomically(&out.add("norms.csv"), mesh::norms(&norms).as_bytes())?;
+    if let (Export::Matrix, Some(dense)) = (what, m.radiosity.dense()) {
+        write_atomically(&out.add("F.npy"), &mesh::npy(&dense.factors))?;
+    }
+    Ok(())
+}
