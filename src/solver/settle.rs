@@ -1,7 +1,7 @@
 //! L to rounding where there is no matrix to factorise: GMRES, and again on what it left.
 //!
 //! ```text
-//! d ≈ (I − T)⁻¹ r        x ← x + d        r ← E − (I − T) x        until ‖r‖ falls no more
+//! d ≈ (I − T)⁻¹ r        x ← x + d        r ← E − (I − T) x        until ‖r‖ is rounding, or falls no more
 //! ```
 //!
 //! The residual is recomputed in every round, so that rounding within a round does not add up. L − x = (I − T)⁻¹ r, so that
@@ -16,6 +16,8 @@ use crate::operator::matrix::LinearOperator;
 
 /// Steps of a round: so many vectors are held at once.
 const STEPS: usize = 30;
+/// What a round gains, if its steps allow: half the digits, so that two rounds find all.
+const GAIN: f64 = 1e-8;
 /// Rounds at most; the slowest scene takes a few.
 const ROUNDS: usize = 200;
 
@@ -30,7 +32,7 @@ pub struct Settled {
     pub applications: usize,
 }
 
-/// Solves (I − T) x = E until the residual falls no more.
+/// Solves (I − T) x = E until the residual is rounding, or falls no more.
 ///
 /// # Errors
 /// [`Singular`] if it stays above 10⁻⁸ ‖E‖.
@@ -39,17 +41,16 @@ pub fn settle<T: LinearOperator + ?Sized>(t: &T, emission: &[f64]) -> Result<Set
     let (mut x, mut r) = (vec![0.0; emission.len()], emission.to_vec());
     let (mut now, mut applications) = (size, 0);
     for _ in 0..ROUNDS {
-        if now == 0.0 {
+        if now <= f64::EPSILON * size {
             break;
         }
         let mut round = Gmres::new(t, &r);
-        while round.recurrence() > 1e-12 * now && round.applications() < STEPS as f64 && round.advance() {}
+        while round.recurrence() > GAIN * now && round.applications() < STEPS as f64 && round.advance() {}
         let next: Vec<f64> = x.iter().zip(round.iterate()).map(|(x, d)| x + d).collect();
         let left = residual(t, emission, &next);
         applications += round.applications() as usize + 1;
         let after = t.norm(&left);
-        // written so that NaN ends it, too
-        if !(after < now) {
+        if after >= now || after.is_nan() {
             break;
         }
         let settled = after > 0.5 * now;

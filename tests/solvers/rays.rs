@@ -134,7 +134,8 @@ fn expressions_are_solved_like_matrices() {
         let square = one.power(2);
         let mean = one.plus(&square).unwrap().scaled(0.5);
         let all = eigenvalues(&t);
-        let polynomials: [(&str, &Expression<'_>, fn(f64) -> f64); 3] =
+        type Polynomial<'a, 'b> = (&'static str, &'b Expression<'a>, fn(f64) -> f64);
+        let polynomials: [Polynomial<'_, '_>; 3] =
             [("T", &one, |l| l), ("T²", &square, |l| l * l), ("½(T + T²)", &mean, |l| 0.5 * (l + l * l))];
         for (what, expression, p) in polynomials {
             let ends = extremes(expression, &weight, 1e-10, 400);

@@ -140,7 +140,7 @@ pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
 struct Laboratory<R = solver::Radiosity> {
     opened: Opened,
     matrix: Matrix<R>,
-    /// Their number.
+    /// Patches of the mesh, in whatever form T is held.
     patches: usize,
     folder: PathBuf,
 }
