@@ -1,12 +1,13 @@
-//! What a guide gains: `cargo bench --bench guided [-- SCENE SPP PATCHES RAYS BSDF]`.
+//! What a guide gains: `cargo bench --bench guided [-- SCENE SPP PATCHES RAYS BSDF SEEDS]`.
 //!
 //! ```text
 //! gain = (relMSE · seconds) of the BSDF / (relMSE · seconds) of the guide        relMSE = mean of (I − R)²/(R² + ε²)
 //! ```
 //!
-//! R is a reference of 16 times the samples from streams of its own, guided and unguided in equal parts; ε is a tenth of the image
-//! mean. The seconds are those that all threads worked (Linux tells), so that other work on the machine matters little, and the seconds of the guide's preparation stand beside them: in an equal-time
-//! comparison of T seconds the gain is multiplied by 1 − preparation/T.
+//! R is a guided reference of 16 times the samples from a stream of its own, whose error adds the same to both; ε is a tenth of the
+//! image mean. The seconds are those that all threads worked (Linux tells), so that other work on the machine matters little. The
+//! errors have heavy tails, so every gain is the median over seeds, with the least and the greatest. `in 60 s` is the gain at equal
+//! time when 60 seconds of work include the guide's preparation: times 1 − preparation/60 s.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
 use fredholm::estimator::render::{Amount, Unwatched, render};
@@ -49,23 +50,34 @@ impl Expects for GuidedTransport<'_> {
     }
 }
 
-fn run<T: Transport + Expects>(t: &T, camera: &Camera, what: &str, spp: u32, seed: u64) -> Run
+/// Estimator and roulette: without a guide nobody knows what to expect, and all but the terms end by albedo from vertex 2 on.
+const KINDS: [&str; 4] = ["prefix", "path", "contribution", "window"];
+
+fn run<T: Transport + Expects>(t: &T, camera: &Camera, what: &str, spp: u32, key: Key) -> Run
 where
     Camera: Sensor<T>,
 {
     let (stop, start) = (AtomicBool::new(false), worked());
     let plan = |roulette| Plan { max_bounces: 8, technique: Technique::Mis, roulette };
-    let amount = Amount::new(spp, Key::new(seed, what));
+    let amount = Amount::new(spp, key);
     let film = match what {
-        "path" => render(t, camera, &PathTracer(plan(Roulette::Albedo { from: 2 })), amount, &mut Unwatched, &stop),
-        // without a guide nobody knows what to expect, and this is roulette by albedo from vertex 2 on
-        "contribution" => {
-            let roulette = if t.expects() { Roulette::Contribution { from: 1 } } else { Roulette::Albedo { from: 2 } };
+        "prefix" => render(t, camera, &Prefix(plan(Roulette::Albedo { from: 8 })), amount, &mut Unwatched, &stop),
+        _ => {
+            let roulette = match what {
+                "contribution" if t.expects() => Roulette::Contribution { from: 1 },
+                "window" if t.expects() => Roulette::Window { from: 0 },
+                _ => Roulette::Albedo { from: 2 },
+            };
             render(t, camera, &PathTracer(plan(roulette)), amount, &mut Unwatched, &stop)
         }
-        _ => render(t, camera, &Prefix(plan(Roulette::Albedo { from: 8 })), amount, &mut Unwatched, &stop),
     };
     Run { film, seconds: worked() - start }
+}
+
+/// The median, the least and the greatest.
+fn middle(mut all: Vec<f64>) -> [f64; 3] {
+    all.sort_by(f64::total_cmp);
+    [all[all.len() / 2], all[0], all[all.len() - 1]]
 }
 
 fn image(film: &TermFilm) -> Vec<DVec3> {
@@ -93,7 +105,7 @@ fn main() {
     let args: Vec<String> = std::env::args().filter(|a| !a.starts_with("--")).skip(1).collect();
     let number = |i: usize, default: f64| args.get(i).and_then(|a| a.parse().ok()).unwrap_or(default);
     let scenes = args.first().map_or("cornell,veach-ajar,many-lights".to_string(), Clone::clone);
-    let spp = number(1, 64.0) as u32;
+    let (spp, seeds) = (number(1, 64.0) as u32, number(5, 5.0) as u64);
     for name in scenes.split(',') {
         let mut description = load::scene(name, &load::Options::default()).unwrap().description;
         description.camera.size = [48, 48];
@@ -109,22 +121,31 @@ fn main() {
         let prepared = worked() - start;
         let guided = GuidedTransport { scene: plain, guide: &guide };
         let camera = &scene.camera;
-        let many = 8 * spp;
-        let halves = [run(&plain, camera, "prefix", many, 101), run(&guided, camera, "prefix", many, 102)];
-        let [a, b] = halves.each_ref().map(|h| image(&h.film));
-        let reference: Vec<DVec3> = a.iter().zip(&b).map(|(a, b)| 0.5 * (*a + *b)).collect();
-        println!("{name}: {} patches prepared in {prepared:.2} s, {spp} spp", guide.len());
-        for what in ["prefix", "path", "contribution"] {
-            let [p, g] = [run(&plain, camera, what, spp, 1), run(&guided, camera, what, spp, 2)];
-            let [ep, eg] = [&p, &g].map(|r| rel_mse(&r.film, &reference));
-            let paths = p.film.shape.pixels() as f64 * f64::from(spp);
+        let reference = image(&run(&guided, camera, "prefix", 16 * spp, Key::new(100, "reference")).film);
+        println!("{name}: {} patches prepared in {prepared:.2} s, {spp} spp, {seeds} seeds", guide.len());
+        for what in KINDS {
+            let (mut times, mut errors, mut gains, mut medians) = ([vec![], vec![]], [vec![], vec![]], vec![], vec![]);
+            for seed in 0..seeds {
+                let key = |side: &str| Key::new(seed, &format!("{side} {what}"));
+                let runs =
+                    [run(&plain, camera, what, spp, key("plain")), run(&guided, camera, what, spp, key("guided"))];
+                let [p, g] = runs.each_ref().map(|r| rel_mse(&r.film, &reference) * r.seconds);
+                let [mp, mg] = runs.each_ref().map(|r| median_variance(&r.film) * r.seconds);
+                let paths = reference.len() as f64 * f64::from(spp);
+                for (side, r) in runs.iter().enumerate() {
+                    times[side].push(1e9 * r.seconds / paths);
+                    errors[side].push(rel_mse(&r.film, &reference));
+                }
+                gains.push(p / g);
+                medians.push(mp / mg);
+            }
+            let [tp, tg] = times.map(|t| middle(t)[0]);
+            let [ep, eg] = errors.map(|e| middle(e)[0]);
+            let [gain, least, most] = middle(gains);
             println!(
-                "  {what:12} unguided {:5.0} ns, relMSE {ep:.3e}; guided {:5.0} ns, relMSE {eg:.3e}; equal samples {:.2}, equal time {:.2} (median pixel {:.2})",
-                1e9 * p.seconds / paths,
-                1e9 * g.seconds / paths,
-                ep / eg,
-                ep * p.seconds / (eg * g.seconds),
-                median_variance(&p.film) * p.seconds / (median_variance(&g.film) * g.seconds)
+                "  {what:12} unguided {tp:5.0} ns, relMSE {ep:.2e}; guided {tg:5.0} ns, relMSE {eg:.2e}; equal time {gain:.2} ({least:.2} to {most:.2}), in 60 s {:.2}; median pixel {:.2}",
+                gain * (1.0 - prepared / 60.0),
+                middle(medians)[0],
             );
         }
     }

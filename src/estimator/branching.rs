@@ -82,6 +82,6 @@ impl Branching {
 }
 
 /// The stream of child c of vertex v: the first child inherits its parent's, every other has one of its own.
-fn lineage(key: Key, v: usize, c: u32, children: u32) -> Key {
+pub(super) fn lineage(key: Key, v: usize, c: u32, children: u32) -> Key {
     if c == 0 { key } else { key.branch((v as u32).wrapping_mul(children).wrapping_add(c)) }
 }

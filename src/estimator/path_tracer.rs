@@ -5,7 +5,7 @@
 //! repeat
 //!     if emission counts here:          colour ← colour + α E(x)      (at the eye; after a delta vertex; on hits under scatter, MIS)
 //!     if light is sampled:              colour ← colour + α · connect
-//!     if a random number is below q:    stop
+//!     if a random number is below q:    stop                         (q < 0: go on as 1 − q walks in the mean)
 //!     α ← α · weight / (1 − q),         x ← next
 //! ```
 //!
@@ -14,7 +14,8 @@
 //! sum over the slots of [`Prefix`](super::Prefix) is this sample to rounding. With a schedule that never ends paths, it
 //! stops after `max_bounces` applications of T. Reference: Kajiya, *The Rendering Equation* (1986).
 
-use super::{Batch, Paths, Plan, TermEstimator, TermSink};
+use super::branching::lineage;
+use super::{Batch, Paths, Plan, Roulette, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
 use crate::operator::{Sensor, Transport};
 
@@ -25,24 +26,44 @@ pub struct PathTracer(pub Plan);
 impl PathTracer {
     /// Radiance estimated by one path, and the rays it took.
     pub fn radiance<T: Transport>(&self, t: &T, start: T::State, key: Key, pixel: u32, sample: u32) -> (Rgb, u64) {
+        let expected = t.expected(&start).unwrap_or_default().all;
+        // emission counts at the eye, whatever the technique
+        let mut colour = t.emission(&start);
+        let mut rays = 0;
+        // the copies of a path that wait until it has ended
+        let mut waiting = vec![];
+        let mut next = Some(Walker { vertex: 0, x: start, alpha: Rgb::ONE, key, siblings: 1, scored: false });
+        while let Some(walker) = next {
+            self.follow(t, walker, expected, [pixel, sample], &mut waiting, (&mut colour, &mut rays));
+            next = waiting.pop();
+        }
+        (colour, rays)
+    }
+
+    /// One walk from where it stands until it ends; the copies that it leaves are added to `waiting`.
+    fn follow<T: Transport>(
+        &self,
+        t: &T,
+        walker: Walker<T::State>,
+        expected: f32,
+        [pixel, sample]: [u32; 2],
+        waiting: &mut Vec<Walker<T::State>>,
+        (colour, rays): (&mut Rgb, &mut u64),
+    ) {
         let Plan { max_bounces, technique, ref roulette } = self.0;
+        let Walker { vertex: first, mut x, mut alpha, key, mut siblings, mut scored } = walker;
         let numbers = |vertex: usize, purpose: Purpose| Rng::at(key, pixel, sample, vertex, purpose);
         let last = |applications: usize| !roulette.ends() && applications >= max_bounces;
 
-        // emission counts at the eye, whatever the technique
-        let mut colour = t.emission(&start);
-        let (mut alpha, mut x) = (Rgb::ONE, start);
-        let expected = t.expected(&start).unwrap_or(0.0);
-        let mut rays = 0;
-        for vertex in 0.. {
+        for vertex in first.. {
             if last(vertex) {
                 break;
             }
             // the light is sampled
-            if technique.connects() {
-                rays += 1;
+            if technique.connects() && !scored {
+                *rays += 1;
                 if let Some(light) = t.connect(&x, &mut numbers(vertex, Purpose::Connect)) {
-                    colour += alpha
+                    *colour += alpha
                         * light.weight
                         * t.emission(&light.state)
                         * technique.connection(light.pdf, light.other_pdf);
@@ -51,25 +72,48 @@ impl PathTracer {
             if last(vertex + 1) && !technique.hits(t) {
                 break;
             }
-            // roulette: q is the probability of termination
-            let q = roulette.q(t, vertex, alpha, &x, expected);
-            if q > 0.0 {
-                if numbers(vertex, Purpose::Roulette).one() < q {
+            // roulette: q is the probability of termination, and below 0 the walk splits
+            let q = if scored { 0.0 } else { roulette.q(t, vertex, alpha, &x, expected) };
+            scored = false;
+            if q != 0.0 {
+                let (copies, weight) = Roulette::copies(q, numbers(vertex, Purpose::Roulette).one(), siblings);
+                if copies == 0 {
                     break;
                 }
-                alpha *= 1.0 / (1.0 - q);
+                alpha *= weight;
+                siblings *= copies;
+                let copy = |c| Walker {
+                    vertex,
+                    x,
+                    alpha,
+                    key: lineage(key, vertex, c, Roulette::MOST),
+                    siblings,
+                    scored: true,
+                };
+                waiting.extend((1..copies).map(copy));
             }
             // the next vertex, whose emission counts if hits do
-            rays += 1;
+            *rays += 1;
             let Some(next) = t.scatter(&x, &mut numbers(vertex, Purpose::Scatter)) else { break };
             alpha *= next.weight;
             x = next.state;
             if technique.hits(t) {
-                colour += alpha * t.emission(&x) * technique.hit(next.pdf, next.other_pdf);
+                *colour += alpha * t.emission(&x) * technique.hit(next.pdf, next.other_pdf);
             }
         }
-        (colour, rays)
     }
+}
+
+/// A walk that stands at a vertex.
+struct Walker<S> {
+    vertex: usize,
+    x: S,
+    alpha: Rgb,
+    key: Key,
+    /// Into how many its path has split.
+    siblings: u32,
+    /// Whether another copy has scored this vertex and gone through its roulette.
+    scored: bool,
 }
 
 impl<T: Transport> TermEstimator<T> for PathTracer {

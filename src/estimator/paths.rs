@@ -91,7 +91,7 @@ impl<W> Paths<W> {
         self.through.fill(self.n, Rgb::ONE);
         self.compact();
         for i in 0..self.n {
-            self.expected[i] = t.expected(&self.state.get(i)).unwrap_or(0.0);
+            self.expected[i] = t.expected(&self.state.get(i)).unwrap_or_default().all;
         }
     }
 
@@ -149,7 +149,8 @@ impl<W> Paths<W> {
         for i in 0..self.n {
             let streams = streams(key, &self.pixel[..self.n], &self.sample[..self.n], v, Purpose::Roulette);
             let through = self.through.get(i);
-            let q = schedule.q(t, v, through, &self.state.get(i), self.expected[i]);
+            // a wave does not split
+            let q = schedule.q(t, v, through, &self.state.get(i), self.expected[i]).max(0.0);
             if streams.rng(i).one() >= q {
                 self.through.set(i, through * (1.0 / (1.0 - q)));
                 self.alive.push(i as u32);

@@ -49,12 +49,24 @@ pub enum Roulette {
         /// First vertex with roulette.
         from: usize,
     },
+    /// The same, and where more is expected of a path than of its start it splits into as many as that is more: a negative q, of which
+    /// the copies are 1 − q in the mean. Estimators that do not split take it for 0.
+    Window {
+        /// First vertex with roulette or splitting.
+        from: usize,
+    },
 }
+
+/// A path that is one of so many copies splits no more.
+const CROWD: u32 = 64;
 
 /// Survivors of roulette by contribution weigh no more than ten times what they did.
 const LEAST_SURVIVAL: f32 = 0.1;
 
 impl Roulette {
+    /// Into how many a path may split at one vertex.
+    pub const MOST: u32 = 8;
+
     /// The lecture's schedule: none at the first two vertices, then 0.5.
     pub const LECTURE: Self = Self::Constant { from: 2, q: 0.5 };
 
@@ -71,7 +83,7 @@ impl Roulette {
                 }
             }
             Self::Table(q) => q.get(v).or(q.last()).map_or(0.0, |&q| q as f32),
-            Self::Albedo { from } | Self::Contribution { from } => {
+            Self::Albedo { from } | Self::Contribution { from } | Self::Window { from } => {
                 if v < *from {
                     0.0
                 } else {
@@ -95,7 +107,7 @@ impl Roulette {
             Self::Never => Some(0.0),
             Self::Constant { from, q } => Some(if v < *from { 0.0 } else { *q }),
             Self::Table(q) => Some(q.get(v).or(q.last()).copied().unwrap_or(0.0)),
-            Self::Albedo { .. } | Self::Throughput { .. } | Self::Contribution { .. } => None,
+            Self::Albedo { .. } | Self::Throughput { .. } | Self::Contribution { .. } | Self::Window { .. } => None,
         }
     }
 
@@ -105,19 +117,30 @@ impl Roulette {
         before.map(|table| Self::Table(table.into_iter().chain([q]).collect()))
     }
 
-    /// q at vertex `v` of a path that stands at a state with this throughput; `start` is what was expected of the path at its start, 0
-    /// if nobody knew.
+    /// q at vertex `v` of a path that stands at a state with this throughput, after it has been scored there; `start` is what was expected
+    /// of the path at its start, 0 if nobody knew. Below 0 it splits into 1 − q copies in the mean.
     #[inline(always)]
     pub fn q<T: Transport>(&self, t: &T, v: usize, throughput: Rgb, at: &T::State, start: f32) -> f32 {
-        if let Self::Contribution { from } = self
+        if let Self::Contribution { from } | Self::Window { from } = self
             && v >= *from
             && v < AT_LAST.0
             && start > 0.0
             && let Some(expected) = t.expected(at)
         {
-            return 1.0 - (throughput.element_sum() * expected / (3.0 * start)).clamp(LEAST_SURVIVAL, 1.0);
+            let most = if matches!(self, Self::Window { .. }) { Self::MOST as f32 } else { 1.0 };
+            return 1.0 - (throughput.element_sum() * expected.indirect / (3.0 * start)).clamp(LEAST_SURVIVAL, most);
         }
         self.termination(v, throughput, t.albedo(at))
+    }
+
+    /// How many go on with throughput α/(1 − q), for a uniform number u, of a path that is one of `siblings`; 1 − q in the mean.
+    #[inline(always)]
+    pub fn copies(q: f32, u: f32, siblings: u32) -> (u32, f32) {
+        match q {
+            q if q < 0.0 && siblings < CROWD => ((1.0 - q + u) as u32, 1.0 / (1.0 - q)),
+            q if q <= 0.0 => (1, 1.0),
+            q => (u32::from(u >= q), 1.0 / (1.0 - q)),
+        }
     }
 
     /// Whether q is 0 at vertex `v` on every path: nothing to draw.
@@ -126,7 +149,9 @@ impl Roulette {
             Self::Never => true,
             Self::Constant { from, q } => v < *from || *q == 0.0,
             Self::Table(q) => q.get(v).or(q.last()).is_none_or(|&q| q == 0.0),
-            Self::Albedo { from } | Self::Throughput { from } | Self::Contribution { from } => v < *from,
+            Self::Albedo { from } | Self::Throughput { from } | Self::Contribution { from } | Self::Window { from } => {
+                v < *from
+            }
         }
     }
 
@@ -136,7 +161,7 @@ impl Roulette {
             Self::Never => false,
             Self::Constant { q, .. } => *q > 0.0,
             Self::Table(q) => q.last().is_some_and(|&q| q > 0.0),
-            Self::Albedo { .. } | Self::Throughput { .. } | Self::Contribution { .. } => true,
+            Self::Albedo { .. } | Self::Throughput { .. } | Self::Contribution { .. } | Self::Window { .. } => true,
         }
     }
 
@@ -149,6 +174,7 @@ impl Roulette {
             Self::Albedo { from } => Self::Albedo { from: from.max(v) },
             Self::Throughput { from } => Self::Throughput { from: from.max(v) },
             Self::Contribution { from } => Self::Contribution { from: from.max(v) },
+            Self::Window { from } => Self::Window { from: from.max(v) },
             Self::Table(mut q) => {
                 let last = q.last().copied().unwrap_or(0.0);
                 q.resize(q.len().max(v + 1), last);
@@ -169,16 +195,18 @@ impl fmt::Display for Roulette {
             Self::Albedo { from } => write!(f, "albedo@{from}"),
             Self::Throughput { from } => write!(f, "throughput@{from}"),
             Self::Contribution { from } => write!(f, "contribution@{from}"),
+            Self::Window { from } => write!(f, "window@{from}"),
         }
     }
 }
 
-/// `none`, `lecture`, `constant:Q@V`, `table:q0,q1,…`, `albedo[@V]`, `throughput[@V]`, `contribution[@V]`.
+/// `none`, `lecture`, `constant:Q@V`, `table:q0,q1,…`, `albedo[@V]`, `throughput[@V]`, `contribution[@V]`, `window[@V]`.
 impl FromStr for Roulette {
     type Err = String;
 
     fn from_str(s: &str) -> Result<Self, String> {
-        let grammar = "none, lecture, constant:Q@V, table:q0,q1,…, albedo[@V], throughput[@V] or contribution[@V]";
+        let grammar =
+            "none, lecture, constant:Q@V, table:q0,q1,…, albedo[@V], throughput[@V], contribution[@V] or window[@V]";
         let (head, from) = match s.split_once('@') {
             Some((head, v)) => (head, Some(v.parse().map_err(|_| format!("`{v}` is not a vertex number; {grammar}"))?)),
             None => (s, None),
@@ -194,6 +222,7 @@ impl FromStr for Roulette {
                 "albedo" => Ok(Self::Albedo { from: from.unwrap_or(2) }),
                 "throughput" => Ok(Self::Throughput { from: from.unwrap_or(2) }),
                 "contribution" => Ok(Self::Contribution { from: from.unwrap_or(1) }),
+                "window" => Ok(Self::Window { from: from.unwrap_or(0) }),
                 _ => Err(format!("unknown roulette `{s}`; {grammar}")),
             },
             Some(("constant", value)) => Ok(Self::Constant { from: from.unwrap_or(2), q: q(value)? }),
@@ -211,7 +240,16 @@ mod tests {
 
     #[test]
     fn grammar_round_trips() {
-        for s in ["none", "lecture", "constant:0.25@3", "table:0,0,0.5", "albedo@2", "throughput@0", "contribution@1"] {
+        for s in [
+            "none",
+            "lecture",
+            "constant:0.25@3",
+            "table:0,0,0.5",
+            "albedo@2",
+            "throughput@0",
+            "contribution@1",
+            "window@0",
+        ] {
             assert_eq!(s.parse::<Roulette>().map(|r| r.to_string()), Ok(s.to_string()));
         }
         for s in ["half", "constant:1@0", "table:0.1,x", "constant:-0.1", "lecture:2"] {

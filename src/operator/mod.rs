@@ -28,4 +28,4 @@ pub use guided::{Guide, GuidedTransport};
 pub use guided_walk::GuidedWalk;
 pub use matrix_walk::MatrixWalk;
 pub use scene_transport::SceneTransport;
-pub use transport::{Samples, Seen, Sensor, Step, Transport, Wave};
+pub use transport::{Expected, Samples, Seen, Sensor, Step, Transport, Wave};

@@ -117,7 +117,7 @@ impl SceneTransport<'_> {
 
     /// A connection before anybody has looked whether it is blocked, and the normal on its side: nothing where it is zero.
     #[inline(always)]
-    fn propose(&self, at: &Vertex, u: [f32; 4]) -> Option<(Step<Vertex>, Vec3)> {
+    pub(super) fn propose(&self, at: &Vertex, u: [f32; 4]) -> Option<(Step<Vertex>, Vec3)> {
         if self.scene.lights.is_empty() || !at.on_surface() {
             return None;
         }
@@ -219,7 +219,7 @@ impl Transport for SceneTransport<'_> {
         }
         numbers(streams, &mut wave.rays.u);
         self.scene.light_points(&mut wave.rays, streams.len());
-        self.connect_packets(wave, streams.len(), out, |_, _| 1.0);
+        self.connect_packets(wave, streams.len(), out, 1.0);
     }
 
     /// Random numbers in bulk and rays in packets, where the scene is small and flat; the same bits.
@@ -228,21 +228,15 @@ impl Transport for SceneTransport<'_> {
             return transport::scatter_one_by_one(self, wave, streams, out, alive);
         }
         numbers(streams, &mut wave.rays.u);
-        self.scatter_packets(wave, streams.len(), out, alive, |_, _| 1.0);
+        self.scatter_packets(wave, streams.len(), out, alive, |_, _| 1.0, 1.0);
     }
 }
 
 impl SceneTransport<'_> {
-    /// Connections of a wave to the light points in `wave.rays`, in packets. `ratio(out, i)` is the density of scattering in the
-    /// direction of light i over that of the cosine.
+    /// Connections of a wave to the light points in `wave.rays`, in packets. `share` is the part of the cosine in the density of
+    /// scattering.
     #[inline(always)]
-    pub(super) fn connect_packets(
-        &self,
-        wave: &mut VertexWave,
-        n: usize,
-        out: &mut Samples,
-        ratio: impl Fn(&Samples, usize) -> f32,
-    ) {
+    pub(super) fn connect_packets(&self, wave: &mut VertexWave, n: usize, out: &mut Samples, share: f32) {
         connections(&wave.p, &wave.n, self.scene.offset(), &mut wave.rays, out, n);
         let mut shadow = 0;
         for i in 0..n {
@@ -250,7 +244,7 @@ impl SceneTransport<'_> {
             let factor = wave.rays.t[i];
             if factor > 0.0 && albedo != Rgb::ZERO {
                 out.value.set(i, albedo * factor * self.scene.emission(2 * wave.rays.prim[i]));
-                out.other_pdf[i] = self.sampling.pdf(wave.rays.cosine[i]) * ratio(out, i);
+                out.other_pdf[i] = self.sampling.pdf(wave.rays.cosine[i]) * share;
                 wave.rays.list[shadow] = i as u32;
                 shadow += 1;
             } else {
@@ -266,7 +260,7 @@ impl SceneTransport<'_> {
     }
 
     /// Scatters a wave by the numbers in `wave.rays.u`, in packets. `ratio(out, i)` is the density of number pair i over that of
-    /// the cosine.
+    /// the cosine, `share` the part of the cosine in it.
     #[inline(always)]
     pub(super) fn scatter_packets(
         &self,
@@ -275,6 +269,7 @@ impl SceneTransport<'_> {
         out: &mut Samples,
         alive: &mut Vec<u32>,
         ratio: impl Fn(&Samples, usize) -> f32,
+        share: f32,
     ) {
         let VertexWave { p, n: normals, omega, side, rays } = wave;
         cosine_directions(normals, &rays.u, &mut rays.d, &mut rays.cosine, n);
@@ -285,8 +280,8 @@ impl SceneTransport<'_> {
         self.scene.trace_packets(rays, n, |i, state| {
             let albedo = self.scene.albedo(side[i]);
             if albedo != Rgb::ZERO {
-                let ratio = ratio(out, i);
-                let s = self.step(p.get(i), state, albedo * (1.0 / ratio), self.sampling.pdf(cosine[i]) * ratio, false);
+                let weight = albedo * (1.0 / ratio(out, i));
+                let s = self.step(p.get(i), state, weight, self.sampling.pdf(cosine[i]) * share, false);
                 p.set(i, state.p);
                 normals.set(i, state.n);
                 omega.set(i, state.omega);

@@ -125,6 +125,16 @@ impl Scene {
         }
     }
 
+    /// The number of the light that a ray has arrived at: of what it has hit, or of the sky.
+    #[inline(always)]
+    pub(crate) fn light_number(&self, at: &Vertex) -> Option<u32> {
+        match at.side {
+            side if side < LIGHT => self.lights.of_primitive(side / 2),
+            ESCAPED => self.lights.environment.as_ref().map(|(_, light)| *light),
+            side => Some(side - LIGHT),
+        }
+    }
+
     /// Where light starts, as four uniform numbers choose, and the density in the measure of the state: m⁻² on a surface,
     /// sr⁻¹ for the sky, a probability for a point or a direction.
     pub(crate) fn emit(&self, u: [f32; 4]) -> Option<(Vertex, f32)> {

@@ -145,6 +145,8 @@ pub struct Run {
     ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
     ///   contribution[@V]     with --guide: q = 1 − expected of the rest/expected of the pixel,
     ///                        at most 0.9, from vertex V on (1); elsewhere as albedo
+    ///   window[@V]           the same from V on (0), and where q < 0 the path splits into 1 − q
+    ///                        walks in the mean, 8 at most; only the path tracer splits
     ///   optimal              the table with the most efficiency, found by a pilot of 2^18 paths
     #[arg(long, value_name = "SCHEDULE", value_parser = schedule, verbatim_doc_comment)]
     pub roulette: Option<Schedule>,

@@ -20,7 +20,8 @@ use crate::math::direction::cosine_hemisphere;
 use crate::math::{Key, Purpose, Rgb, Rng};
 use crate::operator::patches::{Patch, Patches, polygon};
 use crate::operator::{SceneTransport, Transport};
-use crate::scene::Vertex;
+use crate::scene::{Side, Vertex};
+use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -75,7 +76,7 @@ impl Incident {
                 let place = |cell: usize, u: f32| (cell as f32 + u).min(((cell + 1) as f32).next_down()) / CELLS as f32;
                 let (direction, _) = cosine_hemisphere(at.n, [place(cell % CELLS, u[0]), place(cell / CELLS, u[1])]);
                 let seen = scene.scene.trace(scene.scene.lift(at.p, at.n), direction);
-                let patch = seen.and_then(|v| locate(patches, &v));
+                let patch = seen.and_then(|v| locate(patches, v.p, v.side));
                 *hit = patch.map_or(NOTHING, |j| j as u32);
             }
             let connection = |c: usize| {
@@ -137,13 +138,13 @@ impl Incident {
     }
 }
 
-/// The patch of a vertex.
-pub(super) fn locate(patches: &Patches, at: &Vertex) -> Option<usize> {
-    patches.locate((at.side / 2) as usize, at.side & 1 == 0, at.p.as_dvec3())
+/// The patch of a point of a surface.
+pub(super) fn locate(patches: &Patches, p: Vec3, side: Side) -> Option<usize> {
+    patches.locate((side / 2) as usize, side & 1 == 0, p.as_dvec3())
 }
 
 /// A point of a patch, seen along the normal.
-fn vertex(patch: &Patch, u: [f32; 2]) -> Vertex {
+pub(super) fn vertex(patch: &Patch, u: [f32; 2]) -> Vertex {
     let (p, _) = polygon::at(&patch.polygon, f64::from(u[0]), f64::from(u[1]));
     let point = patch.lift(p);
     let n = point.normal.as_vec3();

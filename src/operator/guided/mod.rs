@@ -8,14 +8,20 @@
 //! radiosity solution seen from patch i, which knows where the light is but not how the surface shines; so the table
 //! replaces the cosine at Lambertian surfaces, and all others scatter by their BSDF as before. The density of a direction is
 //! a property of the direction alone, whatever patches lie along it, so p is exact and the estimate unbiased, however wrong
-//! L_h is. Both densities of a [`Step`] are those of p, and techniques weigh as ever.
+//! L_h is.
+//!
+//! **Weights of the techniques.** p is a mixture, and β cos θ/π, the part of the BSDF, is the one that looks for lamps. Hits and
+//! connections are weighed by this part against the density of the connection: the two weights of a path add up to one, which is all
+//! that they have to do, the value of a hit stays bounded as r ≥ β, and a connection needs no table. So the densities of a
+//! [`Step`] are those of the parts that can find a lamp, while its weight is over the whole of p.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | L_h | radiance of the patches, from stored rays | [`incident`] |
 //! | r_i, β | density over that of the cosine, share of the BSDF | [`warp`] |
+//! | P_i(l) | which lamp a connection chooses | [`lamps`] |
 //! | i(x) | the patch of a point | [`Guide::at`] |
-//! | u | reflected part of L_h, for roulette by expected contribution | [`Transport::expected`] |
+//! | u, T u | reflected part of L_h, for roulette by expected contribution | [`Transport::expected`] |
 //! | f → ρ | what stands for surfaces that are not Lambertian, in the guide only | [`stand_in()`] |
 //!
 //! References: Lafortune and Willems, *A 5D tree to reduce the variance of Monte Carlo ray tracing* (1995); Vorba et al., *On-line
@@ -23,17 +29,19 @@
 //! Guiding* (2017): there the guide is learned from paths, here it is a matrix.
 
 pub mod incident;
+mod lamps;
 mod places;
 pub mod warp;
 
 use super::scene_transport::SceneTransport;
-use super::transport::{self, Samples, Seen, Sensor, Step, Transport};
+use super::transport::{self, Expected, Samples, Seen, Sensor, Step, Transport};
 use crate::math::{Columns, Key, Rgb, Rng, Streams};
 use crate::operator::patches::Patches;
 use crate::scene::bsdf::{Bsdf, Sampling, diffuse, diffuse::Diffuse};
-use crate::scene::{Camera, Scene, SceneError, Vertex, VertexWave, connection, numbers, stand_in};
+use crate::scene::{Camera, Scene, SceneError, Side, Vertex, VertexWave, numbers, stand_in};
 use glam::Vec3;
 use incident::{Fineness, Incident};
+use lamps::Lamps;
 use places::{Found, Places};
 use std::sync::atomic::AtomicBool;
 use warp::Warp;
@@ -63,8 +71,10 @@ pub struct Guide {
     patches: Patches,
     warps: Vec<Option<Warp>>,
     places: Places,
-    /// Reflected radiance of each patch, mean of the channels.
-    reflected: Vec<f32>,
+    lamps: Option<Lamps>,
+    reflected: Vec<Expected>,
+    /// β.
+    bsdf: f32,
 }
 
 impl Guide {
@@ -90,13 +100,18 @@ impl Guide {
             return Ok(None);
         };
         let mut light = incident.radiance();
-        let reflected = light.iter().map(|u| u.element_sum() / 3.0).collect();
+        let mean = |u: Rgb| u.element_sum() / 3.0;
+        // what connections find is no longer expected of what follows them; where there are none, all is
+        let indirect = |u: Rgb, d: Rgb| if recipe.emission { u } else { u - d };
+        let expected = |(u, d): (&Rgb, &Rgb)| Expected { all: mean(*u), indirect: mean(indirect(*u, *d)) };
+        let reflected = light.iter().zip(&incident.direct).map(expected).collect();
         if recipe.emission {
             light.iter_mut().zip(patches.iter()).for_each(|(u, p)| *u += p.emission.as_vec3());
         }
         let warp = |i| Warp::new(&incident.weights(i, &light), recipe.bsdf);
         let warps = (0..patches.len()).map(warp).collect();
-        Ok(Some(Self { warps, places: Places::new(&patches), patches, reflected }))
+        let (places, lamps) = (Places::new(&patches), Lamps::new(&transport, &patches, key));
+        Ok(Some(Self { warps, places, lamps, patches, reflected, bsdf: recipe.bsdf as f32 }))
     }
 
     /// How many patches.
@@ -112,18 +127,25 @@ impl Guide {
     /// The density at a point of a surface; nothing where the cosine is as good.
     #[inline(always)]
     pub fn at(&self, x: &Vertex) -> Option<&Warp> {
-        self.warps[self.patch(x)?].as_ref()
+        if x.on_surface() { self.table(x.p, x.side) } else { None }
+    }
+
+    #[inline(always)]
+    fn table(&self, p: Vec3, side: Side) -> Option<&Warp> {
+        self.warps[self.find(p, side)?].as_ref()
     }
 
     #[inline(always)]
     fn patch(&self, x: &Vertex) -> Option<usize> {
-        if !x.on_surface() {
-            return None;
-        }
-        match self.places.find(x) {
+        if x.on_surface() { self.find(x.p, x.side) } else { None }
+    }
+
+    #[inline(always)]
+    fn find(&self, p: Vec3, side: Side) -> Option<usize> {
+        match self.places.find(p, side) {
             Found::At(patch) => Some(patch as usize),
             Found::Nowhere => None,
-            Found::Curved => incident::locate(&self.patches, x),
+            Found::Curved => incident::locate(&self.patches, p, side),
         }
     }
 }
@@ -151,10 +173,34 @@ impl GuidedTransport<'_> {
         }
     }
 
-    /// Density of scattering over that of the BSDF.
+    /// The part of the BSDF in the density of scattering.
     #[inline(always)]
-    fn ratio(&self, at: &Vertex, to: Vec3) -> f32 {
-        self.warp(at).map_or(1.0, |(_, warp)| warp.ratio(at.n, to))
+    fn share(&self, at: &Vertex) -> f32 {
+        let guided = self.scene.sampling != Sampling::Uniform && matches!(self.scene.scene.bsdf(at), Bsdf::Diffuse(_));
+        if guided { self.guide.bsdf } else { 1.0 }
+    }
+
+    /// The choice of lamps at x, if there is one.
+    #[inline(always)]
+    fn lamps(&self, at: &Vertex) -> Option<(&Lamps, usize)> {
+        let lamps = self.guide.lamps.as_ref().filter(|_| self.scene.scene.lights.alike())?;
+        Some((lamps, self.guide.patch(at)?))
+    }
+
+    /// Density with which x connects to what a ray has found, over that of the scene's own choice.
+    #[inline(always)]
+    fn lamp_ratio(&self, at: &Vertex, found: &Vertex) -> f32 {
+        let ratio = || {
+            let lamp = self.scene.scene.light_number(found)?;
+            self.lamps(at).map(|(lamps, patch)| lamps.ratio(patch, lamp))
+        };
+        ratio().unwrap_or(1.0)
+    }
+
+    /// Whether a wave goes in packets: one lamp, or none.
+    #[inline(always)]
+    fn in_packets(&self) -> bool {
+        self.scene.scene.in_packets() && self.guide.lamps.is_none()
     }
 }
 
@@ -167,22 +213,30 @@ impl Transport for GuidedTransport<'_> {
     }
 
     fn scatter(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
-        let Some((reflectance, warp)) = self.warp(at) else { return self.scene.scatter(at, rng) };
-        let u = rng.four();
-        let (u, ratio) = warp.sample([u[0], u[1]]);
-        let (direction, weight, pdf) = diffuse::sample(reflectance, at.n, self.scene.sampling, u);
-        let scene = self.scene.scene;
-        let state = scene.look(scene.lift(at.p, at.n), direction)?;
-        Some(self.scene.step(at.p, state, weight * (1.0 / ratio), pdf * ratio, false))
+        let step = match self.warp(at) {
+            Some((reflectance, warp)) => {
+                let u = rng.four();
+                let (u, ratio) = warp.sample([u[0], u[1]]);
+                let (direction, weight, pdf) = diffuse::sample(reflectance, at.n, self.scene.sampling, u);
+                let scene = self.scene.scene;
+                let state = scene.look(scene.lift(at.p, at.n), direction)?;
+                self.scene.step(at.p, state, weight * (1.0 / ratio), pdf, false)
+            }
+            None => self.scene.scatter(at, rng)?,
+        };
+        let other_pdf = if step.other_pdf == 0.0 { 0.0 } else { step.other_pdf * self.lamp_ratio(at, &step.state) };
+        Some(Step { pdf: step.pdf * self.share(at), other_pdf, ..step })
     }
 
     fn connect(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
-        let step = self.scene.connect(at, rng)?;
-        if step.other_pdf == 0.0 {
-            return Some(step);
+        let [a, b, c, d] = rng.four();
+        let (a, ratio) = self.lamps(at).map_or((a, 1.0), |(lamps, patch)| lamps.choose(patch, a));
+        let (step, normal) = self.scene.propose(at, [a, b, c, d])?;
+        if self.scene.scene.blocked(at.p, normal, step.state.p, step.state.n) {
+            return None;
         }
-        // the state leaves the light towards x
-        Some(Step { other_pdf: step.other_pdf * self.ratio(at, -step.state.omega), ..step })
+        let (weight, other_pdf) = (step.weight * (1.0 / ratio), step.other_pdf * self.share(at));
+        Some(Step { weight, pdf: step.pdf * ratio, other_pdf, ..step })
     }
 
     fn albedo(&self, at: &Vertex) -> Rgb {
@@ -190,7 +244,7 @@ impl Transport for GuidedTransport<'_> {
     }
 
     /// What the matrix says of a Lambertian surface; of others it knows nothing.
-    fn expected(&self, at: &Vertex) -> Option<f32> {
+    fn expected(&self, at: &Vertex) -> Option<Expected> {
         let lambertian = matches!(self.scene.scene.bsdf(at), Bsdf::Diffuse(_));
         Some(self.guide.reflected[self.guide.patch(at).filter(|_| lambertian)?])
     }
@@ -203,37 +257,31 @@ impl Transport for GuidedTransport<'_> {
         self.scene.emission_wave(wave, n, value);
     }
 
-    /// The tables one by one, all else as without a guide; the same bits as the default.
     fn connect_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples) {
-        if !self.scene.scene.in_packets() {
+        if !self.in_packets() {
             return transport::connect_one_by_one(self, wave, streams, out);
         }
-        let n = streams.len();
         numbers(streams, &mut wave.rays.u);
-        self.scene.scene.light_points(&mut wave.rays, n);
-        for i in 0..n {
-            let at = wave.get(i);
-            let (to, _, cos_x, cos_y) = connection(at.p, at.n, wave.rays.o.get(i), wave.rays.d.get(i));
-            let faces = cos_x > 0.0 && cos_y > 0.0;
-            out.other_pdf[i] = if faces { self.ratio(&at, to) } else { 1.0 };
-        }
-        self.scene.connect_packets(wave, n, out, |out, i| out.other_pdf[i]);
+        self.scene.scene.light_points(&mut wave.rays, streams.len());
+        self.scene.connect_packets(wave, streams.len(), out, self.guide.bsdf);
     }
 
+    /// The tables one by one, all else as without a guide; the same bits as the default.
     fn scatter_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
-        if !self.scene.scene.in_packets() || self.scene.sampling == Sampling::Uniform {
+        if !self.in_packets() || self.scene.sampling == Sampling::Uniform {
             return transport::scatter_one_by_one(self, wave, streams, out, alive);
         }
         let n = streams.len();
         numbers(streams, &mut wave.rays.u);
+        let ([u, v, ..], ratio) = (&mut wave.rays.u, &mut out.pdf[..n]);
+        let (u, v, p, side) = (&mut u[..n], &mut v[..n], &wave.p, &wave.side[..n]);
         for i in 0..n {
-            let warp = self.warp(&wave.get(i));
-            let u = [wave.rays.u[0][i], wave.rays.u[1][i]];
-            let (u, ratio) = warp.map_or((u, 1.0), |(_, warp)| warp.sample(u));
-            [wave.rays.u[0][i], wave.rays.u[1][i]] = u;
-            out.pdf[i] = ratio;
+            match self.guide.table(p.get(i), side[i]) {
+                Some(warp) => ([u[i], v[i]], ratio[i]) = warp.sample([u[i], v[i]]),
+                None => ratio[i] = 1.0,
+            }
         }
-        self.scene.scatter_packets(wave, n, out, alive, |out, i| out.pdf[i]);
+        self.scene.scatter_packets(wave, n, out, alive, |out, i| out.pdf[i], self.guide.bsdf);
     }
 }
 

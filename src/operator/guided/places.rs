@@ -9,7 +9,7 @@
 
 use super::incident::locate;
 use crate::operator::patches::Patches;
-use crate::scene::{Primitive, Vertex};
+use crate::scene::{Primitive, Side};
 use glam::{DVec3, Vec3};
 
 /// Grid cells per patch.
@@ -66,8 +66,8 @@ impl Places {
                     for column in 0..size[0] {
                         let place = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);
                         let p = o + u * place(column, size[0]) + v * place(row, size[1]);
-                        let at = Vertex { p: p.as_vec3(), side: 2 * number as u32 + side, ..Vertex::default() };
-                        cells.push(locate(patches, &at).map_or(NOWHERE, |i| i as u32));
+                        let patch = locate(patches, p.as_vec3(), 2 * number as u32 + side);
+                        cells.push(patch.map_or(NOWHERE, |i| i as u32));
                     }
                 }
                 first
@@ -80,13 +80,13 @@ impl Places {
     }
 
     #[inline(always)]
-    pub(super) fn find(&self, at: &Vertex) -> Found {
-        let Some(grid) = &self.grids[(at.side / 2) as usize] else { return Found::Curved };
-        let d = at.p - grid.origin;
+    pub(super) fn find(&self, p: Vec3, side: Side) -> Found {
+        let Some(grid) = &self.grids[(side / 2) as usize] else { return Found::Curved };
+        let d = p - grid.origin;
         // a conversion to unsigned saturates at 0
         let column = (d.dot(grid.across) as u32).min(grid.size[0] - 1);
         let row = (d.dot(grid.down) as u32).min(grid.size[1] - 1);
-        match self.cells[(grid.first[(at.side & 1) as usize] + row * grid.size[0] + column) as usize] {
+        match self.cells[(grid.first[(side & 1) as usize] + row * grid.size[0] + column) as usize] {
             NOWHERE => Found::Nowhere,
             patch => Found::At(patch),
         }

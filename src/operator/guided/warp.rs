@@ -26,18 +26,20 @@
 //! defensive mixtures.
 
 use crate::math::direction::Frame;
-use crate::math::distribution::Discrete;
 use glam::Vec3;
 
 /// M: cells along each axis.
 pub const CELLS: usize = 16;
 
-/// Numbers that choose an entry, by their partial sums: one line of the cache.
-type Ends = [u32; CELLS];
+/// How many numbers choose among the entries of a row: 2¹⁵, so that a row is half a line of the cache.
+const NUMBERS: u32 = 1 << 15;
+
+/// Numbers that choose an entry, by their partial sums.
+type Ends = [u16; CELLS];
 
 /// A density of directions about a normal.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[repr(align(64))]
+#[repr(align(32))]
 pub struct Warp {
     /// φ.
     rows: Ends,
@@ -86,41 +88,65 @@ impl Warp {
     }
 }
 
-/// The partial sums of the numbers that choose each entry, exactly those of [`Discrete`].
+/// The partial sums of the numbers that choose each entry: in proportion to the weights, and one at least where a weight is
+/// positive; the heaviest takes what rounding leaves over.
 fn ends(weights: &[f64]) -> Option<Ends> {
-    let choice = Discrete::new(weights)?;
+    let total: f64 = weights.iter().sum();
+    if total <= 0.0 {
+        return None;
+    }
+    let count = |w: &f64| if *w > 0.0 { ((w / total * f64::from(NUMBERS)) as u32).max(1) } else { 0 };
+    let mut counts: Vec<u32> = weights.iter().map(count).collect();
+    let heaviest = (0..CELLS).max_by(|&a, &b| weights[a].total_cmp(&weights[b]))?;
+    counts[heaviest] = NUMBERS + counts[heaviest] - counts.iter().sum::<u32>();
     let mut sum = 0;
     Some(std::array::from_fn(|i| {
-        // a multiple of 1/N, exact in f32
-        sum += (choice.probability(i) * Discrete::NUMBERS as f32) as u32;
-        sum
+        sum += counts[i];
+        sum as u16
     }))
 }
 
 #[inline(always)]
-fn start(ends: &Ends, i: usize) -> u32 {
+fn start(ends: &Ends, i: usize) -> u16 {
     if i == 0 { 0 } else { ends[i - 1] }
 }
 
 /// M times the probability of an entry.
 #[inline(always)]
 fn share(ends: &Ends, i: usize) -> f32 {
-    (ends[i] - start(ends, i)) as f32 * (CELLS as f32 / Discrete::NUMBERS as f32)
+    f32::from(ends[i] - start(ends, i)) * (CELLS as f32 / NUMBERS as f32)
 }
 
 /// The entry that u chooses, the place in it as a number in [0, 1) of the whole row, and its share.
 #[inline(always)]
 fn choose(ends: &Ends, u: f32) -> (usize, f32, f32) {
-    let j = (u * Discrete::NUMBERS as f32) as u32;
+    // a multiple of 2⁻²⁴ times a power of two: exact
+    let x = u * NUMBERS as f32;
+    let j = x as u16;
     // all at once instead of a search: u < 1, so that the last never counts
-    let i = ends.iter().map(|&end| usize::from(end <= j)).sum::<usize>().min(CELLS - 1);
+    let i = usize::from(ends.iter().map(|&end| u16::from(end <= j)).sum::<u16>()).min(CELLS - 1);
     let first = start(ends, i);
+    let width = f32::from(ends[i] - first);
     // what is left of u, at the centre of its part
-    let rest = (f64::from(j - first) + 0.5) / f64::from(ends[i] - first);
+    let rest = (x - f32::from(first) + HALF_A_STEP) / width;
     // rounding must not reach the next cell, nor 1, which is no number of the cosine map
-    let place = ((i as f64 + rest) as f32).min(((i + 1) as f32).next_down());
-    (i, place / CELLS as f32, share(ends, i))
+    let place = (i as f32 + rest).min(BELOW[i]);
+    (i, place * (1.0 / CELLS as f32), width * (CELLS as f32 / NUMBERS as f32))
 }
+
+/// Half of the distance between two numbers u, in numbers of a row.
+const HALF_A_STEP: f32 = NUMBERS as f32 / (1u32 << 25) as f32;
+
+/// The last place before the end of each entry.
+const BELOW: [f32; CELLS] = {
+    let mut below = [0.0; CELLS];
+    let mut i = 0;
+    while i < CELLS {
+        below[i] = ((i + 1) as f32).next_down();
+        i += 1;
+    }
+    below
+};
 
 /// (cos, sin) of the angles at which one row of cells ends and the next begins, in the first quadrant.
 const EDGES: [[f32; 2]; CELLS / 4 - 1] = {
@@ -151,6 +177,9 @@ mod tests {
 
     const ALL: usize = CELLS * CELLS;
 
+    /// Numbers that a walk draws from.
+    const ALL_NUMBERS: u32 = 1 << 24;
+
     fn example(bsdf: f64) -> Warp {
         let weights: Vec<f64> = (0..ALL).map(|i| if i % 3 == 0 { 0.0 } else { ((i * 7919) % 101) as f64 }).collect();
         Warp::new(&weights, bsdf).unwrap()
@@ -168,8 +197,8 @@ mod tests {
             let sum: f64 = ratios.iter().map(|&r| f64::from(r)).sum::<f64>() / ALL as f64;
             assert!((sum - 1.0).abs() < 1e-6, "{bsdf}: {sum}");
             let least = ratios.iter().copied().fold(f32::INFINITY, f32::min);
-            // probabilities are multiples of 2⁻²⁴
-            assert!(f64::from(least) >= bsdf * 0.999, "{bsdf}: {least}");
+            // probabilities are products of multiples of 2⁻¹⁵
+            assert!(f64::from(least) >= bsdf * 0.97, "{bsdf}: {least}");
         }
     }
 
@@ -180,8 +209,7 @@ mod tests {
         let mut wrong = 0;
         for i in 0..all {
             // multiples of 2⁻²⁴, as the numbers of a walk; a product of floats would lie on edges too often
-            let u =
-                [0x9e37_79b1u32, 0x85eb_ca77].map(|m| (m.wrapping_mul(i + 1) >> 8) as f32 / Discrete::NUMBERS as f32);
+            let u = [0x9e37_79b1u32, 0x85eb_ca77].map(|m| (m.wrapping_mul(i + 1) >> 8) as f32 / ALL_NUMBERS as f32);
             let n = Vec3::new((i % 7) as f32 - 3.0, (i % 5) as f32 - 2.0, (i % 3) as f32 - 1.5).normalize();
             let (u, ratio) = w.sample(u);
             assert!(u.iter().all(|x| (0.0..1.0).contains(x)));
@@ -191,16 +219,28 @@ mod tests {
         assert!(wrong <= all / 20_000, "{wrong} of {all}");
     }
 
-    /// Each number chooses the entry that [`Discrete`] chooses, and stays below 1.
+    /// Of all numbers u each entry has as many as its share says, and none leaves its entry: a search finds the same.
     #[test]
-    fn numbers_choose_as_they_do_elsewhere() {
-        let weights: Vec<f64> = (0..CELLS).map(|i| if i % 5 == 2 { 0.0 } else { (1 + i * i) as f64 }).collect();
-        let (choice, ends) = (Discrete::new(&weights).unwrap(), ends(&weights).unwrap());
-        for j in (0..Discrete::NUMBERS).step_by(97).chain([Discrete::NUMBERS - 1]) {
-            let u = j as f32 / Discrete::NUMBERS as f32;
-            let ((i, place, p), (expected, rest)) = (choose(&ends, u), choice.sample(u));
-            assert_eq!((i, p), (expected, CELLS as f32 * choice.probability(expected)), "{j}");
-            assert!((place * CELLS as f32 - i as f32 - rest).abs() < 2e-6 && place < 1.0, "{j}");
+    fn numbers_choose_in_proportion_to_the_weights() {
+        let weights: Vec<f64> = (0..CELLS).map(|i| if i % 5 == 2 { 0.0 } else { 1e-7 + (i * i) as f64 }).collect();
+        let (ends, total) = (ends(&weights).unwrap(), weights.iter().sum::<f64>());
+        let mut counts = [0u32; CELLS];
+        let mut last = 0.0;
+        for j in 0..ALL_NUMBERS {
+            let u = j as f32 / ALL_NUMBERS as f32;
+            let (i, place, p) = choose(&ends, u);
+            assert_eq!(i, ends.partition_point(|&end| f32::from(end) <= u * NUMBERS as f32));
+            assert!(place >= last && (place * CELLS as f32) as usize == i && place < 1.0, "{j}: {place}");
+            assert_eq!(p, share(&ends, i));
+            counts[i] += 1;
+            last = place;
+        }
+        for (i, (&n, w)) in counts.iter().zip(&weights).enumerate() {
+            assert_eq!(n, (share(&ends, i) * (ALL_NUMBERS / CELLS as u32) as f32) as u32);
+            // rounded down, one at least, and the heaviest takes the rest
+            let (n, expected) = (f64::from(n) / f64::from(ALL_NUMBERS / NUMBERS), w / total * f64::from(NUMBERS));
+            assert!((n - expected).abs() <= if i == CELLS - 1 { CELLS as f64 } else { 1.0 }, "{i}: {n} {expected}");
+            assert_eq!(n > 0.0, *w > 0.0);
         }
     }
 

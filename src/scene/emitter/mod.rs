@@ -180,6 +180,18 @@ impl Lights {
         self.lights.iter().all(|l| matches!(l, Light::Point { .. } | Light::Directional { .. }))
     }
 
+    /// Whether all are selected alike.
+    #[inline(always)]
+    pub(crate) fn alike(&self) -> bool {
+        self.selection == Selection::Uniform
+    }
+
+    /// The light that a primitive is part of.
+    #[inline(always)]
+    pub(crate) fn of_primitive(&self, prim: u32) -> Option<u32> {
+        Some(self.of_prim[prim as usize]).filter(|&light| light != NONE)
+    }
+
     /// The emitting primitive, if there is only one and nothing else emits.
     pub(crate) fn only(&self) -> Option<u32> {
         match self.lights.as_slice() {

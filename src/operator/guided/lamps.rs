@@ -1,0 +1,96 @@
+//! Which lamp to connect to: in proportion to what each sends to the patch, as a few looks at each have found.
+//!
+//! ```text
+//! P_i(l) = 0.85 v_il/Σ v_il + 0.10 o_il/Σ o_il + 0.05/n        T E = E[ (weight under the scene's own choice 1/n) / (n P_i(l)) ]
+//! ```
+//!
+//! v is what arrives of lamp l at patch i, o what would arrive were nothing between: a lamp that all looks have missed behind an
+//! edge keeps its part. The table decides which number selects the lamp, so the point on it is chosen as ever, and the density of
+//! a connection is the scene's times n P_i(l): a property of the lamp and of the place that asks, and so exact.
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | P_i(l) | probability of lamp l at patch i | [`Lamps::choose`] |
+//! | n P_i(l) | density over that of the scene's own choice | [`Lamps::ratio`] |
+//! | v, o | root mean squares over the looks, seen and unhidden | [`looks`] |
+//!
+//! References: Shirley, Wang, Zimmerman, *Monte Carlo Techniques for Direct Lighting Calculations* (1996); Vévoda, Kondapaneni,
+//! Křivánek, *Bayesian online regression for adaptive direct illumination sampling* (2018), for tables per region that learn what
+//! is hidden.
+
+use super::incident::vertex;
+use crate::math::distribution::Discrete;
+use crate::math::{Key, Purpose, Rng};
+use crate::operator::SceneTransport;
+use crate::operator::patches::{Patch, Patches};
+use rayon::prelude::*;
+
+/// Looks at all lamps together from a patch, at each of them within these bounds.
+const LOOKS: (usize, usize, usize) = (512, 4, 32);
+/// Beyond so many lamps a table for every patch would take more memory than all else.
+const MANY: usize = 2048;
+/// Shares of what has been seen, of what would be seen if nothing hid it, and of all lamps alike.
+const SHARES: [f64; 3] = [0.85, 0.1, 0.05];
+
+/// A choice among the lamps for every patch.
+pub(super) struct Lamps {
+    choices: Vec<Option<Discrete>>,
+    count: usize,
+}
+
+impl Lamps {
+    /// Looks at the lamps from every patch; nothing where there is no choice. `scene` must be the one that was meshed.
+    pub(super) fn new(scene: &SceneTransport<'_>, patches: &Patches, key: Key) -> Option<Self> {
+        let count = scene.scene.lights.len();
+        if !(2..=MANY).contains(&count) {
+            return None;
+        }
+        let choice = |i: usize| Discrete::new(&mixed(&looks(scene, &patches[i], i, count, key))?);
+        Some(Self { choices: (0..patches.len()).into_par_iter().map(choice).collect(), count })
+    }
+
+    /// The number that selects the lamp which u chooses, and the density over that of the scene's own choice.
+    #[inline(always)]
+    pub(super) fn choose(&self, patch: usize, u: f32) -> (f32, f32) {
+        let Some(choice) = &self.choices[patch] else { return (u, 1.0) };
+        let (lamp, _) = choice.sample(u);
+        ((lamp as f32 + 0.5) / self.count as f32, self.count as f32 * choice.probability(lamp))
+    }
+
+    /// The density over that of the scene's own choice with which a patch chooses this lamp.
+    #[inline(always)]
+    pub(super) fn ratio(&self, patch: usize, lamp: u32) -> f32 {
+        self.choices[patch].as_ref().map_or(1.0, |choice| self.count as f32 * choice.probability(lamp as usize))
+    }
+}
+
+/// [v_l, o_l] for every lamp.
+fn looks(scene: &SceneTransport<'_>, patch: &Patch, i: usize, lamps: usize, key: Key) -> Vec<[f64; 2]> {
+    let (all, least, most) = LOOKS;
+    let each = (all / lamps).clamp(least, most);
+    let look = |lamp: usize, look: usize| {
+        let numbers = |purpose| Rng::at(key, i as u32, look as u32, lamp + 1, purpose).four();
+        let u = numbers(Purpose::Start);
+        let at = vertex(patch, [u[2], u[3]]);
+        let [_, b, c, d] = numbers(Purpose::Connect);
+        let selects = (lamp as f32 + 0.5) / lamps as f32;
+        let (step, normal) = scene.propose(&at, [selects, b, c, d])?;
+        let value = f64::from((step.weight * scene.scene.light(&step.state)).element_sum()).powi(2);
+        let hidden = scene.scene.blocked(at.p, normal, step.state.p, step.state.n);
+        Some([if hidden { 0.0 } else { value }, value])
+    };
+    let mean = |lamp: usize| {
+        let sum = (0..each).filter_map(|s| look(lamp, s)).fold([0.0, 0.0], |a, b| [a[0] + b[0], a[1] + b[1]]);
+        sum.map(|s| (s / each as f64).sqrt())
+    };
+    (0..lamps).map(mean).collect()
+}
+
+/// P_i; nothing where no lamp would be seen.
+fn mixed(looks: &[[f64; 2]]) -> Option<Vec<f64>> {
+    let [seen, unhidden] = [0, 1].map(|which| looks.iter().map(|look| look[which]).sum::<f64>());
+    let part = |share: f64, value: f64, sum: f64| if sum > 0.0 { share * value / sum } else { 0.0 };
+    let [a, b, c] = SHARES;
+    let one = |look: &[f64; 2]| part(a, look[0], seen) + part(b, look[1], unhidden) + c / looks.len() as f64;
+    (unhidden > 0.0 && unhidden.is_finite()).then(|| looks.iter().map(one).collect())
+}
