@@ -10,7 +10,7 @@ use crate::operator::SceneTransport;
 use crate::operator::form_factor::{FormFactors, Invariants, Sampling, Watch};
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
-use crate::operator::rays::{Half, Light, Rays, Record, record};
+use crate::operator::rays::{Half, Hit, Light, Rays, Record, record};
 use crate::scene::{Description, Scene, SceneError};
 use crate::solver::{Radiosity, Solution};
 use crate::stats::{Limit, limit};
@@ -165,6 +165,10 @@ fn trace(
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Rays, MatrixError> {
+    if patches.len() > Hit::MOST {
+        let e = SceneError::new(format!("{} patches, and rows of rays hold {} at most", patches.len(), Hit::MOST));
+        return Err(e.help("fewer --patches; of many triangles every side is one patch at least").into());
+    }
     observer.begin(&format!("{per_row} rays from each of {} patches", patches.len()), patches.len() as u64);
     let progress = rows(observer);
     let watch = Watch { progress: Some(&progress), stop: Some(stop) };

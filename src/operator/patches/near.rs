@@ -73,8 +73,8 @@ fn wide([lo, hi]: [DVec3; 2], margin: f64) -> Aabb {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::Patches;
     use super::*;
+    use crate::operator::patches::Patches;
     use crate::scene::load;
 
     #[test]
