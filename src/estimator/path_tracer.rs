@@ -82,7 +82,14 @@ impl PathTracer {
                 }
                 alpha *= weight;
                 siblings *= copies;
-                let copy = |c| Walker { vertex, x, alpha, key: lineage(key, vertex, c, Roulette::MOST), siblings, scored: true };
+                let copy = |c| Walker {
+                    vertex,
+                    x,
+                    alpha,
+                    key: lineage(key, vertex, c, Roulette::MOST),
+                    siblings,
+                    scored: true,
+                };
                 waiting.extend((1..copies).map(copy));
             }
             // the next vertex, whose emission counts if hits do
