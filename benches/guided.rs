@@ -50,8 +50,9 @@ impl Expects for GuidedTransport<'_> {
     }
 }
 
-/// Estimator and roulette: without a guide nobody knows what to expect, and all but the terms end by albedo from vertex 2 on.
-const KINDS: [&str; 4] = ["prefix", "path", "contribution", "window"];
+/// Estimator and roulette: without a guide nobody knows what to expect, and paths end by albedo: from vertex 2 on, and where terms are
+/// kept from vertex K on.
+const KINDS: [&str; 4] = ["prefix", "prefix window", "path", "window"];
 
 fn run<T: Transport + Expects>(t: &T, camera: &Camera, what: &str, spp: u32, key: Key) -> Run
 where
@@ -61,15 +62,16 @@ where
     let plan = |roulette| Plan { max_bounces: 8, technique: Technique::Mis, roulette };
     let amount = Amount::new(spp, key);
     let film = match what {
-        "prefix" => render(t, camera, &Prefix(plan(Roulette::Albedo { from: 8 })), amount, &mut Unwatched, &stop),
-        _ => {
-            let roulette = match what {
-                "contribution" if t.expects() => Roulette::Contribution { from: 1 },
-                "window" if t.expects() => Roulette::Window { from: 0 },
-                _ => Roulette::Albedo { from: 2 },
-            };
-            render(t, camera, &PathTracer(plan(roulette)), amount, &mut Unwatched, &stop)
+        "prefix window" if t.expects() => {
+            render(t, camera, &Prefix(plan(Roulette::Window { from: 0 })), amount, &mut Unwatched, &stop)
         }
+        "prefix" | "prefix window" => {
+            render(t, camera, &Prefix(plan(Roulette::Albedo { from: 8 })), amount, &mut Unwatched, &stop)
+        }
+        "window" if t.expects() => {
+            render(t, camera, &PathTracer(plan(Roulette::Window { from: 0 })), amount, &mut Unwatched, &stop)
+        }
+        _ => render(t, camera, &PathTracer(plan(Roulette::Albedo { from: 2 })), amount, &mut Unwatched, &stop),
     };
     Run { film, seconds: worked() - start }
 }

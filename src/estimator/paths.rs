@@ -9,6 +9,7 @@
 //! Paths that end are compacted away; the order of those that stay never changes, so sums do not depend on the wave size.
 
 use super::TermSink;
+use super::branching::lineage;
 use super::roulette::Roulette;
 use super::technique::Technique;
 use crate::math::{Columns, Key, Purpose, Rgb, Streams, columns};
@@ -55,6 +56,10 @@ pub struct Paths<W> {
     pub samples: Samples,
     /// What was expected of each path at its start, 0 where nobody knows.
     expected: Vec<f32>,
+    /// Into how many the path of each has split.
+    siblings: Vec<u32>,
+    /// Who has split at the last roulette, and into how many.
+    splits: Vec<(u32, u32)>,
     key: Option<Key>,
     alive: Vec<u32>,
 }
@@ -70,7 +75,7 @@ impl<W> Paths<W> {
             self.state.resize(n);
             (self.through, self.samples) = (Columns::new(n), Samples::new(n));
             (self.pixel, self.sample) = (vec![0; n], vec![0; n]);
-            self.expected = vec![0.0; n];
+            (self.expected, self.siblings) = (vec![0.0; n], vec![1; n]);
         }
     }
 
@@ -89,6 +94,7 @@ impl<W> Paths<W> {
         let streams = streams(batch.key, &self.pixel[..self.n], &self.sample[..self.n], 0, Purpose::Start);
         sensor.start_wave(t, &mut self.state, streams, &mut self.alive);
         self.through.fill(self.n, Rgb::ONE);
+        self.siblings.fill(1);
         self.compact();
         for i in 0..self.n {
             self.expected[i] = t.expected(&self.state.get(i)).unwrap_or_default().all;
@@ -105,6 +111,7 @@ impl<W> Paths<W> {
         self.pixel[..self.n].copy_from_slice(&parents.pixel[..self.n]);
         self.sample[..self.n].copy_from_slice(&parents.sample[..self.n]);
         self.expected[..self.n].copy_from_slice(&parents.expected[..self.n]);
+        self.siblings[..self.n].copy_from_slice(&parents.siblings[..self.n]);
         for i in 0..self.n {
             self.state.set(i, parents.state.get(i));
             self.through.set(i, parents.through.get(i) * share);
@@ -137,11 +144,27 @@ impl<W> Paths<W> {
         }
     }
 
-    /// Russian roulette at vertex v: the survivors' throughputs grow by 1/(1 − q).
+    /// Russian roulette at vertex v: the survivors' throughputs grow by 1/(1 − q); none splits.
     pub fn roulette<T: Transport<Wave = W>>(&mut self, t: &T, v: usize, schedule: &Roulette)
     where
         W: Wave<T::State>,
     {
+        self.end_or_split(t, v, schedule, false);
+    }
+
+    /// The same, but where q < 0 a path goes on as several: the first of them here, the others by [`Self::copies`].
+    pub(super) fn split<T: Transport<Wave = W>>(&mut self, t: &T, v: usize, schedule: &Roulette)
+    where
+        W: Wave<T::State>,
+    {
+        self.end_or_split(t, v, schedule, true);
+    }
+
+    fn end_or_split<T: Transport<Wave = W>>(&mut self, t: &T, v: usize, schedule: &Roulette, split: bool)
+    where
+        W: Wave<T::State>,
+    {
+        self.splits.clear();
         if schedule.sleeps(v) {
             return;
         }
@@ -149,14 +172,37 @@ impl<W> Paths<W> {
         for i in 0..self.n {
             let streams = streams(key, &self.pixel[..self.n], &self.sample[..self.n], v, Purpose::Roulette);
             let through = self.through.get(i);
-            // a wave does not split
-            let q = schedule.q(t, v, through, &self.state.get(i), self.expected[i]).max(0.0);
-            if streams.rng(i).one() >= q {
-                self.through.set(i, through * (1.0 / (1.0 - q)));
+            let q = schedule.q(t, v, through, &self.state.get(i), self.expected[i]);
+            let q = if split { q } else { q.max(0.0) };
+            let (copies, weight) = Roulette::copies(q, streams.rng(i).one(), self.siblings[i]);
+            if copies > 0 {
+                self.through.set(i, through * weight);
+                self.siblings[i] *= copies;
+                if copies > 1 {
+                    self.splits.push((self.alive.len() as u32, copies));
+                }
                 self.alive.push(i as u32);
             }
         }
         self.compact();
+    }
+
+    /// Copy `c` ≥ 1 of every path that has split into more than `c` at vertex v; nothing if there is none.
+    pub(super) fn copies<S: Copy>(&self, v: usize, c: u32) -> Option<Self>
+    where
+        W: Wave<S>,
+    {
+        let of: Vec<usize> = self.splits.iter().filter(|(_, n)| *n > c).map(|(i, _)| *i as usize).collect();
+        let mut copy = Self { key: Some(lineage(self.key?, v, c, Roulette::MOST)), ..Self::default() };
+        copy.reserve(of.len());
+        copy.n = of.len();
+        for (to, &from) in of.iter().enumerate() {
+            copy.state.set(to, self.state.get(from));
+            copy.through.set(to, self.through.get(from));
+            (copy.pixel[to], copy.sample[to]) = (self.pixel[from], self.sample[from]);
+            (copy.expected[to], copy.siblings[to]) = (self.expected[from], self.siblings[from]);
+        }
+        (!of.is_empty()).then_some(copy)
     }
 
     /// Scores emission on arrival: weighted by the technique and by the throughput, into a slot.
@@ -189,6 +235,7 @@ impl<W> Paths<W> {
             columns::keep(&mut self.pixel, alive);
             columns::keep(&mut self.sample, alive);
             columns::keep(&mut self.expected, alive);
+            columns::keep(&mut self.siblings, alive);
             columns::keep(&mut self.samples.pdf, alive);
             columns::keep(&mut self.samples.other_pdf, alive);
             self.n = alive.len();

@@ -11,7 +11,7 @@
 //! Terms of one path share their prefix, so they are correlated; fits over k must use their covariance.
 //! Reference: Kajiya, *The Rendering Equation* (1986); Veach (1997), ch. 10.
 
-use super::{Batch, Paths, Plan, TermEstimator, TermSink};
+use super::{Batch, Paths, Plan, Roulette, TermEstimator, TermSink};
 use crate::operator::{Sensor, Transport};
 
 /// The prefix estimator.
@@ -50,7 +50,8 @@ pub(super) fn start<T: Transport>(
     sink.rays(0, batch.len());
 }
 
-/// Follows paths that stand at vertex `first`, scoring every term beyond it; terms beyond K go to the tail's slot.
+/// Follows paths that stand at vertex `first`, scoring every term beyond it; terms beyond K go to the tail's slot. Where the roulette
+/// splits paths, their copies are followed to the end first.
 pub(super) fn follow<T: Transport>(
     t: &T,
     plan: &Plan,
@@ -65,13 +66,21 @@ pub(super) fn follow<T: Transport>(
         if paths.n == 0 || slot == tail && !plan.roulette.ends() {
             break;
         }
-
-        step(t, plan, v, [slot; 2], paths, sink);
+        connect(t, plan, v, slot, paths, sink);
+        if is_last(t, plan, v) {
+            break;
+        }
+        paths.split(t, v, &plan.roulette);
+        for mut copies in (1..Roulette::MOST).map_while(|c| paths.copies(v, c)) {
+            scatter(t, plan, v, slot, &mut copies, sink);
+            follow(t, plan, v + 1, &mut copies, sink);
+        }
+        scatter(t, plan, v, slot, paths, sink);
     }
 }
 
 /// Scores term v + 1 from paths that stand at vertex v, which move on to v + 1: the connection goes to one slot, the hit to
-/// another. Where nothing is left to be found beyond the last connection, the paths stay.
+/// another. Where nothing is left to be found beyond the last connection, the paths stay. None splits.
 pub(super) fn step<T: Transport>(
     t: &T,
     plan: &Plan,
@@ -80,27 +89,48 @@ pub(super) fn step<T: Transport>(
     paths: &mut Paths<T::Wave>,
     sink: &mut impl TermSink,
 ) {
-    let Plan { max_bounces, technique, ref roulette } = *plan;
-    let hits = technique.hits(t);
+    connect(t, plan, v, connection, paths, sink);
+    if !is_last(t, plan, v) {
+        // roulette, once vertex v has been scored
+        paths.roulette(t, v, &plan.roulette);
+        scatter(t, plan, v, hit, paths, sink);
+    }
+}
 
-    // next-event estimation of term v + 1
-    if technique.connects() {
-        sink.rays(connection, paths.n);
+/// Next-event estimation of term v + 1.
+fn connect<T: Transport>(
+    t: &T,
+    plan: &Plan,
+    v: usize,
+    slot: usize,
+    paths: &mut Paths<T::Wave>,
+    sink: &mut impl TermSink,
+) {
+    if plan.technique.connects() {
+        sink.rays(slot, paths.n);
         paths.connect(t, v);
-        paths.score_connections(technique, connection, sink);
+        paths.score_connections(plan.technique, slot, sink);
     }
-    if v + 1 == max_bounces && !hits && !roulette.ends() {
-        return;
-    }
+}
 
-    // roulette, once vertex v has been scored
-    paths.roulette(t, v, roulette);
+/// Whether nothing is left to be found beyond the connection at vertex v.
+fn is_last<T: Transport>(t: &T, plan: &Plan, v: usize) -> bool {
+    v + 1 == plan.max_bounces && !plan.technique.hits(t) && !plan.roulette.ends()
+}
 
-    // x_v → x_{v+1}, and its emission if hits count
-    sink.rays(hit, paths.n);
+/// x_v → x_{v+1}, and its emission if hits count.
+fn scatter<T: Transport>(
+    t: &T,
+    plan: &Plan,
+    v: usize,
+    slot: usize,
+    paths: &mut Paths<T::Wave>,
+    sink: &mut impl TermSink,
+) {
+    sink.rays(slot, paths.n);
     paths.scatter(t, v);
-    if hits {
+    if plan.technique.hits(t) {
         paths.emission(t);
-        paths.score_hits(technique, hit, sink);
+        paths.score_hits(plan.technique, slot, sink);
     }
 }

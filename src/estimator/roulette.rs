@@ -2,7 +2,7 @@
 //!
 //! q\[v\] is tested at surface vertex v = 0, 1, … after that vertex is scored (its emission and its connection). The
 //! probability of reaching vertex v is `Q_v = Π_{i<v} (1 − q[i])`, and `E[ X·1{v reached}/Q_v ] = X`: unbiased term by term
-//! whatever the schedule. How large q may be is another matter: with constant survival s the variance is finite only where
+//! whatever the schedule. A path may also go on as n walks of weight 1/(1 − q) each, with E\[n\] = 1 − q > 1: a negative q. How large q may be is another matter: with constant survival s the variance is finite only where
 //! the spectral radius of ρ²F/s is below 1 (`q < 1 − ρ²` in a furnace), and the *measured* variance can be trusted only
 //! where the fourth moment is finite (`ρ⁴ < (1 − q)³`).
 //!
@@ -49,8 +49,9 @@ pub enum Roulette {
         /// First vertex with roulette.
         from: usize,
     },
-    /// The same, and where more is expected of a path than of its start it splits into as many as that is more: a negative q, of which
-    /// the copies are 1 − q in the mean. Estimators that do not split take it for 0.
+    /// A weight window: w = (what is still expected of the path)/(what was expected of it at its start). Below ½ it survives with
+    /// probability 2w, at least 0.1; above 1 it splits into w walks in the mean, at most 8, which is a negative q = 1 − w. Estimators that do
+    /// not split take that for 0.
     Window {
         /// First vertex with roulette or splitting.
         from: usize,
@@ -62,6 +63,9 @@ const CROWD: u32 = 64;
 
 /// Survivors of roulette by contribution weigh no more than ten times what they did.
 const LEAST_SURVIVAL: f32 = 0.1;
+/// Where less than this part of the pixel is expected of a path, roulette brings the survivors up to it. Between this and 1 nothing
+/// happens to a path: to end and to split have a price, too, and where light comes from everywhere ending at 1 costs more than it saves.
+const WINDOW: f32 = 0.5;
 
 impl Roulette {
     /// Into how many a path may split at one vertex.
@@ -127,8 +131,13 @@ impl Roulette {
             && start > 0.0
             && let Some(expected) = t.expected(at)
         {
-            let most = if matches!(self, Self::Window { .. }) { Self::MOST as f32 } else { 1.0 };
-            return 1.0 - (throughput.element_sum() * expected.indirect / (3.0 * start)).clamp(LEAST_SURVIVAL, most);
+            let w = throughput.element_sum() * expected.indirect / (3.0 * start);
+            let copies = match self {
+                Self::Contribution { .. } => w.min(1.0),
+                _ if w < WINDOW => w / WINDOW,
+                _ => w.clamp(1.0, Self::MOST as f32),
+            };
+            return 1.0 - copies.max(LEAST_SURVIVAL);
         }
         self.termination(v, throughput, t.albedo(at))
     }
@@ -265,6 +274,20 @@ mod tests {
         assert_eq!(r.termination(127, Rgb::ONE, Rgb::ONE), 0.0);
         assert_eq!(r.termination(128, Rgb::ONE, Rgb::ONE), 1.0 / 64.0);
         assert_eq!(r.termination(2, Rgb::ONE, Rgb::splat(0.25)), 0.75);
+    }
+
+    /// The mean of copies · weight over u is 1, whatever q; and a path that has split often enough goes on alone.
+    #[test]
+    fn copies_carry_the_weight_of_the_path() {
+        for q in [0.9, 0.25, 0.0, -0.25, -1.0, -3.4, 1.0 - Roulette::MOST as f32] {
+            let mean = |siblings| {
+                let one = |i: u32| Roulette::copies(q, (i as f32 + 0.5) / 4096.0, siblings);
+                assert!((0..4096).all(|i| one(i).0 <= Roulette::MOST));
+                (0..4096).map(|i| f64::from(one(i).0) * f64::from(one(i).1)).sum::<f64>() / 4096.0
+            };
+            assert!((mean(1) - 1.0).abs() < 1e-3 && (mean(CROWD) - 1.0).abs() < 1e-3, "{q}");
+            assert!(q >= 0.0 || Roulette::copies(q, 0.999, CROWD) == (1, 1.0));
+        }
     }
 
     #[test]

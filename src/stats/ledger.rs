@@ -194,7 +194,8 @@ pub const ENTRIES: &[Entry] = &[
     // tests/guided.rs
     entry("guided_directions_have_the_density_they_claim", 100, 5e-9),
     entry("a_guide_that_nobody_accounts_for_is_found", 12, 5e-9),
-    entry("guided_terms_agree_with_the_others", 300, 5e-9),
+    entry("guided_terms_agree_with_the_others", 300, 2.5e-9),
+    entry("guided_terms_agree_closely", 100, 2.5e-9),
     entry("guided_walks_have_the_terms_of_a_furnace", 200, 5e-9),
     // tests/diagnosis.rs
     entry("right_renderers_are_called_correct", 44, 1e-8),

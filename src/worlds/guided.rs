@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Patches of a guide unless told otherwise.
-pub const PATCHES: usize = 1000;
+pub const PATCHES: usize = 4000;
 
 /// A guide, and what it cost.
 pub struct Prepared {

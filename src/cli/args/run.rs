@@ -101,9 +101,11 @@ pub struct Run {
     /// What tells rays where to look: bsdf, radiosity
     ///
     /// bsdf: the surface alone; radiosity: at Lambertian surfaces directions are drawn from what a
-    /// radiosity solution of the scene (--patches, default 1000) expects from them, mixed with
-    /// the cosine. Other surfaces scatter as before. The matrix is only a guide: it takes every
-    /// surface for Lambertian and glass for black; what it gets wrong costs noise, never a bias.
+    /// radiosity solution of the scene (--patches, default 4000) expects from them, mixed with
+    /// the cosine, and a connection chooses its lamp by what each sends to the patch (in place
+    /// of --lights uniform). Other surfaces scatter as before. The matrix is only a guide: it takes
+    /// every surface for Lambertian and glass for black; what it gets wrong costs noise, never a
+    /// bias. Goes well with --roulette window.
     #[arg(
         long,
         value_enum,
@@ -145,8 +147,10 @@ pub struct Run {
     ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
     ///   contribution[@V]     with --guide: q = 1 − expected of the rest/expected of the pixel,
     ///                        at most 0.9, from vertex V on (1); elsewhere as albedo
-    ///   window[@V]           the same from V on (0), and where q < 0 the path splits into 1 − q
-    ///                        walks in the mean, 8 at most; only the path tracer splits
+    ///   window[@V]           with --guide, from vertex V on (0), for w = expected of the rest/expected
+    ///                        of the pixel: below 0.5 q = 1 − 2w, at most 0.9; above 1 the path splits
+    ///                        into w walks in the mean, at most 8 (prefix and path tracer; others
+    ///                        do not split); elsewhere as albedo
     ///   optimal              the table with the most efficiency, found by a pilot of 2^18 paths
     #[arg(long, value_name = "SCHEDULE", value_parser = schedule, verbatim_doc_comment)]
     pub roulette: Option<Schedule>,

@@ -94,3 +94,33 @@ fn mixed(looks: &[[f64; 2]]) -> Option<Vec<f64>> {
     let one = |look: &[f64; 2]| part(a, look[0], seen) + part(b, look[1], unhidden) + c / looks.len() as f64;
     (unhidden > 0.0 && unhidden.is_finite()).then(|| looks.iter().map(one).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// Over all numbers every lamp is selected as often as its ratio says, also one that no look has found; a place that sees none
+    /// chooses as the scene does.
+    #[test]
+    fn lamps_are_chosen_with_the_ratio_they_claim() {
+        let looks = [[3.0, 4.0], [0.0, 2.0], [1e-6, 1e-6], [0.0, 0.0], [0.5, 0.5]];
+        let choices = vec![Discrete::new(&mixed(&looks).unwrap()), None];
+        let (lamps, n, all) = (Lamps { choices, count: looks.len() }, looks.len() as f32, 1u32 << 20);
+        assert_eq!(mixed(&[[0.0, 0.0]; 3]), None);
+        let mut counts = [0u32; 5];
+        for j in 0..all {
+            let u = (j as f32 + 0.5) / all as f32;
+            let (number, ratio) = lamps.choose(0, u);
+            // as the scene selects
+            let lamp = (number * n) as usize;
+            assert_eq!(ratio, lamps.ratio(0, lamp as u32));
+            assert_eq!(lamps.choose(1, u), (u, 1.0));
+            counts[lamp] += 1;
+        }
+        for (lamp, &count) in counts.iter().enumerate() {
+            let expected = lamps.ratio(0, lamp as u32) * all as f32 / n;
+            assert!(count > 0 && (count as f32 - expected).abs() <= 2.0, "{lamp}: {count}, {expected}");
+        }
+    }
+}

@@ -61,15 +61,20 @@ pub struct Recipe {
 
 impl Default for Recipe {
     fn default() -> Self {
-        let fineness = Fineness { rays: 64, connections: 64 };
-        Self { patches: 1000, fineness, bsdf: 0.2, emission: false }
+        let fineness = Fineness { rays: 16, connections: 32 };
+        Self { patches: 4000, fineness, bsdf: 0.2, emission: false }
     }
 }
+
+/// No table.
+const NONE: u32 = u32::MAX;
 
 /// A density of directions for every patch.
 pub struct Guide {
     patches: Patches,
-    warps: Vec<Option<Warp>>,
+    /// One for every patch whose table says anything, and which patch has which.
+    warps: Vec<Warp>,
+    tables: Vec<u32>,
     places: Places,
     lamps: Option<Lamps>,
     reflected: Vec<Expected>,
@@ -108,10 +113,15 @@ impl Guide {
         if recipe.emission {
             light.iter_mut().zip(patches.iter()).for_each(|(u, p)| *u += p.emission.as_vec3());
         }
-        let warp = |i| Warp::new(&incident.weights(i, &light), recipe.bsdf);
-        let warps = (0..patches.len()).map(warp).collect();
+        let (mut warps, mut tables) = (vec![], vec![NONE; patches.len()]);
+        for (i, table) in tables.iter_mut().enumerate() {
+            if let Some(warp) = Warp::new(&incident.weights(i, &light), recipe.bsdf) {
+                *table = warps.len() as u32;
+                warps.push(warp);
+            }
+        }
         let (places, lamps) = (Places::new(&patches), Lamps::new(&transport, &patches, key));
-        Ok(Some(Self { warps, places, lamps, patches, reflected, bsdf: recipe.bsdf as f32 }))
+        Ok(Some(Self { warps, tables, places, lamps, patches, reflected, bsdf: recipe.bsdf as f32 }))
     }
 
     /// How many patches.
@@ -127,12 +137,7 @@ impl Guide {
     /// The density at a point of a surface; nothing where the cosine is as good.
     #[inline(always)]
     pub fn at(&self, x: &Vertex) -> Option<&Warp> {
-        if x.on_surface() { self.table(x.p, x.side) } else { None }
-    }
-
-    #[inline(always)]
-    fn table(&self, p: Vec3, side: Side) -> Option<&Warp> {
-        self.warps[self.find(p, side)?].as_ref()
+        self.warps.get(self.tables[self.patch(x)?] as usize)
     }
 
     #[inline(always)]
@@ -273,15 +278,41 @@ impl Transport for GuidedTransport<'_> {
         }
         let n = streams.len();
         numbers(streams, &mut wave.rays.u);
-        let ([u, v, ..], ratio) = (&mut wave.rays.u, &mut out.pdf[..n]);
-        let (u, v, p, side) = (&mut u[..n], &mut v[..n], &wave.p, &wave.side[..n]);
-        for i in 0..n {
-            match self.guide.table(p.get(i), side[i]) {
-                Some(warp) => ([u[i], v[i]], ratio[i]) = warp.sample([u[i], v[i]]),
-                None => ratio[i] = 1.0,
-            }
-        }
+        warped(self.guide, &wave.p, &wave.side[..n], &mut wave.rays.u, &mut out.pdf[..n]);
         self.scene.scatter_packets(wave, n, out, alive, |out, i| out.pdf[i], self.guide.bsdf);
+    }
+}
+
+/// Paths that look up their tables together, step by step, so that they wait for memory together.
+const TOGETHER: usize = 32;
+
+/// The first two numbers of every path of a wave, warped where it stands, and the ratios.
+#[pulp::with_simd(warped = pulp::Arch::new())]
+#[inline(always)]
+fn warped_with_simd<'a, S: pulp::Simd>(
+    _simd: S,
+    guide: &'a Guide,
+    p: &'a Columns,
+    side: &'a [Side],
+    numbers: &'a mut [Vec<f32>; 4],
+    ratio: &'a mut [f32],
+) {
+    let [u, v, ..] = numbers;
+    let (mut table, mut rows) = ([NONE; TOGETHER], [0; TOGETHER]);
+    for first in (0..side.len()).step_by(TOGETHER) {
+        let some = first..(first + TOGETHER).min(side.len());
+        for (i, table) in some.clone().zip(&mut table) {
+            *table = guide.find(p.get(i), side[i]).map_or(NONE, |patch| guide.tables[patch]);
+        }
+        for (i, (&table, row)) in some.clone().zip(table.iter().zip(&mut rows)) {
+            let warp = guide.warps.get(table as usize);
+            (*row, v[i], ratio[i]) = warp.map_or((0, v[i], 1.0), |warp| warp.row(v[i]));
+        }
+        for (i, (&table, &row)) in some.zip(table.iter().zip(&rows)) {
+            let warp = guide.warps.get(table as usize);
+            let (x, share) = warp.map_or((u[i], 1.0), |warp| warp.column(row, u[i]));
+            (u[i], ratio[i]) = (x, ratio[i] * share);
+        }
     }
 }
 

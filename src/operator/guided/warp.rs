@@ -39,7 +39,7 @@ type Ends = [u16; CELLS];
 
 /// A density of directions about a normal.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[repr(align(32))]
+#[repr(C, align(32))]
 pub struct Warp {
     /// φ.
     rows: Ends,
@@ -71,9 +71,22 @@ impl Warp {
     /// Warped numbers for the cosine map, and r of the direction they choose.
     #[inline(always)]
     pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
-        let (row, y, p) = choose(&self.rows, u[1]);
-        let (_, x, q) = choose(&self.columns[row], u[0]);
+        let (row, y, p) = self.row(u[1]);
+        let (x, q) = self.column(row, u[0]);
         ([x, y], p * q)
+    }
+
+    /// The row that a number chooses, the warped number, and M times the probability of the row.
+    #[inline(always)]
+    pub(super) fn row(&self, u: f32) -> (usize, f32, f32) {
+        choose(&self.rows, u)
+    }
+
+    /// A number warped along a row, and M times the probability of its column there.
+    #[inline(always)]
+    pub(super) fn column(&self, row: usize, u: f32) -> (f32, f32) {
+        let (_, x, q) = choose(&self.columns[row], u);
+        (x, q)
     }
 
     /// r of a direction about a normal: the density over that of the cosine; up to rounding at the edges of cells it is the
