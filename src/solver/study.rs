@@ -7,7 +7,7 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | applications | products with T, or work worth as much | [`Point::applications`] |
-//! | λ_min, λ_max | ends of the spectrum, by Lanczos, once; Chebyshev and SOR are charged for them | [`System::ends`] |
+//! | λ_min, λ_max | ends of the spectrum, by Lanczos, once if at all; Chebyshev and SOR are charged for them | [`System::ends`] |
 //!
 //! The weight 1/ρ is that in which T is self-adjoint: there the error of every stationary method falls by its eigenvalues,
 //! and the bounds of Chebyshev's iteration hold.
@@ -23,6 +23,7 @@ use crate::operator::algebra::Expression;
 use crate::operator::matrix::{Extremes, PatchOperator, Transposed, Weight, extremes};
 use crate::operator::rays::RayOperator;
 pub use history::{History, Point, Solver};
+use std::sync::OnceLock;
 use std::time::Instant;
 
 /// Where L comes from.
@@ -51,13 +52,19 @@ pub struct System<'a, T> {
     pub light: Vec<f64>,
     /// Who found L.
     pub reference: Reference,
-    /// λ_min and λ_max.
-    pub ends: Extremes,
-    /// Products with T that they took.
-    pub ends_applications: usize,
-    /// Seconds that they took.
-    ends_seconds: f64,
     weight: Weight,
+    ends: OnceLock<Ends>,
+}
+
+/// Ends of the spectrum, and what they took.
+#[derive(Clone, Copy, Debug)]
+pub struct Ends {
+    /// λ_min and λ_max.
+    pub found: Extremes,
+    /// Products with T.
+    pub applications: usize,
+    /// Seconds.
+    pub seconds: f64,
 }
 
 /// When a study stops.
@@ -79,7 +86,7 @@ const ENDS: f64 = 1e-3;
 const STEPS: usize = 200;
 
 impl<'a> System<'a, PatchOperator<'a>> {
-    /// Solves by LU and finds the ends of the spectrum.
+    /// Solves by LU.
     ///
     /// # Errors
     /// [`Singular`] if the channel keeps all its light.
@@ -87,28 +94,20 @@ impl<'a> System<'a, PatchOperator<'a>> {
         let clock = Instant::now();
         let light = direct::solve(operator, &emission)?.x;
         let reference = Reference::Lu { seconds: clock.elapsed().as_secs_f64() };
-        let (clock, weight) = (Instant::now(), operator.weight());
-        let ends = extremes(operator, &weight, ENDS, STEPS);
-        let ends_seconds = clock.elapsed().as_secs_f64();
-        let ends_applications = ends.steps;
-        Ok(Self { operator, emission, light, reference, ends, ends_applications, ends_seconds, weight })
+        Ok(Self { operator, emission, light, reference, weight: operator.weight(), ends: OnceLock::new() })
     }
 }
 
 impl<'a> System<'a, RayOperator<'a>> {
-    /// Solves by GMRES to rounding and finds the ends of the symmetric part's spectrum.
+    /// Solves by GMRES to rounding.
     ///
     /// # Errors
     /// [`Singular`] if the channel keeps all its light.
     pub fn sampled(operator: &'a RayOperator<'a>, emission: Vec<f64>) -> Result<Self, Singular> {
         let settled = settle(operator, &emission)?;
         let reference = Reference::Gmres { applications: settled.applications };
-        let (clock, weight) = (Instant::now(), Weight::new(&operator.rays.area, &operator.rho));
-        let ends = extremes(&Expression::from(operator).symmetric_part(&weight), &weight, ENDS, STEPS);
-        let ends_seconds = clock.elapsed().as_secs_f64();
-        // T and its adjoint
-        let ends_applications = 2 * ends.steps;
-        Ok(Self { operator, emission, light: settled.x, reference, ends, ends_applications, ends_seconds, weight })
+        let weight = Weight::new(&operator.rays.area, &operator.rho);
+        Ok(Self { operator, emission, light: settled.x, reference, weight, ends: OnceLock::new() })
     }
 }
 
@@ -124,10 +123,26 @@ impl<T: Transposed> System<'_, T> {
         self.operator.norm(&left) / self.operator.norm(&self.emission)
     }
 
+    /// The ends of the spectrum, found once, by the first who asks.
+    pub fn ends(&self) -> &Ends {
+        self.ends.get_or_init(|| {
+            let clock = Instant::now();
+            let (found, each) = if self.dense() {
+                (extremes(self.operator, &self.weight, ENDS, STEPS), 1)
+            } else {
+                // T and its adjoint
+                let symmetric = Expression::from(self.operator).symmetric_part(&self.weight);
+                (extremes(&symmetric, &self.weight, ENDS, STEPS), 2)
+            };
+            Ends { found, applications: each * found.steps, seconds: clock.elapsed().as_secs_f64() }
+        })
+    }
+
     /// [a, b] that holds the spectrum, b < 1.
     pub fn bracket(&self) -> [f64; 2] {
-        let [a, b] = self.ends.bracket();
-        [a, b.min(0.5 * (1.0 + self.ends.largest))]
+        let ends = self.ends().found;
+        let [a, b] = ends.bracket();
+        [a, b.min(0.5 * (1.0 + ends.largest))]
     }
 
     /// ‖x − L‖_w/‖L‖_w.
@@ -139,16 +154,22 @@ impl<T: Transposed> System<'_, T> {
     /// Runs a solver until its error is small enough, or it can go no further. One that is not possible here has no steps.
     pub fn history(&self, solver: Solver, limits: Limits<'_>) -> History {
         let (t, e) = (self.operator, &self.emission);
-        let radius = self.bracket().map(f64::abs).into_iter().fold(0.0, f64::max);
         // the ends are known before the first step, and have to be paid for
-        let informed = (self.ends_applications as f64, self.ends_seconds);
+        let informed = || (self.ends().applications as f64, self.ends().seconds);
+        let radius = || self.bracket().map(f64::abs).into_iter().fold(0.0, f64::max);
         let points = match solver {
             Solver::Neumann => self.watch(|| PartialSums::new(t, e), limits, (0.0, 0.0)),
             Solver::Jacobi => self.watch(|| Jacobi::new(t, e), limits, (0.0, 0.0)),
             Solver::GaussSeidel => self.watch(|| Sor::gauss_seidel(t, e), limits, (0.0, 0.0)),
-            Solver::Sor => self.watch(|| Sor::new(t, e, Sor::<T>::young(radius)), limits, informed),
+            Solver::Sor => {
+                let omega = Sor::<T>::young(radius());
+                self.watch(|| Sor::new(t, e, omega), limits, informed())
+            }
             Solver::Southwell => self.watch(|| Southwell::new(t, e), limits, (0.0, 0.0)),
-            Solver::Chebyshev => self.watch(|| Chebyshev::new(t, e, self.bracket()), limits, informed),
+            Solver::Chebyshev => {
+                let bracket = self.bracket();
+                self.watch(|| Chebyshev::new(t, e, bracket), limits, informed())
+            }
             Solver::ConjugateGradients if self.dense() => {
                 self.watch(|| ConjugateGradients::new(t, self.weight.clone(), e), limits, (0.0, 0.0))
             }

@@ -28,8 +28,8 @@ pub struct Radiosity {
     /// gauss-seidel, sor: patch by patch; southwell: progressive shooting, brightest first;
     /// chebyshev: needs the ends of the spectrum; cg: conjugate gradients in the weight 1/ρ;
     /// gmres; lu: the direct solve that all others are held against.
-    /// Stored rays (--factors rays) are self-adjoint only within their noise: there is no cg and no
-    /// lu, and all others are held against GMRES to rounding.
+    /// With --factors rays there is no lu, and no cg, because T is self-adjoint only within its
+    /// noise: all others are held against GMRES to rounding.
     #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
     pub solver: Option<SolverName>,
     /// red, green or blue, for --solver and --modes [default: the slowest]

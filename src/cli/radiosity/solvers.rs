@@ -97,7 +97,7 @@ impl<'a, R> Study<'a, R> {
         }
         progress.finish();
         let files = self.write(&histories)?;
-        let series = extrapolations(system);
+        let series = extrapolations(system, lab.matrix.spectral[self.channel].radius);
         let record = self.record(system, &histories, &series);
         write_atomically(&lab.folder.join("solvers.json"), serde_json::to_string_pretty(&record)?.as_bytes())?;
         if args.run.shared.json {
@@ -109,42 +109,48 @@ impl<'a, R> Study<'a, R> {
                 solvers::extrapolations(&series)
             );
             let written = format!("written to {}:\n{}", lab.folder.display(), files.join(", "));
-            say(&paragraphs(&[self.head(system), solvers::table(&histories), extrapolated, written]))?;
+            let head = self.head(system, informed(&histories));
+            say(&paragraphs(&[head, solvers::table(&histories), extrapolated, written]))?;
         }
         Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })
     }
 
     /// What is solved, and what the table counts.
-    fn head<T: Transposed>(&self, system: &System<'_, T>) -> String {
-        let [low, high] = [system.ends.smallest, system.ends.largest];
+    fn head<T: Transposed>(&self, system: &System<'_, T>, informed: bool) -> String {
         let (command, patches, channel) = (&self.lab.opened.command, self.lab.patches, NAMES[self.channel]);
-        let mut head = format!("{command}\n{patches} patches{}, {channel} channel: ", self.held());
-        head += match system.reference {
-            Reference::Lu { .. } => "eigenvalues",
-            Reference::Gmres { .. } => "(I − T) u = D for u = L − E;\neigenvalues of the symmetric part",
-        };
-        head += &format!(
-            " {low:.5} to {high:.5}\n\
-             products with T, then seconds, until ‖x − {x}‖/‖{x}‖ in the weight A/ρ is below 1e-3, 1e-6, 1e-10\n",
-            x = self.unknown()
-        );
-        let spent = system.ends_applications;
-        head += &match system.reference {
-            Reference::Lu { .. } => {
-                format!("LU counts as n/3 products; Chebyshev and SOR spend {spent} on the spectrum first")
-            }
-            Reference::Gmres { applications } => format!(
-                "Chebyshev and SOR spend {spent} on the spectrum first\n\
+        let radius = self.lab.matrix.spectral[self.channel].radius;
+        let mut head = format!("{command}\n{patches} patches{}, {channel} channel: r(T) = {radius:.5}", self.held());
+        if let Reference::Gmres { applications } = system.reference {
+            head += &format!(
+                "; (I − T) u = D for u = L − E\n\
                  held against GMRES to rounding: {applications} products, residual {:.1e} of ‖D‖; no CG, because T is\n\
                  self-adjoint only within its noise, and no LU, because there is no matrix",
                 system.residual()
-            ),
-        };
+            );
+        }
+        head += &format!(
+            "\nproducts with T, then seconds, until ‖x − {x}‖/‖{x}‖ in the weight A/ρ is below 1e-3, 1e-6, 1e-10",
+            x = self.unknown()
+        );
+        if informed {
+            let (ends, part) = (system.ends(), if self.dense() { "" } else { " of its symmetric part" });
+            head += &format!(
+                "\nChebyshev and SOR first spend {} on the spectrum{part}: {:.5} to {:.5}",
+                ends.applications, ends.found.smallest, ends.found.largest
+            );
+        }
+        if self.dense() {
+            head += "\nLU counts as n/3 products";
+        }
         let t = system.operator;
         if (0..t.len()).all(|i| t.entry(i, i) == 0.0) {
             head += "\nno patch sees itself, so Jacobi is the Neumann series here";
         }
         head
+    }
+
+    fn dense(&self) -> bool {
+        self.lab.matrix.sampling.is_none()
     }
 
     /// How the rows are held, where it is not as a matrix.
@@ -154,7 +160,7 @@ impl<'a, R> Study<'a, R> {
 
     /// What x tends to.
     fn unknown(&self) -> &'static str {
-        if self.lab.matrix.sampling.is_some() { "u" } else { "L" }
+        if self.dense() { "L" } else { "u" }
     }
 
     fn record<T: Transposed>(&self, system: &System<'_, T>, histories: &[History], series: &[Extrapolated]) -> Value {
@@ -175,9 +181,13 @@ impl<'a, R> Study<'a, R> {
             "rays": lab.matrix.sampling.map(|s| s.per_row),
             "unknown": self.unknown(),
             "channel": NAMES[self.channel],
-            "eigenvalues": {
-                "smallest": system.ends.smallest, "largest": system.ends.largest, "products": system.ends_applications,
-            },
+            "spectral_radius": lab.matrix.spectral[self.channel].radius,
+            "eigenvalues": informed(histories).then(|| {
+                let ends = system.ends();
+                json!({
+                    "smallest": ends.found.smallest, "largest": ends.found.largest, "products": ends.applications,
+                })
+            }),
             "reference": reference,
             "solvers": solvers::machine(histories),
             "extrapolations": solvers::machine_extrapolations(series),
@@ -187,7 +197,7 @@ impl<'a, R> Study<'a, R> {
     /// Writes the figure, the steps and the summary; returns the names of the files.
     fn write(&self, histories: &[History]) -> Result<Vec<String>, Failure> {
         let Self { args, lab, channel, .. } = self;
-        let equation = if lab.matrix.sampling.is_some() { "(I − T) u = D" } else { "(I − T) L = E" };
+        let equation = if self.dense() { "(I − T) L = E" } else { "(I − T) u = D" };
         let (scene, channel_name) = (&lab.opened.description.name, NAMES[*channel]);
         let title = format!("Solvers of {equation}: {scene}, {} patches{}, {channel_name}", lab.patches, self.held());
         let mut files = vec!["solvers.json".to_string(), "summary.json".into()];
@@ -205,12 +215,17 @@ impl<'a, R> Study<'a, R> {
     }
 }
 
+/// Whether one of them had to know the ends of the spectrum.
+fn informed(histories: &[History]) -> bool {
+    histories.iter().any(|h| matches!(h.solver, Solver::Chebyshev | Solver::Sor))
+}
+
 /// What extrapolation makes of the first terms: their means over all patches.
-fn extrapolations<T: Transposed>(system: &System<'_, T>) -> Vec<Extrapolated> {
+fn extrapolations<T: Transposed>(system: &System<'_, T>, radius: f64) -> Vec<Extrapolated> {
     const TERMS: [usize; 5] = [3, 5, 7, 9, 13];
     let t = system.operator;
     let ones = vec![1.0; t.len()];
     let mean = |x: &[f64]| t.inner(&ones, x) / t.inner(&ones, &ones);
     let terms: Vec<f64> = Neumann::new(t, system.emission.clone()).take(TERMS[4]).map(|x| mean(&x)).collect();
-    TERMS.map(|n| Extrapolated::new(&terms[..n], mean(&system.light), system.ends.largest)).into()
+    TERMS.map(|n| Extrapolated::new(&terms[..n], mean(&system.light), radius)).into()
 }
