@@ -37,7 +37,7 @@ struct Lamp {
 /// The emitting primitives.
 pub(super) struct Lamps(Vec<Lamp>);
 
-/// Pairs per half of a row: half as many as rays, and no more than this. Their part of the error is a quarter of that of
+/// Pairs per half of a row: half as many as rays, and no more than this. Their error is less than a third of that of
 /// the rays.
 const PAIRS: usize = 256;
 
