@@ -19,7 +19,7 @@
 //! |---|---|---|
 //! | L_h | radiance of the patches, from stored rays | [`incident`] |
 //! | r_i, β | density over that of the cosine, share of the BSDF | [`warp`] |
-//! | P_i(l) | which lamp a connection chooses | [`lamps`] |
+//! | P_i(l) | which lamp a connection chooses | `lamps` |
 //! | i(x) | the patch of a point | [`Guide::at`] |
 //! | u, T u | reflected part of L_h, for roulette by expected contribution | [`Transport::expected`] |
 //! | f → ρ | what stands for surfaces that are not Lambertian, in the guide only | [`stand_in()`] |
