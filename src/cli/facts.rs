@@ -5,8 +5,9 @@ use fredholm::operator::guided::warp::CELLS;
 use fredholm::report::{refine::limit_words, summary};
 use fredholm::stats::{self, Comparison, TermMeans, observed_rate};
 use fredholm::terms::Series;
-use fredholm::worlds::discrete::{Discrete, radius_limit};
+use fredholm::worlds::discrete::Discrete;
 use fredholm::worlds::guided::Prepared;
+use fredholm::worlds::radius::radius_limit;
 use fredholm::worlds::realisation::{Difference, Sampling};
 use fredholm::worlds::sampled::Estimator;
 

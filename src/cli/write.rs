@@ -13,7 +13,8 @@ use fredholm::report::{decay, exr, html, patches as mesh, picture, summary, vari
 use fredholm::scene::Description;
 use fredholm::stats::{Limit, TermMeans, observed_rate, variance_slope};
 use fredholm::terms::{Estimate, TermFilm, TermImage};
-use fredholm::worlds::discrete::{Discrete, radius_limit};
+use fredholm::worlds::discrete::Discrete;
+use fredholm::worlds::radius::radius_limit;
 use fredholm::worlds::roulette;
 use fredholm::worlds::sampled::{Estimator, Sampled};
 use glam::DVec3;
