@@ -307,7 +307,7 @@ fn commands_end_as_they_say() {
     mirror-corridor two parallel mirrors of 0.9: T^k E decays slowly
     sky-bowl        part of a sphere open to a sky of radiance 1: every term is constant
     many-lights     96 lamps from 0.01 to 10 W: choosing lights by power or uniformly
-    cube            a closed cube under a glowing ceiling: means and r(T) of three problems, known exactly
+    cube            a closed cube under a glowing ceiling: means of L and r(T) known without patches
     "#);
     let said = desk.ok("info furnace");
     insta::assert_snapshot!(said.out, @r#"

@@ -8,7 +8,7 @@ mod discrete;
 use discrete::*;
 use fredholm::operator::form_factor::{FormFactors, Sampling, Watch, point_to_polygon};
 use fredholm::operator::matrix::PatchOperator;
-use fredholm::operator::patches::{BruteForce, Patches};
+use fredholm::operator::patches::Patches;
 use fredholm::scene::{Description, Scene, load};
 use fredholm::solver::{Neumann, Radiosity, direct};
 use fredholm::stats::{convergence_order, limit};
@@ -125,6 +125,42 @@ fn on_meshes(case: &Value, meshes: &[usize], grading: f64, wrong: f64) -> Vec<Ve
     (0..columns[0].1.len()).map(|i| columns.iter().map(|(h, v)| (*h, v[i], 0.0)).collect()).collect()
 }
 
+/// What stands in brackets tells members of one kind apart: `L over faces[3]`, `T2E at point 5[0]`.
+fn kind(name: &str) -> String {
+    let head = name.split('[').next().unwrap();
+    let inside = name.split('[').nth(1).unwrap().trim_end_matches(']');
+    match head.split(" at point ").next().unwrap() {
+        "TᵏE" => format!("T{inside}E at points"),
+        "L" if head.contains("at point") => "L at points".into(),
+        "‖TᵏE‖₁" | "‖TᵏE‖₂" => format!("T{inside}E over faces"),
+        other => other.into(),
+    }
+}
+
+/// Single terms and single points: errors of both signs meet there, and no power of h is seen on three meshes.
+fn mixed(name: &str) -> bool {
+    name.contains("at point") || name.starts_with(['T', '‖'])
+}
+
+/// The values that miss the error stated for them, and how many there are. A difference of meshes is small by accident
+/// where it changes its sign, so the error stated is the largest of its kind: that of the limit for means of L and for r(T);
+/// three times the largest difference of the last two meshes (Roache) for single terms, their norms, and points.
+fn misses(truths: &Values, found: &[Vec<(f64, f64, f64)>]) -> Vec<String> {
+    let limits: Vec<_> = found.iter().map(|points| limit(points).unwrap()).collect();
+    let mut stated = std::collections::HashMap::new();
+    for (((name, ..), l), points) in truths.iter().zip(&limits).zip(found) {
+        let largest: &mut f64 = stated.entry(kind(name)).or_default();
+        let step = (points[2].1 - points[1].1).abs();
+        *largest = largest.max(if mixed(name) { 3.0 * step } else { l.half_width });
+    }
+    let miss = |((name, truth, known), l): (&(String, f64, f64), &fredholm::stats::Limit)| {
+        let (off, allowed) = ((l.value - truth).abs(), stated[&kind(name)] + known + SINGLE);
+        (off > allowed)
+            .then(|| format!("{name}: {:e} instead of {truth:e}, off by {off:.1e}, allowed {allowed:.1e}", l.value))
+    };
+    truths.iter().zip(&limits).filter_map(miss).collect()
+}
+
 /// Every value of the continuous cube, extrapolated from three meshes, is met within the error stated for it.
 #[test]
 fn the_continuous_cube_is_the_limit_of_its_meshes() {
@@ -133,28 +169,17 @@ fn the_continuous_cube_is_the_limit_of_its_meshes() {
         let truths = truths(&case);
         let right = on_meshes(&case, &[4, 8, 16], 1.0, 1.0);
         assert_eq!(right.len(), truths.len(), "{id}");
-        let (mut missed, mut orders) = (vec![], vec![]);
-        for ((name, truth, known), points) in truths.iter().zip(&right) {
-            let l = limit(points).unwrap();
-            let off = (l.value - truth).abs();
-            if off > l.half_width + known + SINGLE {
-                missed.push(format!(
-                    "{name}: {:e} instead of {truth:e}, off by {off:.1e}, stated {:.1e}",
-                    l.value, l.half_width
-                ));
-            }
-            let errors: Vec<_> = points.iter().map(|(h, v, _)| (*h, v - truth, 0.0)).collect();
-            if let Some(fit) = convergence_order(&errors).filter(|_| errors[2].1.abs() > 1e3 * (known + 1e-7)) {
-                orders.push((name, fit.order));
-            }
+        let missed = misses(&truths, &right);
+        println!("{id}: {} values", truths.len());
+        assert!(missed.is_empty(), "{id}:\n{}", missed.join("\n"));
+        // the errors stated are small: 0.3 % of the mean of L, where light is reflected
+        for ((name, truth, _), points) in truths.iter().zip(&right).filter(|(t, _)| t.0.starts_with("L over")) {
+            assert!(limit(points).unwrap().half_width < 3e-3 * truth, "{id}: {name}");
         }
-        println!(
-            "{id}: {} values, {} missed; orders {:?}",
-            truths.len(),
-            missed.len(),
-            &orders[..orders.len().min(12)]
-        );
-        missed.iter().for_each(|m| println!("  {m}"));
+        // walls that reflect a hundredth more than they should
+        let wrong = on_meshes(&case, &[4, 8, 16], 1.0, 1.01);
+        let caught = misses(&truths, &wrong);
+        assert!(caught.iter().any(|m| m.starts_with("L over faces")) && caught.len() > 30, "{id}: {}", caught.len());
     }
 }
 
@@ -169,14 +194,14 @@ fn grading_raises_the_order_where_edges_spoil_it() {
             let errors: Vec<_> = all[i].iter().map(|(h, v, _)| (*h, v - truths[i].1, 0.0)).collect();
             (convergence_order(&errors).unwrap().order, errors[2].1.abs())
         };
-        // r(T), and the mean of L over the floor
-        (of(truths.len() - 1), of(4))
+        // r(T), and the mean of L over the ceiling
+        (of(truths.len() - 1), of(5))
     };
     let (even, graded) = (fit(1.0), fit(1.5));
     println!("even {even:?}, graded {graded:?}");
     assert!(truths[truths.len() - 1].0.starts_with("r(T)"));
     assert!(even.0.0 < 1.6 && graded.0.0 > 1.7 && graded.0.1 < 0.6 * even.0.1, "r(T)");
-    assert!(even.1.0 < 1.75 && graded.1.0 > even.1.0 + 0.1 && graded.1.1 < 0.8 * even.1.1, "L over the floor");
+    assert!(even.1.0 < 1.85 && graded.1.0 > even.1.0 + 0.1 && graded.1.1 < 0.8 * even.1.1, "L over the ceiling");
 }
 
 #[test]
@@ -199,8 +224,10 @@ fn a_graded_mesh_holds_the_same_surfaces_in_as_many_patches() {
         let s: Vec<f64> = p.polygon.iter().map(|c| c.dot(axis)).collect();
         s.iter().copied().fold(f64::MIN, f64::max) - s.iter().copied().fold(f64::MAX, f64::min)
     };
-    let foot = v(0.1, -0.999, -1.0);
+    let foot = v(-0.1, -0.999, -1.0);
     assert!(extent(&graded, foot, DVec3::Y) < 0.25 * extent(&even, foot, DVec3::Y));
+    let open = v(1.0, -0.2, 0.999);
+    assert!(extent(&graded, open, DVec3::Z) > 0.9 * extent(&even, open, DVec3::Z));
     assert!(Patches::graded(&scene, 1500, 0.9).is_err() && Patches::graded(&scene, 1500, f64::NAN).is_err());
 }
 

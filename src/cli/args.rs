@@ -85,8 +85,9 @@ tail. (Elsewhere the same images are Mitsuba's max_depth = K + 1 and pbrt's maxd
   fredholm radiosity cornell --modes 8 --size 128x128
   fredholm radiosity cornell --patches 2400 --export matrix              for another program
 
-The spectral radius is that of the mesh, then extrapolated to h → 0 from three meshes (N/16, N/4, N)
-with the span that the uncertainty of the order leaves: an estimate, no bound.
+The spectral radius is that of the mesh, then extrapolated to h → 0, with the span that the
+uncertainty of the order leaves: an estimate, no bound. A dense matrix has two coarser meshes for
+it (N/4, N/16), stored rays of 50000 patches or more the unions of 4 and 16 patches.
 
 With --export also written: mesh.csv (patch, primitive, front, centre, area, normal, albedo, E, L,
 corners), mesh-terms.csv ((T^k E) of every patch), norms.csv (1-, 2- and 1/ρ-weighted norm of every

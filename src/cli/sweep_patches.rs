@@ -113,7 +113,8 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         let foot = "T0 and T1 are controls: there a mesh reads E itself.\n\
                     An order stands where two or more errors exceed 3 standard errors and have one sign."
             .to_string();
-        let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
+        let names: Vec<String> = record.files.chunks(5).map(|line| line.join(", ")).collect();
+        let files = format!("written to {}:\n{}", folder.display(), names.join(",\n"));
         let mut blocks = vec![head, report::table(&found, max_bounces), foot];
         blocks.extend(channel.map(|c| drift::table(&found, c)));
         blocks.push(files);

@@ -81,7 +81,7 @@ pub fn table(r: &Refinement, channel: &str) -> String {
     let band = all.first().map_or(0.0, |t| t.band);
     format!(
         "{channel}: leading eigenvalues by patches; band of the edges ±{band:.5}\n{}\n\
-         Well outside, where h halves, a step is a third or a quarter of the one before: a limit, the scene's.\n\
+         Well outside, where h halves, a step is less than half of the one before: a limit, the scene's.\n\
          Inside, and just outside (corners widen the band), eigenvalues drift on: they are the mesh's.",
         aligned(&rows, &sides)
     )

@@ -15,7 +15,7 @@ use super::{
     typeset::{Caption, superscript},
 };
 use crate::stats::{Limit, Order, convergence_order};
-use crate::worlds::discrete::radius_limit;
+use crate::worlds::radius::radius_limit;
 use crate::worlds::refine::{Mesh, Quantity, Refinement};
 
 /// Quantity by quantity: the error of the image mean on every mesh and the fitted order, of the mean and of the image.

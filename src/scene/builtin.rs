@@ -80,7 +80,7 @@ pub const ALL: [Builtin; 14] = [
     },
     Builtin {
         name: "cube",
-        summary: "a closed cube under a glowing ceiling: means and r(T) of three problems, known exactly",
+        summary: "a closed cube under a glowing ceiling: means of L and r(T) known without patches",
         source: include_str!("../../scenes/cube.toml"),
     },
 ];

@@ -3,6 +3,7 @@
 //! `T_h = diag(ρ) F` as a matrix or as stored rays ([`realisation`](super::realisation)), `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
 //! same camera rays, gives the discretisation error |R_h − R_2h| that stands beside the Monte Carlo error in every verdict.
 
+use super::radius::{Radius, radii, sampled_noise};
 use super::realisation::{Difference, Factors, Realisation, Sampling as RaySampling, Stored};
 use super::{Observer, Settings, sampled, sampled::Sampled};
 use crate::estimator::Gather;
@@ -13,7 +14,6 @@ use crate::operator::patches::Patches;
 use crate::operator::rays::{Half, Hit, Light, Rays, Record, record};
 use crate::scene::{Description, Scene, SceneError};
 use crate::solver::{Radiosity, Solution};
-use crate::stats::{Limit, limit};
 use crate::terms::{TermImage, World};
 use glam::DVec3;
 use std::sync::Mutex;
@@ -31,6 +31,8 @@ pub struct Matrix<R = Realisation> {
     pub invariants: Invariants,
     /// Spectral radius per channel.
     pub spectral: [Spectral; 3],
+    /// The same with its width and noise; of many stored rays before it on unions of up to 16 and up to 4 patches.
+    pub radii: Vec<Radius>,
     /// ‖T_h‖₁ and ‖T_h‖∞ per channel of a dense matrix; columns of stored rays are too noisy for the first.
     pub norms: Option<[(f64, f64); 3]>,
     /// The error bar of stored rays.
@@ -154,7 +156,8 @@ fn dense(
     let solution = radiosity.solve().map_err(|_| MatrixError::Singular)?;
     let surface = terms.iter().map(|t| radiosity.patches.surface_mean(t)).collect();
     let norms = Some(radiosity.norms());
-    Ok(Matrix { spectral, norms, radiosity, terms, solution, invariants, sampling: None, surface })
+    let radii = vec![Radius::of(&radiosity.patches, &spectral, DVec3::ZERO)];
+    Ok(Matrix { spectral, radii, norms, radiosity, terms, solution, invariants, sampling: None, surface })
 }
 
 fn trace(
@@ -188,9 +191,11 @@ fn by_rays(stored: Stored, max_bounces: usize) -> Result<Matrix<Stored>, MatrixE
         largest: c.largest,
     };
     let terms = light.terms(max_bounces);
+    let noise = sampled_noise(&light, &spectral);
+    let radii = radii(&stored.patches, &spectral, noise, |x| light.bounce(x, Half::Both));
     let surface = terms.iter().map(|t| stored.patches.surface_mean(t)).collect();
     let sampling = Some(sampling);
-    Ok(Matrix { radiosity: stored, terms, solution, invariants, spectral, norms: None, sampling, surface })
+    Ok(Matrix { radiosity: stored, terms, solution, invariants, spectral, radii, norms: None, sampling, surface })
 }
 
 fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], RaySampling), MatrixError> {
@@ -204,24 +209,8 @@ fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], RaySampl
     }
     let u: Vec<DVec3> = solved.radiance.iter().zip(light.patches.iter()).map(|(l, p)| *l - p.emission).collect();
     let noise = light.norm(&light.noise(&solved.radiance)) / light.norm(&u);
-    let radius_noise = radius_noise(light, &spectral);
-    let checks = light.checks();
-    let sampling = RaySampling { per_row: light.rays.per_row, noise, radius_noise, checks, steps: solved.steps };
+    let sampling = RaySampling { per_row: light.rays.per_row, noise, checks: light.checks(), steps: solved.steps };
     Ok((Solution { radiance: solved.radiance, residual: solved.residual }, spectral, sampling))
-}
-
-/// The standard error of r to first order, from what the halves of every row make of the mode: rows are independent.
-fn radius_noise(light: &Light<'_>, spectral: &[Spectral; 3]) -> DVec3 {
-    let [r, g, b] = spectral.each_ref().map(|s| &s.mode);
-    let mode: Vec<DVec3> = (0..r.len()).map(|i| DVec3::new(r[i], g[i], b[i])).collect();
-    let [first, second] = [Half::First, Half::Second].map(|half| light.bounce(&mode, half));
-    let (mut square, mut length) = (DVec3::ZERO, DVec3::ZERO);
-    for (i, p) in light.patches.iter().enumerate() {
-        let weight = DVec3::select(p.reflectance.cmpgt(DVec3::ZERO), p.area / p.reflectance, DVec3::ZERO);
-        let off = weight * mode[i] * 0.5 * (first[i] - second[i]);
-        (square, length) = (square + off * off, length + weight * mode[i] * mode[i]);
-    }
-    square.powf(0.5) / length
 }
 
 impl Matrix {
@@ -292,17 +281,6 @@ impl Matrix<Radiosity> {
     }
 }
 
-/// The spectral radius on one mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Radius {
-    /// √(area/patches), m.
-    pub h: f64,
-    /// r(T_h) per channel.
-    pub value: DVec3,
-    /// Its standard error from the sampling of stored rays; 0 for a dense matrix.
-    pub noise: DVec3,
-}
-
 impl<R> Matrix<R> {
     /// The same, with T held in another way.
     fn held_as<S>(self, form: impl FnOnce(R) -> S) -> Matrix<S> {
@@ -312,27 +290,12 @@ impl<R> Matrix<R> {
             solution: self.solution,
             invariants: self.invariants,
             spectral: self.spectral,
+            radii: self.radii,
             norms: self.norms,
             sampling: self.sampling,
             surface: self.surface,
         }
     }
-
-    /// The spectral radius of a matrix on these patches.
-    pub fn radius(&self, patches: &Patches) -> Radius {
-        let area: f64 = patches.iter().map(|p| p.area).sum();
-        Radius {
-            h: (area / patches.len() as f64).sqrt(),
-            value: DVec3::from_array(self.spectral.each_ref().map(|s| s.radius)),
-            noise: self.sampling.map_or(DVec3::ZERO, |s| s.radius_noise),
-        }
-    }
-}
-
-/// The spectral radius for h → 0 per channel, from meshes, coarsest first.
-pub fn radius_limit(meshes: &[Radius]) -> Option<[Limit; 3]> {
-    let of = |c: usize| limit(&meshes.iter().map(|m| (m.h, m.value[c], m.noise[c])).collect::<Vec<_>>());
-    Some([of(0)?, of(1)?, of(2)?])
 }
 
 /// The fine matrix and its picture, and the picture of the coarse one.
@@ -343,8 +306,9 @@ pub struct Discrete {
     pub fine: Sampled,
     /// The mesh twice as coarse, along the same rays.
     pub coarse: Sampled,
-    /// Spectral radii of a mesh four times as coarse (without a picture), the coarse and the fine one.
-    pub radii: [Radius; 3],
+    /// Spectral radii, coarsest first: of this mesh and of two coarser ones, or of unions of its patches; of this one alone
+    /// where neither will do.
+    pub radii: Vec<Radius>,
 }
 
 /// The whole discrete world.
@@ -361,11 +325,14 @@ pub fn radiosity(
     let one = |patches: usize| {
         let matrix = matrix(description, scene, patches, settings, observer, stop)?;
         let picture = matrix.through_camera(scene, settings, observer, stop);
-        let radius = matrix.radius(matrix.radiosity.patches());
-        Ok::<_, MatrixError>((matrix, picture, radius))
+        Ok::<_, MatrixError>((matrix, picture))
     };
-    let coarsest = matrix(description, scene, (settings.patches / 16).max(1), settings, observer, stop)?;
-    let (_, coarse, second) = one((settings.patches / 4).max(1))?;
-    let (matrix, fine, third) = one(settings.patches)?;
-    Ok(Discrete { radii: [coarsest.radius(coarsest.radiosity.patches()), second, third], matrix, fine, coarse })
+    let (second, coarse) = one((settings.patches / 4).max(1))?;
+    let (fine_matrix, fine) = one(settings.patches)?;
+    let mut radii = fine_matrix.radii.clone();
+    if fine_matrix.radiosity.dense().is_some() {
+        let coarsest = matrix(description, scene, (settings.patches / 16).max(1), settings, observer, stop)?;
+        radii = coarsest.radii.into_iter().chain(second.radii).chain(radii).collect();
+    }
+    Ok(Discrete { matrix: fine_matrix, fine, coarse, radii })
 }

@@ -24,6 +24,7 @@ pub mod equilibrium;
 pub mod falling;
 pub mod guided;
 pub mod pyramid;
+pub mod radius;
 pub mod realisation;
 pub mod refine;
 pub mod roulette;

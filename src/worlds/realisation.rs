@@ -88,8 +88,6 @@ pub struct Sampling {
     pub per_row: usize,
     /// Relative L² error bar of the reflected light u, per channel, from the halves of the rows.
     pub noise: DVec3,
-    /// Standard error of the spectral radius, per channel, from the halves of the rows: too large by about a third.
-    pub radius_noise: DVec3,
     /// What must hold, as measured.
     pub checks: RayChecks,
     /// Applications of T that the solve took.

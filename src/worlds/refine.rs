@@ -15,7 +15,8 @@
 //! All meshes are read along the same camera rays, so that what changes from one to the next is the mesh. T⁰ and T¹ are no
 //! question to a matrix (what is read is E itself) and serve as controls.
 
-use super::discrete::{self, MatrixError, Radius};
+use super::discrete::{self, MatrixError};
+use super::radius::Radius;
 use super::sampled::{self, Estimator, Sampled};
 use super::{Observer, Settings};
 use crate::operator::edges::essential_band;
@@ -168,7 +169,7 @@ pub fn refine(
         };
         let seconds = started.elapsed().as_secs_f64();
         let picture = matrix.through_camera(scene, settings, observer, stop);
-        let radius = matrix.radius(matrix.radiosity.patches());
+        let Some(&radius) = matrix.radii.last() else { continue };
         let spectrum = matrix.radiosity.dense().filter(|_| eigenvalues > 0).map(|r| ends(r, radius.value, eigenvalues));
         let patches = matrix.radiosity.patches().len();
         meshes.push(Mesh { patches, h: radius.h, picture, radius, spectrum, seconds });

@@ -271,10 +271,10 @@ impl Search {
         }
     }
 
-    /// Groups of up to four neighbouring cells; a curved surface keeps its cells.
-    pub(super) fn groups(&self, cells: usize) -> Vec<u32> {
+    /// Groups of up to `most` neighbouring cells; a curved surface keeps its cells.
+    pub(super) fn groups(&self, cells: usize, most: usize) -> Vec<u32> {
         match self {
-            Self::Flat(finder) => finder.groups(cells, 4),
+            Self::Flat(finder) => finder.groups(cells, most),
             Self::Curved(_) => (0..cells as u32).collect(),
         }
     }

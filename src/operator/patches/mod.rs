@@ -188,15 +188,21 @@ impl Patches {
         self.cover.is_covered(self.list[i].primitive, at)
     }
 
-    /// A mesh twice as coarse, each patch the union of up to four neighbours on one side of one flat surface: for every
-    /// patch the number of the union it belongs to. Patches of curved surfaces stay alone.
+    /// A mesh twice as coarse: [`Patches::unions`] of up to four.
     pub fn parents(&self) -> Vec<u32> {
+        self.unions(4)
+    }
+
+    /// A coarser mesh, each patch the union of up to `most` neighbours on one side of one flat surface: for every patch the
+    /// number of the union it belongs to. Patches of curved surfaces stay alone.
+    pub fn unions(&self, most: usize) -> Vec<u32> {
         let mut parent = vec![0; self.list.len()];
         let mut next = 0;
         for index in &self.indices {
             for cells in index.patch.iter().filter(|p| !p.is_empty()) {
                 let mut number = std::collections::BTreeMap::new();
-                for (patch, group) in cells.iter().zip(index.search.groups(cells.len())).filter(|c| *c.0 != NONE) {
+                for (patch, group) in cells.iter().zip(index.search.groups(cells.len(), most)).filter(|c| *c.0 != NONE)
+                {
                     let fresh = next + number.len() as u32;
                     parent[*patch as usize] = *number.entry(group).or_insert(fresh);
                 }

@@ -1,0 +1,117 @@
+//! The spectral radius on a mesh, on two coarser ones made of its patches, and for h → 0.
+//!
+//! ```text
+//! r(T_h) = ⟨u, T u⟩_w/⟨u, u⟩_w        r(T_H) ≈ ⟨P R u, T P R u⟩_w/⟨P R u, P R u⟩_w        w = A/ρ
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | u | top mode of T_h, T u = r u | [`Spectral::mode`] |
+//! | R, P | mean over each union of patches; its value on each of them | [`Patches::unions`] |
+//! | h | √(area/patches), m | [`Radius::h`] |
+//!
+//! T_H = R T P is the operator of the unions, and R u so near its mode that the quotient is off by the square of the
+//! difference. It costs one product, and shares the sampling noise of stored rays with r(T_h): the noise stays out of the
+//! difference. Unions are less regular than a mesh, which matters where patches are few; dense matrices have coarser
+//! meshes of their own. From the three values follows the limit ([`limit`]), an estimate.
+
+use crate::operator::matrix::Spectral;
+use crate::operator::patches::Patches;
+use crate::operator::rays::{Half, Light};
+use crate::stats::{Limit, limit};
+use glam::DVec3;
+
+/// The spectral radius on one mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Radius {
+    /// √(area/patches), m.
+    pub h: f64,
+    /// r per channel.
+    pub value: DVec3,
+    /// Its standard error from the sampling of stored rays; 0 where there is none, or where it is that of the finest mesh.
+    pub noise: DVec3,
+}
+
+impl Radius {
+    /// What was found on a mesh.
+    pub fn of(patches: &Patches, spectral: &[Spectral; 3], noise: DVec3) -> Self {
+        let area: f64 = patches.iter().map(|p| p.area).sum();
+        let value = DVec3::from_array(spectral.each_ref().map(|s| s.radius));
+        Self { h: (area / patches.len() as f64).sqrt(), value, noise }
+    }
+}
+
+/// Unions of up to so many patches.
+const UNIONS: [usize; 2] = [16, 4];
+/// On fewer patches unions are too unlike a mesh.
+const LEAST: usize = 50_000;
+/// A mesh of which fewer than one in so many patches vanish into unions of four has no coarser one: most surfaces are curved,
+/// or have one patch.
+const SHRINKS: f64 = 0.4;
+
+/// On unions of up to 16, unions of up to 4, and the patches themselves, coarsest first; only the last where patches are few
+/// or most of them stay alone. `bounce` is T, `noise` the standard error of the radius.
+pub fn radii(
+    patches: &Patches,
+    spectral: &[Spectral; 3],
+    noise: DVec3,
+    bounce: impl Fn(&[DVec3]) -> Vec<DVec3>,
+) -> Vec<Radius> {
+    let fine = Radius::of(patches, spectral, noise);
+    if patches.len() < LEAST {
+        return vec![fine];
+    }
+    let u = mode(spectral);
+    let area: f64 = patches.iter().map(|p| p.area).sum();
+    let width = |n: usize| (area / n as f64).sqrt();
+    let coarser = |most: usize| {
+        let union = patches.unions(most);
+        let count = union.iter().max().map_or(0, |m| *m as usize + 1);
+        let mut sums = vec![(DVec3::ZERO, 0.0); count];
+        for ((k, p), u) in union.iter().zip(patches.iter()).zip(&u) {
+            let sum = &mut sums[*k as usize];
+            *sum = (sum.0 + p.area * *u, sum.1 + p.area);
+        }
+        let x: Vec<DVec3> = union.iter().map(|k| sums[*k as usize].0 / sums[*k as usize].1).collect();
+        let value = inner(patches, &x, &bounce(&x)) / inner(patches, &x, &x);
+        (count, Radius { h: width(count), value, noise: DVec3::ZERO })
+    };
+    let coarse = UNIONS.map(coarser);
+    if coarse[1].0 as f64 > SHRINKS * patches.len() as f64 {
+        vec![fine]
+    } else {
+        coarse.into_iter().map(|c| c.1).chain([fine]).collect()
+    }
+}
+
+/// r for h → 0 per channel, from meshes, coarsest first; `None` with one mesh.
+pub fn radius_limit(meshes: &[Radius]) -> Option<[Limit; 3]> {
+    let of = |c: usize| limit(&meshes.iter().map(|m| (m.h, m.value[c], m.noise[c])).collect::<Vec<_>>());
+    Some([of(0)?, of(1)?, of(2)?])
+}
+
+/// The standard error of r(T) of stored rays, to first order: rows are independent, and each has two halves. Halves share
+/// their scramble, so it is too large by about a third.
+pub fn sampled_noise(light: &Light<'_>, spectral: &[Spectral; 3]) -> DVec3 {
+    let u = mode(spectral);
+    let [first, second] = [Half::First, Half::Second].map(|half| light.bounce(&u, half));
+    let row = |(i, p): (usize, &crate::operator::patches::Patch)| {
+        let weight = DVec3::select(p.reflectance.cmpgt(DVec3::ZERO), p.area / p.reflectance, DVec3::ZERO);
+        let off = weight * u[i] * 0.5 * (first[i] - second[i]);
+        off * off
+    };
+    light.patches.iter().enumerate().map(row).sum::<DVec3>().powf(0.5) / inner(light.patches, &u, &u)
+}
+
+fn mode(spectral: &[Spectral; 3]) -> Vec<DVec3> {
+    let [r, g, b] = spectral.each_ref().map(|s| &s.mode);
+    r.iter().zip(g).zip(b).map(|((r, g), b)| DVec3::new(*r, *g, *b)).collect()
+}
+
+/// ⟨x, y⟩_w per channel, over the patches with ρ > 0.
+fn inner(patches: &Patches, x: &[DVec3], y: &[DVec3]) -> DVec3 {
+    let one = |((p, x), y): ((&crate::operator::patches::Patch, &DVec3), &DVec3)| {
+        DVec3::select(p.reflectance.cmpgt(DVec3::ZERO), p.area * *x * *y / p.reflectance, DVec3::ZERO)
+    };
+    patches.iter().zip(x).zip(y).map(one).sum()
+}
