@@ -139,7 +139,7 @@ Examples:
   fredholm sweep cornell --over estimator --values prefix,single --equal-rays
   fredholm sweep cornell --over patches        the matrix on finer meshes, against rays
   fredholm sweep cube --over patches --grading 1.5 --values 96,384,1536
-  fredholm sweep cornell --over patches --values 129,516,2064 --eigenvalues 6
+  fredholm sweep cornell --over patches --values 129,516,2064,8256 --eigenvalues 6
   fredholm sweep cornell --over spp --estimator single,prefix,path
   fredholm sweep cornell --over spp --estimator prefix --points independent,sobol --reference 4096
   fredholm sweep cornell --over split --max-bounces 6 --size 64x64
