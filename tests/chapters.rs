@@ -48,6 +48,8 @@ fn every_chapter_is_run() {
     let files = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("chapters")).unwrap();
     let mut found: Vec<String> =
         files.map(|f| f.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned()).collect();
+    // chapters have numbers; what has none is no chapter yet
+    found.retain(|name| name.starts_with(|c: char| c.is_ascii_digit()));
     found.sort();
     assert_eq!(found, CHAPTERS.map(|c| c.0));
 }

@@ -129,14 +129,14 @@ fn the_ends_of_the_spectrum_by_lanczos() {
     let t = r.operator(0);
     let mut all = Modes::of(&t, 0).values;
     all.sort_by(|a, b| b.total_cmp(a));
-    let [above, below] = leading(&t, 6, 1e-9, 200);
+    let [above, below] = leading(&t, &t.weight(), 6, 1e-9, 200);
     assert_eq!((above.len(), below.len()), (6, 6));
     for (i, (a, b)) in above.iter().zip(&below).enumerate() {
         close("largest", a.value, all[i], a.residual + SINGLE);
         close("smallest", b.value, all[all.len() - 1 - i], b.residual + SINGLE);
     }
     // too few steps are said to be too few
-    let [early, _] = leading(&t, 2, 1e-9, 5);
+    let [early, _] = leading(&t, &t.weight(), 2, 1e-9, 5);
     assert!(early[1].residual > 1e-4 && (early[0].value - all[0]).abs() <= early[0].residual);
 }
 

@@ -93,11 +93,14 @@ pub struct Limit {
     pub orders: [f64; 2],
 }
 
+/// Meshes are at least this much narrower than the one before; half as wide is usual.
+const FINER: f64 = 0.75;
+
 /// The limit of a value of which `points` = (h, v, s) are known, coarsest first; the last three are used.
 ///
 /// Three meshes show an order; the true one is taken to be at most [`SLACK`] below it, and at most 2: on coarse meshes it is
 /// still on its way up. Where two are all there is, or three that turn back, all of [`ORDERS`] is allowed for. None with
-/// fewer than two.
+/// fewer than two, or where one is hardly finer than the one before.
 ///
 /// ```
 /// use fredholm::stats::limit;
@@ -106,9 +109,13 @@ pub struct Limit {
 /// assert!((found.value - 0.7).abs() < found.half_width && found.half_width < 0.4 * 0.1f64.powf(1.6));
 /// assert!((found.orders[0] - 1.35).abs() < 1e-9 && found.orders[1] == 2.0);
 /// assert_eq!(limit(&points[1..]).unwrap().orders, [1.0, 2.0]);
+/// assert!(limit(&[(0.4, 0.6, 0.0), (0.4, 0.6, 0.0)]).is_none());
 /// ```
 pub fn limit(points: &[(f64, f64, f64)]) -> Option<Limit> {
     let [.., (wide, before, noise), (h, value, own)] = *points else { return None };
+    if points.windows(2).any(|w| w[1].0 > FINER * w[0].0) {
+        return None;
+    }
     let step = value - before;
     let shown = match *points {
         [.., (widest, first, _), _, _] => {

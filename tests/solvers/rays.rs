@@ -87,17 +87,17 @@ fn every_solver_finds_what_lu_finds_on_rays() {
     }
 }
 
-/// Why conjugate gradients are refused: in as many products they stay far behind GMRES, the more so the noisier T is.
+/// Why conjugate gradients are refused: in as many products they stay far behind GMRES where T is noisy.
 #[test]
 fn conjugate_gradients_fail_on_what_is_not_self_adjoint() {
-    for (name, rays, rho, direct) in sampled().into_iter().filter(|s| s.0 == "cornell") {
+    for (name, rays, rho, direct) in sampled().into_iter().filter(|s| s.0 == "cornell" && s.1.per_row == 16) {
         let t = rays.operator(rho);
         let system = System::sampled(&t, direct.clone()).unwrap();
         let weight = Weight::new(t.area(), &t.rho);
         let (mut cg, mut gmres) = (ConjugateGradients::new(&t, weight, &direct), Gmres::new(&t, &direct));
         (0..20).for_each(|_| assert!(cg.advance() && gmres.advance()));
         let [cg, gmres] = [cg.iterate(), gmres.iterate()].map(|x| system.error(x));
-        assert!(cg > 100.0 * gmres, "{name}: CG {cg:e}, GMRES {gmres:e}");
+        assert!(cg > 1e4 * gmres, "{name}: CG {cg:e}, GMRES {gmres:e}");
     }
 }
 
