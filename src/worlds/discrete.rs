@@ -190,9 +190,10 @@ fn by_rays(stored: Stored, max_bounces: usize) -> Result<Matrix<Stored>, MatrixE
         smallest: 0.0,
         largest: c.largest,
     };
-    let terms = light.terms(max_bounces);
     let noise = sampled_noise(&light, &spectral);
     let radii = radii(&stored.patches, &spectral, noise, |x| light.bounce(x, Half::Both));
+    // last, for they are most of the memory beside the rows
+    let terms = light.terms(max_bounces);
     let surface = terms.iter().map(|t| stored.patches.surface_mean(t)).collect();
     let sampling = Some(sampling);
     Ok(Matrix { radiosity: stored, terms, solution, invariants, spectral, radii, norms: None, sampling, surface })
