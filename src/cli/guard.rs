@@ -137,7 +137,7 @@ pub fn fits_in_a_matrix(
     if let Factors::Rays(_) = factors {
         return Ok(());
     }
-    let sides = (0..scene.sides()).filter(|&s| scene.takes_part(s)).count();
+    let sides = reflecting(scene);
     if !worlds.contains(&WorldName::Radiosity) || sides <= if asked { POSSIBLE } else { COMFORTABLE } {
         return Ok(());
     }
@@ -183,9 +183,14 @@ pub fn factors(run: &Run, patches: u32) -> Result<Factors, Failure> {
     Ok(if dense { Factors::Dense } else { Factors::Rays(rays(run)) })
 }
 
+/// Sides that reflect or emit: each is one patch at least.
+fn reflecting(scene: &Scene) -> usize {
+    (0..scene.sides()).filter(|&s| scene.takes_part(s)).count()
+}
+
 /// Rows, patches, terms and solution are held at once.
-pub fn rows_fit_in_memory(settings: &Settings) -> Result<(), Failure> {
-    let n = settings.patches as u64;
+pub fn rows_fit_in_memory(scene: &Scene, settings: &Settings) -> Result<(), Failure> {
+    let n = settings.patches.max(reflecting(scene)) as u64;
     // measured: a patch of the mesh takes about 400 bytes, a vector over the patches 24, a stored ray 3
     let row = match settings.factors {
         Factors::Dense => 4 * n,

@@ -168,7 +168,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     guard::light_is_seen(&scene, &estimators, &settings, &worlds)?;
     guard::fits_in_memory(&settings, description.camera.size)?;
     if worlds.contains(&WorldName::Radiosity) {
-        guard::rows_fit_in_memory(&settings)?;
+        guard::rows_fit_in_memory(&scene, &settings)?;
     }
     guard::light_is_lost(&scene, &settings, &worlds)?;
     if default.export == Some(Export::Matrix) && settings.factors != Factors::Dense {

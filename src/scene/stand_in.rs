@@ -8,9 +8,10 @@ use super::bsdf::Bsdf;
 use super::description::{BsdfDescription, Colour, Description, Material};
 use glam::{DVec3, Vec3};
 
-/// The same shapes and lights with Lambertian surfaces.
+/// The same shapes and lights with Lambertian surfaces; those that are stay as they are.
 pub fn stand_in(description: &Description) -> Description {
-    let materials = description.materials.iter().map(|m| Material::diffuse(m.name.clone(), albedo(&m.bsdf), m.sides));
+    let rho = |m: &Material| m.lambertian().unwrap_or_else(|| albedo(&m.bsdf));
+    let materials = description.materials.iter().map(|m| Material::diffuse(m.name.clone(), rho(m), m.sides));
     Description { materials: materials.collect(), ..description.clone() }
 }
 

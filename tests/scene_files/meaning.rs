@@ -141,3 +141,28 @@ fn expected_terms_of_the_built_ins() {
     let claimed = expect("glass-furnace").terms;
     assert!(claimed.iter().zip(glass).all(|(a, b)| (a - b).abs() < 1e-6), "{claimed:?} {glass:?}");
 }
+
+/// A scene taken for Lambertian is one that a matrix can hold; one that is already stays the same.
+#[test]
+fn any_surface_can_be_taken_for_lambertian() {
+    let lambertian = Options { lambertian: true, ..Options::default() };
+    for name in builtin::names() {
+        let [as_it_is, taken] = [&Options::default(), &lambertian].map(|o| scene(name, o).unwrap());
+        let (before, after) = (&as_it_is.description, &taken.description);
+        let all = before.materials.iter().all(|m| m.lambertian().is_some());
+        assert_eq!(all, as_it_is.canonical == taken.canonical, "{name}");
+        assert!(after.lights.len() == before.lights.len() && after.shapes == before.shapes, "{name}");
+        for (b, a) in before.materials.iter().zip(&after.materials) {
+            let rho = a.lambertian().unwrap();
+            assert_eq!((&b.name, b.sides), (&a.name, a.sides), "{name}");
+            assert!(rho.min_element() >= 0.0 && rho.max_element() <= 1.0, "{name}, {}: {rho}", a.name);
+            // what passes through glass is lost, what a mirror reflects is not
+            match b.bsdf.kind() {
+                "dielectric" => assert_eq!(rho, DVec3::ZERO, "{name}, {}", a.name),
+                "mirror" => assert!(rho.max_element() > 0.5, "{name}, {}", a.name),
+                _ => assert!(b.lambertian().is_none_or(|b| b == rho), "{name}, {}", a.name),
+            }
+        }
+        assert_eq!(after.radiosity_suits().is_ok(), before.lights.is_empty(), "{name}");
+    }
+}

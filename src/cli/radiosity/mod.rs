@@ -181,7 +181,7 @@ impl<R> Laboratory<R> {
         let patches = run.patches.unwrap_or(600) as usize;
         let settings =
             Settings { patches, factors, grading: run.grading, max_bounces: 0, seed: run.seed, ..Settings::default() };
-        guard::rows_fit_in_memory(&settings)?;
+        guard::rows_fit_in_memory(&opened.scene, &settings)?;
         let name = format!("{}-{what}", opened.description.name);
         let folder = output::folder(run.shared.out.as_deref(), &name, &opened.command, run.shared.force)?;
         let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
