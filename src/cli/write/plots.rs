@@ -6,8 +6,10 @@ use fredholm::report::decay::{self, Decay, Rate, independent_ratios};
 use fredholm::report::plot::{Curve, Look, Point};
 use fredholm::report::typeset::{Caption, superscript};
 use fredholm::report::variance::{self, Falling, Variance};
-use fredholm::stats::{TermMeans, observed_rate, variance_slope};
+use fredholm::stats::{TermMeans, observed_rate};
+use fredholm::terms::{scatter::Scatter, variance::Snapshot};
 use fredholm::worlds::discrete::Discrete;
+use fredholm::worlds::falling::Part;
 use fredholm::worlds::sampled::{Estimator, Sampled};
 use std::path::Path;
 
@@ -84,34 +86,31 @@ fn matrix_norms(r: &Discrete) -> Vec<f64> {
 
 fn write_variance(found: &Found, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
     let mut figure = Variance { title: "How the noise falls".into(), curves: vec![] };
-    let mut curve =
-        |label: String,
-         s: &Sampled,
-         of: &dyn Fn(&fredholm::terms::variance::Snapshot) -> fredholm::terms::variance::Variance| {
-            let point = |snap: &fredholm::terms::variance::Snapshot| {
-                let v = of(snap);
-                let replicates = s.series.image().total.replicates;
-                Point { x: f64::from(snap.spp), value: v.value, std_error: v.std_error, replicates }
-            };
-            let points: Vec<Point> =
-                s.snapshots.iter().map(point).filter(|p| p.value > 0.0 && p.value.is_finite()).collect();
-            // the variance of many pixels is known better than from R − 1 degrees of freedom: those that give its error
-            let dof = points.last().map_or(15.0, |p| 2.0 * (p.value / p.std_error).powi(2));
-            let slope = variance_slope(&points.iter().map(|p| (p.x, p.value)).collect::<Vec<_>>(), dof)
-                .map(|s| (s.slope, s.std_error));
-            if !points.is_empty() {
-                let look = Look::nth(figure.curves.len());
-                figure.curves.push(Falling { curve: Curve { label, points, look }, slope });
-            }
+    // a slot of the snapshots, or their sum
+    let mut curve = |label: String, s: &Sampled, slot: Option<usize>| {
+        let at = |snap: &Snapshot| Some((snap.spp, snap.scatter.get(slot.unwrap_or(snap.scatter.len() - 1))?.clone()));
+        let part = Part { name: label.clone(), points: s.snapshots.iter().filter_map(at).collect() };
+        let replicates = s.series.image().total.replicates;
+        let point = |(spp, scatter): &(u32, Scatter)| {
+            let v = fredholm::terms::variance::Variance::from(scatter);
+            Point { x: f64::from(*spp), value: v.value, std_error: v.std_error, replicates }
         };
+        let points: Vec<Point> =
+            part.points.iter().map(point).filter(|p| p.value > 0.0 && p.value.is_finite()).collect();
+        if !points.is_empty() {
+            let look = Look::nth(figure.curves.len());
+            let slope = part.slope().map(|s| (s.slope, s.std_error));
+            figure.curves.push(Falling { curve: Curve { label, points, look }, slope });
+        }
+    };
     if let Some(s) = found.terms.first() {
-        curve(format!("Σ, {}", s.series.label), s, &|snap| snap.total);
+        curve(format!("Σ, {}", s.series.label), s, None);
         for k in 0..s.terms.len() {
-            curve(format!("T{}E", superscript(k)), s, &|snap| snap.slots[k]);
+            curve(format!("T{}E", superscript(k)), s, Some(k));
         }
     }
     if let Some(p) = &found.path {
-        curve("path tracer".into(), p, &|snap| snap.total);
+        curve("path tracer".into(), p, None);
     }
     if !figure.curves.is_empty() {
         for path in variance::draw(&figure, caption)?.write(&out.folder, "variance")? {
