@@ -12,6 +12,7 @@ use fredholm::worlds::guided::Prepared;
 use fredholm::worlds::radius::radius_limit;
 use fredholm::worlds::realisation::{Difference, Sampling};
 use fredholm::worlds::sampled::Estimator;
+use glam::DVec3;
 use nalgebra::DMatrix;
 
 /// One line: the outcome, and what would decide.
@@ -150,7 +151,7 @@ pub fn extrapolated(found: &Found) -> Option<String> {
     }
     let radii = found.radiosity.as_ref().map(|r| r.matrix.spectral.each_ref().map(|s| s.radius));
     let by = radii.unwrap_or(found.scene.max_albedo().as_dvec3().to_array());
-    let slowest = (0..3).fold(0, |best, c| if by[c] > by[best] { c } else { best });
+    let slowest = DVec3::from_array(by).max_position();
     let measured = |(estimator, r): &(Estimator, Replicates)| {
         let n = r.mean.len() - 1;
         Measured {

@@ -2,9 +2,11 @@
 //!
 //! q\[v\] is tested at surface vertex v = 0, 1, … after that vertex is scored (its emission and its connection). The
 //! probability of reaching vertex v is `Q_v = Π_{i<v} (1 − q[i])`, and `E[ X·1{v reached}/Q_v ] = X`: unbiased term by term
-//! whatever the schedule. A path may also go on as n walks of weight 1/(1 − q) each, with E\[n\] = 1 − q > 1: a negative q. How large q may be is another matter: with constant survival s the variance is finite only where
-//! the spectral radius of ρ²F/s is below 1 (`q < 1 − ρ²` in a furnace), and the *measured* variance can be trusted only
-//! where the fourth moment is finite (`ρ⁴ < (1 − q)³`).
+//! whatever the schedule. A path may also go on as n walks of weight 1/(1 − q) each, with E\[n\] = 1 − q > 1: a negative q.
+//!
+//! How large q may be is another matter: with constant survival s the variance is finite only where the spectral radius of
+//! ρ²F/s is below 1 (`q < 1 − ρ²` in a furnace), and the *measured* variance can be trusted only where the fourth moment is
+//! finite (`ρ⁴ < (1 − q)³`).
 //!
 //! Reference for roulette by expected contribution: Vorba and Křivánek, *Adjoint-Driven Russian Roulette and Splitting in Light
 //! Transport Simulation* (2016).
@@ -49,9 +51,9 @@ pub enum Roulette {
         /// First vertex with roulette.
         from: usize,
     },
-    /// A weight window: w = (what is still expected of the path)/(what was expected of it at its start). Below ½ it survives with
-    /// probability 2w, at least 0.1; above 1 it splits into w walks in the mean, at most 8, which is a negative q = 1 − w. Estimators that do
-    /// not split take that for 0.
+    /// A weight window: w = (what is still expected of the path)/(what was expected of it at its start). Below ½ it survives
+    /// with probability 2w, at least 0.1; above 1 it splits into w walks in the mean, at most 8, which is a negative
+    /// q = 1 − w. Estimators that do not split take that for 0.
     Window {
         /// First vertex with roulette or splitting.
         from: usize,

@@ -60,7 +60,7 @@ const STEPS: usize = 200;
 const TOLERANCE: f64 = 1e-5;
 
 fn ends(radiosity: &Radiosity, radius: DVec3, count: usize) -> Ends {
-    let channel = (0..3).fold(0, |best, c| if radius[c] > radius[best] { c } else { best });
+    let channel = radius.max_position();
     let t = radiosity.operator(channel);
     let band = essential_band(&radiosity.patches, &radiosity.factors, &t.rho).half_width;
     Ends { values: leading(&t, &t.weight(), count, TOLERANCE, STEPS), band, channel }

@@ -16,6 +16,7 @@ use fredholm::terms::TermFilm;
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::{self, Matrix, MatrixError};
 use fredholm::worlds::realisation::{Factors, Stored};
+use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -202,9 +203,8 @@ impl<R> Laboratory<R> {
 
     /// The channel asked for, or the slowest.
     fn channel(&self, asked: Option<Channel>) -> usize {
-        let radius = |c: usize| self.matrix.spectral[c].radius;
-        let slowest = (0..3).fold(0, |best, c| if radius(c) > radius(best) { c } else { best });
-        asked.map_or(slowest, |c| c as usize)
+        let radii = DVec3::from_array(self.matrix.spectral.each_ref().map(|s| s.radius));
+        asked.map_or(radii.max_position(), |c| c as usize)
     }
 
     fn patches(&self) -> usize {

@@ -71,9 +71,9 @@ pub struct Ritz {
     pub residual: f64,
 }
 
-/// The `count` largest and the `count` smallest eigenvalues of T, self-adjoint in w, by falling distance from 0, to a residual of `tolerance`, in at
-/// most `max_steps` applications. Only positive ones come first, only negative ones second; one that is several times
-/// there may be listed once.
+/// The `count` largest and the `count` smallest eigenvalues of T, self-adjoint in w, by falling distance from 0, to a
+/// residual of `tolerance`, in at most `max_steps` applications. Only positive ones come first, only negative ones second;
+/// one that is several times there may be listed once.
 ///
 /// ```
 /// use fredholm::operator::{form_factor::FormFactors, matrix::{PatchOperator, leading}};

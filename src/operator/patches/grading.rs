@@ -49,8 +49,8 @@ impl Chart {
         let middle = 0.25 * (p + q + r + s);
         let at_edge = |a: DVec3, b: DVec3| {
             let points = [0.25, 0.5, 0.75].map(|t| a.lerp(b, t));
-            let others = all.iter().enumerate().filter(|(i, _)| *i != own);
-            others.filter(|(_, o)| points.iter().any(|x| rises(o, *x, middle, normal, all[own].1))).count() > 0
+            let mut others = all.iter().enumerate().filter(|(i, _)| *i != own);
+            others.any(|(_, o)| points.iter().any(|x| rises(o, *x, middle, normal, all[own].1)))
         };
         let edges = [[at_edge(p, s), at_edge(q, r)], [at_edge(p, q), at_edge(s, r)]];
         Some(Self { corners, edges, power })
