@@ -20,7 +20,7 @@ use crate::math::direction::Frame;
 use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::scene::bsdf::{Bsdf, Carried, Sampling, diffuse, diffuse::Diffuse};
 use crate::scene::{Camera, Rays, Scene, SurfaceSensor, Vertex, VertexWave, cosine_directions, numbers};
-use crate::scene::{connection, solid_angle};
+use crate::scene::{connection, lift, segment, solid_angle};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
@@ -147,7 +147,6 @@ fn connections_with_simd<'a, S: pulp::Simd>(
     _simd: S,
     p: &'a Columns,
     normal: &'a Columns,
-    offset: f32,
     rays: &'a mut Rays,
     out: &'a mut Samples,
     n: usize,
@@ -161,8 +160,7 @@ fn connections_with_simd<'a, S: pulp::Simd>(
         let (x, n) = (Vec3::new(px[i], py[i], pz[i]), Vec3::new(nx[i], ny[i], nz[i]));
         let (y, m) = (Vec3::new(ox[i], oy[i], oz[i]), Vec3::new(dx[i], dy[i], dz[i]));
         let c = connect_to(x, n, y, m, t[i]);
-        let o = x + n * offset;
-        let d = y + m * offset - o;
+        let (o, d) = segment(x, n, y, m);
         (ox[i], oy[i], oz[i]) = (o.x, o.y, o.z);
         (dx[i], dy[i], dz[i]) = (d.x, d.y, d.z);
         (t[i], cosine[i], pdf[i]) = (c.factor, c.cos_x, c.pdf);
@@ -181,7 +179,7 @@ impl Transport for SceneTransport<'_> {
     #[inline(always)]
     fn scatter(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
         let d = self.depart(at, Carried::Radiance, rng.four())?;
-        let state = self.scene.look(self.scene.lift(at.p, d.normal), d.direction)?;
+        let state = self.scene.look(lift(at.p, d.normal), d.direction)?;
         Some(self.step(at.p, state, d.weight, d.pdf, d.delta))
     }
 
@@ -237,7 +235,7 @@ impl SceneTransport<'_> {
     /// scattering.
     #[inline(always)]
     pub(super) fn connect_packets(&self, wave: &mut VertexWave, n: usize, out: &mut Samples, share: f32) {
-        connections(&wave.p, &wave.n, self.scene.offset(), &mut wave.rays, out, n);
+        connections(&wave.p, &wave.n, &mut wave.rays, out, n);
         let mut shadow = 0;
         for i in 0..n {
             let albedo = self.scene.albedo(wave.side[i]);
@@ -274,7 +272,7 @@ impl SceneTransport<'_> {
         let VertexWave { p, n: normals, omega, side, rays } = wave;
         cosine_directions(normals, &rays.u, &mut rays.d, &mut rays.cosine, n);
         for i in 0..n {
-            rays.o.set(i, self.scene.lift(p.get(i), normals.get(i)));
+            rays.o.set(i, lift(p.get(i), normals.get(i)));
         }
         let cosine = std::mem::take(&mut rays.cosine);
         self.scene.trace_packets(rays, n, |i, state| {
@@ -326,7 +324,8 @@ impl Sensor<SceneTransport<'_>> for Camera {
     #[inline(always)]
     fn start(&self, t: &SceneTransport, pixel: u32, rng: &mut Rng) -> Option<Vertex> {
         let u = rng.four();
-        t.scene.look(self.origin, self.direction(pixel, [u[0], u[1]]))
+        let (o, d) = self.ray(pixel, [u[0], u[1]]);
+        t.scene.look(o, d)
     }
     fn project(&self, t: &SceneTransport, at: &Vertex) -> Option<Seen<Vertex>> {
         self.see(t, at)
@@ -344,8 +343,9 @@ impl Sensor<SceneTransport<'_>> for Camera {
         numbers(streams, &mut wave.rays.u);
         let VertexWave { p, n, omega, side, rays } = wave;
         for i in 0..streams.len() {
-            rays.o.set(i, self.origin);
-            rays.d.set(i, self.direction(streams.pixel[i], [rays.u[0][i], rays.u[1][i]]));
+            let (o, d) = self.ray(streams.pixel[i], [rays.u[0][i], rays.u[1][i]]);
+            rays.o.set(i, o);
+            rays.d.set(i, d);
         }
         t.scene.trace_packets(rays, streams.len(), |i, state| {
             p.set(i, state.p);
