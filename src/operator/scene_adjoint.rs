@@ -81,7 +81,8 @@ impl Adjoint for SceneTransport<'_> {
         let delta = d.delta.then_some(d.pdf);
         let density = match delta {
             Some(choice) => self.delta_density(at, &state, choice),
-            None => d.pdf * self.angle(at, &state, d.direction),
+            // of the pair of points, as every other strategy takes it
+            None => self.toward(at, &state, role).density,
         };
         Some(Walk { state, weight: d.weight, density, delta })
     }

@@ -108,10 +108,27 @@ impl SceneTransport<'_> {
         }
     }
 
-    /// The step that a ray from `from` makes when it arrives at `state`.
+    /// The densities of scattering and of next-event estimation for what a ray from `at` has found, `drawn` having been the density of
+    /// its direction. Where both can find it, both are those of the pair of points, as a connection takes them: the ray started a
+    /// little off the surface, and weights of two points that differ by that would not add up to one.
     #[inline(always)]
-    pub(super) fn step(&self, from: Vec3, state: Vertex, weight: Rgb, pdf: f32, delta: bool) -> Step<Vertex> {
-        let other_pdf = if delta { 0.0 } else { self.scene.light_pdf(from, &state) };
+    pub(crate) fn densities(&self, at: &Vertex, found: &Vertex, drawn: f32) -> (f32, f32) {
+        let light = self.scene.light_pdf(at.p, found);
+        if light == 0.0 || !found.on_surface() {
+            return (drawn, light);
+        }
+        let (to, ..) = connection(at.p, Vec3::ZERO, found.p, Vec3::ZERO);
+        let scatter = match self.scene.bsdf(at) {
+            Bsdf::Diffuse(_) => Some(to.dot(at.n)).filter(|cos| *cos > 0.0).map(|cos| self.sampling.pdf(cos)),
+            _ => self.towards(at, to, Carried::Radiance).map(|(_, pdf, _)| pdf),
+        };
+        (scatter.unwrap_or(drawn), light)
+    }
+
+    /// The step that a ray makes when it arrives at `state`.
+    #[inline(always)]
+    pub(super) fn step(&self, at: &Vertex, state: Vertex, weight: Rgb, pdf: f32, delta: bool) -> Step<Vertex> {
+        let (pdf, other_pdf) = if delta { (pdf, 0.0) } else { self.densities(at, &state, pdf) };
         Step { state, weight, pdf, other_pdf }
     }
 
@@ -180,7 +197,7 @@ impl Transport for SceneTransport<'_> {
     fn scatter(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
         let d = self.depart(at, Carried::Radiance, rng.four())?;
         let state = self.scene.look(lift(at.p, d.normal), d.direction)?;
-        Some(self.step(at.p, state, d.weight, d.pdf, d.delta))
+        Some(self.step(at, state, d.weight, d.pdf, d.delta))
     }
 
     #[inline(always)]
@@ -279,12 +296,13 @@ impl SceneTransport<'_> {
             let albedo = self.scene.albedo(side[i]);
             if albedo != Rgb::ZERO {
                 let weight = albedo * (1.0 / ratio(out, i));
-                let s = self.step(p.get(i), state, weight, self.sampling.pdf(cosine[i]) * share, false);
+                let at = Vertex { p: p.get(i), n: normals.get(i), omega: omega.get(i), side: side[i] };
+                let s = self.step(&at, state, weight, self.sampling.pdf(cosine[i]), false);
                 p.set(i, state.p);
                 normals.set(i, state.n);
                 omega.set(i, state.omega);
                 side[i] = state.side;
-                out.set(i, s.weight, s.pdf, s.other_pdf);
+                out.set(i, s.weight, s.pdf * share, s.other_pdf);
                 alive.push(i as u32);
             }
         });

@@ -29,7 +29,8 @@ pub fn mesh(patches: &Patches, radiance: &[DVec3]) -> String {
         String::from("patch,primitive,front,x,y,z,area,nx,ny,nz,rho_r,rho_g,rho_b,E_r,E_g,E_b,L_r,L_g,L_b,corners\n");
     for (i, (p, l)) in patches.iter().zip(radiance).enumerate() {
         let file = |x: DVec3| x + patches.origin();
-        let corners: Vec<String> = p.polygon.iter().map(|c| file(*c)).map(|c| format!("{} {} {}", c.x, c.y, c.z)).collect();
+        let corners: Vec<String> =
+            p.polygon.iter().map(|c| file(*c)).map(|c| format!("{} {} {}", c.x, c.y, c.z)).collect();
         out += &format!(
             "{i},{},{},{},{},{},{},{},{},{}\n",
             p.primitive,

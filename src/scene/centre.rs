@@ -186,7 +186,8 @@ impl Geometry {
                 (corners(&[o, o + u, o + v, o + u + v]), u.cross(v).length() / u.length().max(v.length()))
             }
             Self::Box { min, max, .. } => {
-                let corners = self.primitives().iter().flat_map(super::Primitive::bounds).map(corner).fold(0.0, f64::max);
+                let corners =
+                    self.primitives().iter().flat_map(super::Primitive::bounds).map(corner).fold(0.0, f64::max);
                 (corners, (*max - *min).min_element())
             }
             // its points are anywhere on it

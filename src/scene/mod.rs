@@ -351,6 +351,12 @@ impl Scene {
         Vertex { p, n: if back { -n } else { n }, omega: -d, side: 2 * hit.prim + u32::from(back) }
     }
 
+    /// Where a ray that leaves `p` on the side of `n` starts: off the surface by the bound on its error.
+    #[inline(always)]
+    pub fn lift(p: Vec3, n: Vec3) -> Vec3 {
+        lift(p, n)
+    }
+
     /// Whether the segment from `p` to `q` is blocked; both ends are lifted off their surfaces.
     #[inline(always)]
     pub fn blocked(&self, p: Vec3, n: Vec3, q: Vec3, m: Vec3) -> bool {

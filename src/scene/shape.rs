@@ -249,9 +249,7 @@ impl Shape {
     /// `touch`: by how much two corners that are meant to be one may differ, m.
     pub(crate) fn new(p: &Primitive, touch: f64) -> Self {
         match *p {
-            Primitive::Parallelogram { origin, edge_u, edge_v } => {
-                Self::Flat(Flat::new(origin, edge_u, edge_v, touch))
-            }
+            Primitive::Parallelogram { origin, edge_u, edge_v } => Self::Flat(Flat::new(origin, edge_u, edge_v, touch)),
             Primitive::Triangle(p) => Self::Triangle(Triangle::new(p)),
             Primitive::Sphere { center, radius, z, inward } => Self::Ball(Ball {
                 center,
@@ -313,7 +311,7 @@ impl Shape {
         }
     }
 
-/// A uniformly distributed point.
+    /// A uniformly distributed point.
     #[inline(always)]
     pub(crate) fn point(&self, u: [f32; 2]) -> Vec3 {
         match self {

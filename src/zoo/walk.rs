@@ -100,8 +100,8 @@ impl Walk<'_> {
             let Some(next) = t.scene.look(lift(x.p, s.normal), s.to) else { break };
             alpha *= s.value;
             if hits {
-                let other = if s.delta { 0.0 } else { t.scene.light_pdf(x.p, &next) };
-                score(k, alpha * mistake.hit_share(*technique, s.pdf, other) * t.emission(&next));
+                let (pdf, other) = if s.delta { (s.pdf, 0.0) } else { t.densities(&x, &next, s.pdf) };
+                score(k, alpha * mistake.hit_share(*technique, pdf, other) * t.emission(&next));
             }
             x = next;
         }

@@ -225,7 +225,7 @@ impl Transport for GuidedTransport<'_> {
                 let (direction, weight, pdf) = diffuse::sample(reflectance, at.n, self.scene.sampling, u);
                 let scene = self.scene.scene;
                 let state = scene.look(lift(at.p, at.n), direction)?;
-                self.scene.step(at.p, state, weight * (1.0 / ratio), pdf, false)
+                self.scene.step(at, state, weight * (1.0 / ratio), pdf, false)
             }
             None => self.scene.scatter(at, rng)?,
         };

@@ -29,7 +29,11 @@ pub(super) fn read(c: &Cursor, bounds: Option<[DVec3; 2]>) -> Result<CameraDescr
     let pixel = 2.0 * (0.5 * fov).to_radians().tan() / f64::from(size[0]);
     if pixel < NARROWEST {
         let e = at.error(format!("fov {fov:e} makes pixels {pixel:.1e} wide: their directions are equal to rounding"));
-        return Err(e.help(format!("{:.0e} degrees is the least for {} pixels", NARROWEST.to_degrees() * f64::from(size[0]), size[0])));
+        return Err(e.help(format!(
+            "{:.0e} degrees is the least for {} pixels",
+            NARROWEST.to_degrees() * f64::from(size[0]),
+            size[0]
+        )));
     }
     let framed = bounds.map(|b| frame(b, fov, size));
     let vector = |key: &str, example: &str, default: Option<DVec3>| match (c.get(key), default) {

@@ -44,7 +44,8 @@ fn precise(scene: &Description, places: &[SceneError]) -> Result<(), SceneError>
         "{name} is too small for where it stands: single precision moves its points by {:.1e} m, and its least height is {:.1e} m",
         worst.moved, worst.height
     );
-    let help = "bring the scene's parts nearer together, or make this one larger: a ten-thousandth of its height is the limit";
+    let help =
+        "bring the scene's parts nearer together, or make this one larger: a ten-thousandth of its height is the limit";
     Err(SceneError { what, ..places[worst.shape].clone() }.help(help))
 }
 
