@@ -3,6 +3,7 @@
 use super::{Ending, Failure};
 use clap::Args;
 use fredholm::report::table;
+use fredholm::scene::coplanar::Kind;
 use fredholm::scene::description::{
     BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
 };
@@ -35,6 +36,7 @@ pub fn run(args: &Info) -> Result<Ending, Failure> {
     }
     let d = &loaded.description;
     let scene = Scene::new(d);
+    super::open::coplanar(&scene);
     if args.json {
         super::say(&serde_json::to_string_pretty(&machine(d, &scene))?)?;
     } else {
@@ -56,6 +58,9 @@ fn machine(d: &Description, scene: &Scene) -> serde_json::Value {
         "lights": scene.lights.len(),
         "area": SurfaceSensor::new(scene).area,
         "max_albedo": scene.max_albedo().to_array(),
+        "coplanar": d.surfaces().relations(d).iter().map(|r| json!({
+            "shapes": r.shapes, "names": r.names, "kind": meaning(r.kind),
+        })).collect::<Vec<_>>(),
     })
 }
 
@@ -116,10 +121,41 @@ fn people(d: &Description, scene: &Scene) -> String {
     } else {
         out += "  no guaranteed bound: a surface reflects everything\n";
     }
+    out += &coincident(d);
     if let Some(e) = &d.expect {
         let terms: Vec<String> = e.terms.iter().map(|&t| table::significant(t, 5)).collect();
         out += &format!("\nexpected image means, k = 0 to {}\n", terms.len().saturating_sub(1));
         out += &format!("  {}\n  source: {}\n", terms.join(", "), e.source);
+    }
+    out
+}
+
+/// What it means that two shapes coincide.
+fn meaning(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Alike => "alike: the same in every image, twice in areas",
+        Kind::InFront => "what emits lies in front",
+        Kind::Differ => "they differ",
+    }
+}
+
+/// Pairs of shapes that lie in one surface and overlap, the most troublesome first.
+fn coincident(d: &Description) -> String {
+    const SHOWN: usize = 6;
+    let mut all = d.surfaces().relations(d);
+    if all.is_empty() {
+        return String::new();
+    }
+    all.sort_by_key(|r| std::cmp::Reverse(r.kind));
+    let mut out = format!("\ncoplanar overlaps, by pairs of shapes: {}\n", all.len());
+    for r in all.iter().take(SHOWN) {
+        out += &format!("  {} and {}: {}\n", r.names[0], r.names[1], meaning(r.kind));
+    }
+    if all.len() > SHOWN {
+        out += &format!("  … and {} more\n", all.len() - SHOWN);
+    }
+    if all.iter().any(|r| r.kind == Kind::Differ) {
+        out += "  where they differ it matters only if a path from the camera gets there; then there is a warning\n";
     }
     out
 }

@@ -13,6 +13,7 @@
 mod accel;
 pub mod bsdf;
 pub mod builtin;
+pub mod coplanar;
 pub mod description;
 pub mod emitter;
 mod error;
@@ -38,6 +39,7 @@ pub use vertex::{ESCAPED, LIGHT, Side, Vertex, VertexWave};
 use crate::math::Rgb;
 use accel::Accel;
 use bsdf::Bsdf;
+use coplanar::Relation;
 use description::{BsdfDescription, LightDescription, Sides};
 pub use emitter::Selection;
 use emitter::{Light, Lights};
@@ -88,6 +90,8 @@ pub struct Scene {
     beyond: f32,
     /// Whether some surface has a delta part.
     any_delta: bool,
+    /// Shapes that coincide and differ.
+    conflicts: Vec<Relation>,
 }
 
 /// Offset of ray origins and margin at edges, as fractions of half the diagonal of the scene.
@@ -100,7 +104,8 @@ const FAR: f64 = 16.0;
 impl Scene {
     /// Builds what rays need. The description must have passed the checks of the loader: finite, no empty shapes.
     pub fn new(description: &Description) -> Self {
-        let prims = description.primitives();
+        let surfaces = description.surfaces();
+        let prims = surfaces.list.as_slice();
         let bounds: Vec<[DVec3; 2]> = prims.iter().map(|(_, p)| p.bounds()).collect();
         let all = bounds.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         let farthest = all[0].abs().max(all[1].abs()).max_element();
@@ -110,7 +115,7 @@ impl Scene {
         let widened: Vec<[Vec3; 2]> =
             bounds.iter().map(|b| [(b[0] - 2.0 * margin).as_vec3(), (b[1] + 2.0 * margin).as_vec3()]).collect();
         let (mut bsdf, mut emission, mut takes_part) = (vec![], vec![], vec![]);
-        for &(shape, _) in &prims {
+        for &(shape, _) in prims {
             let shape = &description.shapes[shape];
             let material = &description.materials[shape.material];
             let both = material.sides == Sides::Both || matches!(material.bsdf, BsdfDescription::Dielectric { .. });
@@ -119,7 +124,7 @@ impl Scene {
             emission.extend([shape.emission.as_vec3(), Rgb::ZERO]);
             takes_part.extend([true, both]);
         }
-        let textures = Textures::new(description, &prims);
+        let textures = Textures::new(description, prims);
         let plain = bsdf.iter().all(|b| matches!(b, Bsdf::Diffuse(_) | Bsdf::Black));
         let plain = plain && textures.is_none() && description.lights.is_empty();
         let albedo = bsdf.iter().enumerate().map(|(side, b)| match &textures {
@@ -138,7 +143,7 @@ impl Scene {
         Self {
             packets: plain && packets::suit(&shapes),
             camera: Camera::new(&description.camera),
-            lights: Lights::new(description, &prims, radius),
+            lights: Lights::new(description, prims, radius),
             accel: Accel::new(shapes, &widened),
             albedo: albedo.collect(),
             any_delta: bsdf.iter().any(Bsdf::has_delta),
@@ -151,7 +156,13 @@ impl Scene {
             takes_part,
             area: prims.iter().map(|(_, p)| p.area()).collect(),
             offset: (OFFSET * extent) as f32,
+            conflicts: surfaces.conflicts(description),
         }
+    }
+
+    /// The shapes that coincide and differ, whether anybody sees them or not.
+    pub fn conflicts(&self) -> &[Relation] {
+        &self.conflicts
     }
 
     /// Number of sides: two per primitive.
