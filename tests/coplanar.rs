@@ -405,6 +405,36 @@ fn apart(a: &Estimate, b: &Estimate) -> Estimate {
     Estimate { mean: a.mean - b.mean, std_error, replicates }
 }
 
+/// From anywhere in a room that is turned by any angle, a ray to a lamp in the plane of a wall meets the front of the lamp, and
+/// nothing blocks the way back.
+#[test]
+fn rays_meet_the_lamp_and_not_the_wall() {
+    let square = below([-0.3, -0.3], [0.3, 0.3], 1.0);
+    let disk = Geometry::Disk { center: DVec3::Y, normal: DVec3::NEG_Y, radius: 0.3 };
+    let mut noise = common::Noise(4);
+    for lamp_shape in [square.clone(), mesh(&square), disk] {
+        for _ in 0..30 {
+            let axis = DVec3::new(noise.uniform() - 0.5, noise.uniform() - 0.5, noise.uniform() - 0.5).normalize();
+            let turn = DQuat::from_axis_angle(axis, 6.3 * noise.uniform());
+            let mut parts: Vec<Part> = faces(&room()).into_iter().map(dark).collect();
+            parts.push(lamp(lamp_shape.clone()));
+            let scene = Scene::new(&mapped(&scene(parts), 1.0, |x| turn * x));
+            let down = turn * DVec3::NEG_Y;
+            for _ in 0..1000 {
+                let mut between = |r: f64| r * (2.0 * noise.uniform() - 1.0);
+                let from = turn * DVec3::new(between(0.99), between(0.99), between(0.99));
+                let (x, z) = (between(0.21), between(0.21));
+                let to = turn * DVec3::new(x, 1.0, z);
+                let d = (to - from).normalize();
+                let hit = scene.trace(from.as_vec3(), d.as_vec3()).unwrap();
+                assert!(hit.side / 2 >= 6 && hit.side % 2 == 0, "{from} {to}: side {}", hit.side);
+                let eye = from.as_vec3();
+                assert!(!scene.blocked(hit.p, down.as_vec3(), eye, glam::Vec3::ZERO), "{from} {to}");
+            }
+        }
+    }
+}
+
 /// The room with a hole in its ceiling, where the lamp is: nothing coincides there.
 fn with_hole(hole: [f64; 4], lamp_part: Part, ceiling: Sides) -> Description {
     let [a, b, c, d] = hole;
@@ -470,6 +500,99 @@ fn lamps_in_a_plane_are_worth_their_light() {
         let f = &a.matrix.invariants;
         assert!(f.row_sum_max < 1.0 + 1e-3 && f.row_sum_min > 1.0 - 1e-3, "{what}: {f:?}");
     }
+}
+
+/// The fault, far from the origin.
+#[test]
+#[ignore = "needs scenes that are centred before they are rounded to f32"]
+fn lamps_in_a_plane_far_away() {
+    let mut account = common::open("lamps_in_a_plane_far_away");
+    let seed = account.seed();
+    let square = || lamp(below([-0.3, -0.3], [0.3, 0.3], 1.0));
+    let (flush, hole) =
+        (in_plane(vec![square()], Sides::Front), with_hole([-0.3, -0.3, 0.3, 0.3], square(), Sides::Front));
+    let far = mapped(&flush, 1.0, |x| x + DVec3::new(1e6, 3e6, -2e6));
+    let reference = values(&ways(&hole, 512, seed ^ 1)[2]);
+    for s in ways(&far, 512, seed) {
+        for (k, (a, b)) in values(&s).iter().zip(&reference).enumerate() {
+            let delta = 0.05 * b.mean + 0.01 * reference[3].mean;
+            account.assert_equivalent(&format!("{}, {k}", s.label), &apart(a, b), DVec3::ZERO, delta);
+        }
+    }
+}
+
+/// The mean over all surfaces of each term: what lies under the lamp is dark, and counts in the area.
+#[test]
+#[ignore = "needs rays that start by their error bound, less than a quarter of the gap"]
+fn what_a_lamp_covers_sends_no_light() {
+    let mut account = common::open("what_a_lamp_covers_sends_no_light");
+    let seed = account.seed();
+    let square = || lamp(below([-0.3, -0.3], [0.3, 0.3], 1.0));
+    let norms = |d: &Description, seed| {
+        let scene = Scene::new(d);
+        let area = fredholm::scene::SurfaceSensor::new(&scene).area;
+        let of = fredholm::worlds::surface::norms;
+        let r = of(&scene, Estimator::Prefix, 1 << 19, &settings(Technique::Mis, 1, seed), &Unobserved, &NEVER);
+        [0, 1, 2, 3].map(|k| {
+            let e = r.estimate(k..k + 1);
+            Estimate { mean: e.mean * area, std_error: e.std_error * area, ..e }
+        })
+    };
+    let flush = norms(&in_plane(vec![square()], Sides::Front), seed);
+    let hole = norms(&with_hole([-0.3, -0.3, 0.3, 0.3], square(), Sides::Front), seed ^ 1);
+    for (k, (a, b)) in flush.iter().zip(&hole).enumerate() {
+        // the covered ceiling is 1.5 % of the area
+        account.assert_equivalent(&format!("T{k}"), &apart(a, b), DVec3::ZERO, 0.01 * b.mean);
+    }
+}
+
+/// The command line: a count and names in `info`, a warning, and no verdict with the exit code of one.
+#[test]
+fn commands_name_what_coincides() {
+    let desk = tempfile::tempdir().unwrap();
+    let file = |rug: &str| {
+        format!(
+            "name = \"rug\"\n[camera]\norigin = [0, 0, 0.95]\ntarget = [0, -0.3, 0]\nup = [0, 1, 0]\nfov = 90\nsize = [8, 8]\n\
+             [materials.w]\ntype = \"diffuse\"\nreflectance = [0.6, 0.6, 0.6]\nsides = \"front\"\n\
+             [materials.r]\ntype = \"diffuse\"\nreflectance = [0.1, 0.2, 0.3]\nsides = \"both\"\n\
+             [[shapes]]\ntype = \"box\"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\ninward = true\nmaterial = \"w\"\n\
+             [[shapes]]\ntype = \"quad\"\norigin = [-0.3, 1, -0.3]\nedge_u = [0.6, 0, 0]\nedge_v = [0, 0, 0.6]\n\
+             material = \"w\"\nemission = [10, 10, 10]\n\
+             [[shapes]]\ntype = \"quad\"\norigin = [-0.5, {rug}, -0.5]\nedge_u = [0, 0, 1]\nedge_v = [1, 0, 0]\nmaterial = \"r\"\n"
+        )
+    };
+    std::fs::write(desk.path().join("flush.toml"), file("-1")).unwrap();
+    std::fs::write(desk.path().join("raised.toml"), file("-0.999")).unwrap();
+    let run = |line: &str| {
+        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
+        let output = command.args(line.split_whitespace()).current_dir(desk.path()).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    };
+    let words = "shapes `shapes[0]` and `shapes[2]` lie in one plane and differ";
+    let (code, out, err) = run("info flush.toml");
+    assert_eq!(code, 0);
+    assert!(out.contains("coplanar overlaps: 2"), "{out}");
+    assert!(out.contains("shapes[0] and shapes[1]: what emits lies in front"), "{out}");
+    assert!(out.contains("shapes[0] and shapes[2]: they differ"), "{out}");
+    assert!(err.contains(words), "{err}");
+    let (code, out, err) = run("series flush.toml --spp 32 --patches 60 -q -o a");
+    assert!(code == 0 && err.contains(words) && out.contains(&format!("Undecided: {words}")), "{code} {out} {err}");
+    assert!(out.lines().all(|l| l.chars().count() <= 100), "{out}");
+    let summary = fredholm::report::summary::read(&desk.path().join("a/summary.json")).unwrap();
+    assert!(summary.verdicts.iter().all(|v| v.outcome == fredholm::report::summary::Outcome::Inconclusive));
+    assert!(summary.series.iter().all(|s| s.undecided.as_deref() == Some(words)));
+    let (code, out, _) = run("check bias --scene flush.toml --spp 4096 --batch 64 -q -o b");
+    assert!(code == 0 && out.contains("Undecided"), "{code} {out}");
+    let (code, out, _) = run("check equilibrium flush.toml --spp 64 --points 8 -q -o c");
+    assert!(code == 0 && out.contains("Undecided"), "{code} {out}");
+    let (code, out, _) = run("compare a a -o d");
+    assert!(code == 1 && out.contains("Undecided"), "{code} {out}");
+    // a millimetre above the floor all is well
+    let (_, out, err) = run("info raised.toml");
+    assert!(out.contains("coplanar overlaps: 1") && !err.contains("warning"), "{out} {err}");
+    let (_, out, _) = run("series raised.toml --spp 32 --patches 60 -q -o e");
+    assert!(!out.contains("Undecided"), "{out}");
 }
 
 /// No verdict where the scene has no right answer, whatever the numbers.

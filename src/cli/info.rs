@@ -3,11 +3,12 @@
 use super::{Ending, Failure};
 use clap::Args;
 use fredholm::report::table;
-use fredholm::scene::coplanar::Kind;
+use fredholm::scene::coplanar::{Kind, Relation};
 use fredholm::scene::description::{
     BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
 };
 use fredholm::scene::{Scene, SurfaceSensor, builtin, load};
+use fredholm::worlds::coplanar;
 use serde_json::json;
 
 /// Arguments of `info`.
@@ -58,8 +59,8 @@ fn machine(d: &Description, scene: &Scene) -> serde_json::Value {
         "lights": scene.lights.len(),
         "area": SurfaceSensor::new(scene).area,
         "max_albedo": scene.max_albedo().to_array(),
-        "coplanar": d.surfaces().relations(d).iter().map(|r| json!({
-            "shapes": r.shapes, "names": r.names, "kind": meaning(r.kind),
+        "coplanar": coincident(d, scene).iter().map(|(r, meaning)| json!({
+            "shapes": r.shapes, "names": r.names, "meaning": meaning,
         })).collect::<Vec<_>>(),
     })
 }
@@ -121,7 +122,7 @@ fn people(d: &Description, scene: &Scene) -> String {
     } else {
         out += "  no guaranteed bound: a surface reflects everything\n";
     }
-    out += &coincident(d);
+    out += &overlaps(d, scene);
     if let Some(e) = &d.expect {
         let terms: Vec<String> = e.terms.iter().map(|&t| table::significant(t, 5)).collect();
         out += &format!("\nexpected image means, k = 0 to {}\n", terms.len().saturating_sub(1));
@@ -130,32 +131,32 @@ fn people(d: &Description, scene: &Scene) -> String {
     out
 }
 
-/// What it means that two shapes coincide.
-fn meaning(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Alike => "alike: the same in every image, twice in areas",
+/// Pairs of shapes that lie in one surface and overlap, the most troublesome first, and what that means.
+fn coincident(d: &Description, scene: &Scene) -> Vec<(Relation, &'static str)> {
+    let mut all = d.surfaces().relations(d);
+    all.sort_by_key(|r| std::cmp::Reverse(r.kind));
+    let seen: Vec<[usize; 2]> = coplanar::seen(scene).iter().map(|r| r.shapes).collect();
+    let meaning = |r: &Relation| match r.kind {
+        Kind::Alike => "alike; the same in images, counted twice in areas",
         Kind::InFront => "what emits lies in front",
-        Kind::Differ => "they differ",
-    }
+        Kind::Differ if seen.contains(&r.shapes) => "they differ, and nothing says which is seen",
+        Kind::Differ => "they touch out of sight",
+    };
+    all.into_iter().map(|r| (meaning(&r), r)).map(|(m, r)| (r, m)).collect()
 }
 
-/// Pairs of shapes that lie in one surface and overlap, the most troublesome first.
-fn coincident(d: &Description) -> String {
+fn overlaps(d: &Description, scene: &Scene) -> String {
     const SHOWN: usize = 6;
-    let mut all = d.surfaces().relations(d);
+    let all = coincident(d, scene);
     if all.is_empty() {
         return String::new();
     }
-    all.sort_by_key(|r| std::cmp::Reverse(r.kind));
-    let mut out = format!("\ncoplanar overlaps, by pairs of shapes: {}\n", all.len());
-    for r in all.iter().take(SHOWN) {
-        out += &format!("  {} and {}: {}\n", r.names[0], r.names[1], meaning(r.kind));
+    let mut out = format!("\ncoplanar overlaps: {}\n", all.len());
+    for (r, meaning) in all.iter().take(SHOWN) {
+        out += &format!("  {} and {}: {meaning}\n", r.names[0], r.names[1]);
     }
     if all.len() > SHOWN {
-        out += &format!("  … and {} more\n", all.len() - SHOWN);
-    }
-    if all.iter().any(|r| r.kind == Kind::Differ) {
-        out += "  where they differ it matters only if a path from the camera gets there; then there is a warning\n";
+        out += &format!("  … and {} more pairs of shapes\n", all.len() - SHOWN);
     }
     out
 }

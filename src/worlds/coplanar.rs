@@ -28,6 +28,8 @@ const WALKS: u32 = 2048;
 const LENGTH: usize = 6;
 /// Vertices of walks that each point of a region is connected to.
 const EACH: usize = 64;
+/// Regions of two shapes in which landings are looked for, at most.
+const REGIONS: usize = 1024;
 /// Points of two shapes that are tried, at least and at most, and segments in all.
 const POINTS: (usize, usize) = (8, 64);
 const SEGMENTS: usize = 1 << 20;
@@ -43,13 +45,13 @@ pub fn seen(scene: &Scene) -> Vec<&Relation> {
     let mut landed = vec![false; conflicts.len()];
     let mut at_side: HashMap<u32, Vec<(usize, &Region)>> = HashMap::new();
     for (i, c) in conflicts.iter().enumerate() {
-        for region in &c.regions {
+        for region in c.regions.iter().step_by(c.regions.len().div_ceil(REGIONS)) {
             region.sides.iter().for_each(|s| at_side.entry(*s).or_default().push((i, region)));
         }
     }
     for x in &walks {
         for (i, region) in at_side.get(&x.side).into_iter().flatten() {
-            landed[*i] |= region.holds(x.p.as_dvec3());
+            landed[*i] = landed[*i] || region.holds(x.p.as_dvec3());
         }
     }
     let scatters: Vec<Vertex> = walks.into_iter().filter(|x| connectable(scene, x)).collect();

@@ -155,6 +155,8 @@ impl Surfaces {
     /// What the overlaps mean, by pairs of shapes in ascending order.
     pub fn relations(&self, of: &Description) -> Vec<Relation> {
         let mut all: BTreeMap<[usize; 2], (Kind, Vec<Region>)> = BTreeMap::new();
+        // images are compared once, not for every pair of triangles
+        let mut known: BTreeMap<([usize; 2], [usize; 2]), bool> = BTreeMap::new();
         for o in &self.overlaps {
             let shapes = o.pair.map(|i| self.list[i].0);
             let [a, b] = shapes.map(|s| of.shapes[s].emission.max_element() > 0.0);
@@ -166,7 +168,7 @@ impl Surfaces {
             }
             for from_front in [true, false] {
                 let sides = o.sides(from_front);
-                if of.alike(shapes, sides) {
+                if *known.entry((shapes, sides)).or_insert_with(|| of.alike(shapes, sides)) {
                     continue;
                 }
                 *kind = Kind::Differ;
