@@ -344,6 +344,7 @@ fn full_summary() -> Summary {
         cost,
         unseen: vec![],
         by_luck: vec![],
+        undecided: None,
     };
     let verdict = Verdict {
         name: "T1: terms − radiosity".into(),

@@ -17,6 +17,9 @@ use nalgebra::DMatrix;
 
 /// One line: the outcome, and what would decide.
 pub fn judgement(c: &Comparison) -> String {
+    if let Some(why) = &c.undecided {
+        return undecided(why);
+    }
     match c.outcome {
         stats::Outcome::Agrees => {
             format!("Agrees: every difference is proved smaller than δ ({} comparisons share α).", c.family)
@@ -34,6 +37,13 @@ pub fn judgement(c: &Comparison) -> String {
             }
         }
     }
+}
+
+/// No verdict, and what to do about it.
+pub fn undecided(why: &str) -> String {
+    format!(
+        "Undecided: {why}.\nNothing says which of them is seen: move one by a thousandth of the scene, or take it away."
+    )
 }
 
 /// What is printed about the matrix on every run.

@@ -3,10 +3,12 @@
 use super::{Ending, Failure};
 use clap::Args;
 use fredholm::report::table;
+use fredholm::scene::coplanar::{Kind, Relation};
 use fredholm::scene::description::{
     BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
 };
 use fredholm::scene::{Scene, SurfaceSensor, builtin, load};
+use fredholm::worlds::coplanar;
 use serde_json::json;
 
 /// Arguments of `info`.
@@ -35,6 +37,7 @@ pub fn run(args: &Info) -> Result<Ending, Failure> {
     }
     let d = &loaded.description;
     let scene = Scene::new(d);
+    super::open::coplanar(&scene);
     if args.json {
         super::say(&serde_json::to_string_pretty(&machine(d, &scene))?)?;
     } else {
@@ -56,6 +59,9 @@ fn machine(d: &Description, scene: &Scene) -> serde_json::Value {
         "lights": scene.lights.len(),
         "area": SurfaceSensor::new(scene).area,
         "max_albedo": scene.max_albedo().to_array(),
+        "coplanar": coincident(d, scene).iter().map(|(r, meaning)| json!({
+            "shapes": r.shapes, "names": r.names, "meaning": meaning,
+        })).collect::<Vec<_>>(),
     })
 }
 
@@ -116,10 +122,41 @@ fn people(d: &Description, scene: &Scene) -> String {
     } else {
         out += "  no guaranteed bound: a surface reflects everything\n";
     }
+    out += &overlaps(d, scene);
     if let Some(e) = &d.expect {
         let terms: Vec<String> = e.terms.iter().map(|&t| table::significant(t, 5)).collect();
         out += &format!("\nexpected image means, k = 0 to {}\n", terms.len().saturating_sub(1));
         out += &format!("  {}\n  source: {}\n", terms.join(", "), e.source);
+    }
+    out
+}
+
+/// Pairs of shapes that lie in one surface and overlap, the most troublesome first, and what that means.
+fn coincident(d: &Description, scene: &Scene) -> Vec<(Relation, &'static str)> {
+    let mut all = d.surfaces().relations(d);
+    all.sort_by_key(|r| std::cmp::Reverse(r.kind));
+    let seen: Vec<[usize; 2]> = coplanar::seen(scene).iter().map(|r| r.shapes).collect();
+    let meaning = |r: &Relation| match r.kind {
+        Kind::Alike => "alike; the same in images, counted twice in areas",
+        Kind::InFront => "what emits lies in front",
+        Kind::Differ if seen.contains(&r.shapes) => "they differ, and nothing says which is seen",
+        Kind::Differ => "they touch out of sight",
+    };
+    all.into_iter().map(|r| (meaning(&r), r)).map(|(m, r)| (r, m)).collect()
+}
+
+fn overlaps(d: &Description, scene: &Scene) -> String {
+    const SHOWN: usize = 6;
+    let all = coincident(d, scene);
+    if all.is_empty() {
+        return String::new();
+    }
+    let mut out = format!("\ncoplanar overlaps: {}\n", all.len());
+    for (r, meaning) in all.iter().take(SHOWN) {
+        out += &format!("  {} and {}: {meaning}\n", r.names[0], r.names[1]);
+    }
+    if all.len() > SHOWN {
+        out += &format!("  … and {} more pairs of shapes\n", all.len() - SHOWN);
     }
     out
 }

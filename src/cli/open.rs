@@ -4,6 +4,7 @@ use super::{Failure, args::Run, output, solve};
 use clap::Args;
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
+use fredholm::worlds::coplanar;
 use std::path::PathBuf;
 
 /// What changes a scene.
@@ -91,8 +92,24 @@ pub fn scene(name: &str, changes: &Changes, size: Option<[u32; 2]>) -> Result<Op
     let loaded = load::scene(name, &changes.options(size))?;
     loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
     let scene = Scene::new(&loaded.description);
+    coplanar(&scene);
     let hash = solve::scene_hash(&loaded.canonical);
     Ok(Opened { command: output::canonical_command(), description: loaded.description, scene, hash })
+}
+
+/// Surfaces that coincide and are seen, though nothing says which of them: a warning each, up to a few.
+pub fn coplanar(scene: &Scene) {
+    const SHOWN: usize = 4;
+    let seen = coplanar::seen(scene);
+    for c in seen.iter().take(SHOWN) {
+        super::note(&format!("warning: {}; nothing says which is seen", coplanar::conflict(c)));
+    }
+    match seen.len() {
+        0 => return,
+        n if n > SHOWN => super::note(&format!("warning: … and {} more pairs that coincide", n - SHOWN)),
+        _ => {}
+    }
+    super::note("help: move one of them by a thousandth of the scene; until then comparisons have no verdict");
 }
 
 /// Threads and scene of a command that renders.

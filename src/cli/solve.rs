@@ -437,6 +437,8 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     blocks.extend(facts::extrapolated(found));
     if !found.verdicts.is_empty() {
         blocks.push(table::verdicts(&found.verdicts));
+        let why = found.terms.first().and_then(|t| t.series.undecided.as_deref());
+        blocks.extend(why.map(facts::undecided));
     }
     blocks.push(facts::warnings(found).iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n"));
     blocks.push(format!(

@@ -14,6 +14,7 @@ mod accel;
 pub mod bsdf;
 pub mod builtin;
 pub mod centre;
+pub mod coplanar;
 pub mod description;
 pub mod emitter;
 mod error;
@@ -40,6 +41,7 @@ pub use vertex::{ESCAPED, LIGHT, Side, Vertex, VertexWave};
 use crate::math::Rgb;
 use accel::Accel;
 use bsdf::Bsdf;
+use coplanar::Relation;
 use description::{BsdfDescription, LightDescription, Sides};
 pub use emitter::Selection;
 use emitter::{Light, Lights};
@@ -91,6 +93,8 @@ pub struct Scene {
     beyond: f32,
     /// Whether some surface has a delta part.
     any_delta: bool,
+    /// Shapes that coincide and differ.
+    conflicts: Vec<Relation>,
 }
 
 impl Scene {
@@ -99,7 +103,8 @@ impl Scene {
     pub fn new(description: &Description) -> Self {
         let centre::Centred { scene, origin, touch } = description.centred();
         let description = &scene;
-        let prims = description.primitives();
+        let surfaces = description.surfaces();
+        let prims = surfaces.list.as_slice();
         let bounds: Vec<[DVec3; 2]> = prims.iter().map(|(_, p)| p.bounds()).collect();
         let all = bounds.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         let radius = 0.5 * (all[1] - all[0]).length();
@@ -108,7 +113,7 @@ impl Scene {
         let farthest = all[0].abs().max(all[1].abs()).max_element();
         let widened: Vec<[Vec3; 2]> = bounds.iter().map(|b| accel::widened(*b, farthest, touch)).collect();
         let (mut bsdf, mut emission, mut takes_part) = (vec![], vec![], vec![]);
-        for &(shape, _) in &prims {
+        for &(shape, _) in prims {
             let shape = &description.shapes[shape];
             let material = &description.materials[shape.material];
             let both = material.sides == Sides::Both || matches!(material.bsdf, BsdfDescription::Dielectric { .. });
@@ -117,7 +122,7 @@ impl Scene {
             emission.extend([shape.emission.as_vec3(), Rgb::ZERO]);
             takes_part.extend([true, both]);
         }
-        let textures = Textures::new(description, &prims);
+        let textures = Textures::new(description, prims);
         let plain = bsdf.iter().all(|b| matches!(b, Bsdf::Diffuse(_) | Bsdf::Black));
         let plain = plain && textures.is_none() && description.lights.is_empty();
         let albedo = bsdf.iter().enumerate().map(|(side, b)| match &textures {
@@ -133,7 +138,7 @@ impl Scene {
         Self {
             packets: plain && packets::suit(&shapes),
             camera: Camera::new(&description.camera, center, radius),
-            lights: Lights::new(description, &prims, radius),
+            lights: Lights::new(description, prims, radius),
             accel: Accel::new(shapes, &widened),
             albedo: albedo.collect(),
             any_delta: bsdf.iter().any(Bsdf::has_delta),
@@ -146,12 +151,18 @@ impl Scene {
             takes_part,
             area: prims.iter().map(|(_, p)| p.area()).collect(),
             origin,
+            conflicts: surfaces.conflicts(description),
         }
     }
 
     /// Where its coordinates begin, in those of the file: positions of vertices and of [`Camera`] are relative to it.
     pub fn origin(&self) -> DVec3 {
         self.origin
+    }
+
+    /// The shapes that coincide and differ, whether anybody sees them or not.
+    pub fn conflicts(&self) -> &[Relation] {
+        &self.conflicts
     }
 
     /// Number of sides: two per primitive.

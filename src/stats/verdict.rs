@@ -3,7 +3,7 @@
 //! ```text
 //! Differs        some comparison is rejected by Holm at the family level α
 //! Agrees         none is, and |effect| + t* s + a ≤ δ for every image mean
-//! Inconclusive   neither: the noise hides an effect as large as δ
+//! Inconclusive   neither: the noise hides an effect as large as δ; or the scene has no right answer
 //! ```
 //!
 //! | symbol | meaning | place |
@@ -94,12 +94,15 @@ pub struct Comparison {
     pub family: usize,
     /// Differs if any row does; Agrees if every row does.
     pub outcome: Outcome,
+    /// Why nothing is decided, where the scene has no right answer.
+    pub undecided: Option<String>,
 }
 
 /// `Some(reason)` texts of [`Verdict::reason`].
 const NO_ERROR: &str = "the standard error is unknown: one replicate only (raise the samples per pixel)";
 pub(super) const NOT_FINITE: &str = "a mean is not finite";
 pub(super) const FEW: &str = "a mean rests on too few events (hits) for its error to be known: raise --spp";
+const NO_ANSWER: &str = "the scene has no right answer";
 const ALLOWANCE: &str = "the allowance for discretisation alone exceeds what δ can resolve: refine the mesh";
 
 /// An allowance from two meshes is itself uncertain; a rejection must exceed it by this factor, the one that Roache asks for
@@ -140,7 +143,7 @@ pub(super) const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Functional]) -> Comparison {
     let mut family = Vec::new();
     let (Some(image_a), Some(image_b)) = (a.functionals.first(), b.functionals.first()) else {
-        return Comparison { rows: Vec::new(), family: 0, outcome: Outcome::Inconclusive };
+        return Comparison { rows: Vec::new(), family: 0, outcome: Outcome::Inconclusive, undecided: None };
     };
     let delta_of = |q: Quantity| margin(criterion, q, image_a, image_b);
     for (i, fa) in a.functionals.iter().enumerate() {
@@ -167,7 +170,14 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
             }
         }
     }
-    judge(&family, criterion)
+    let mut found = judge(&family, criterion);
+    if let Some(why) = a.undecided.as_ref().or(b.undecided.as_ref()) {
+        (found.outcome, found.undecided) = (Outcome::Inconclusive, Some(why.clone()));
+        for row in &mut found.rows {
+            (row.outcome, row.needed_factor, row.reason) = (Outcome::Inconclusive, None, Some(NO_ANSWER));
+        }
+    }
+    found
 }
 
 /// |fine − coarse| of two meshes of one world, as an allowance: where the error falls at least as fast as h, the finer
@@ -316,7 +326,7 @@ fn judge(family: &[Item], criterion: &Criterion) -> Comparison {
         }
     };
     let rows: Vec<Verdict> = quantities.iter().filter_map(row).collect();
-    Comparison { outcome: overall(&rows), rows, family: family.len() }
+    Comparison { outcome: overall(&rows), rows, family: family.len(), undecided: None }
 }
 
 /// `levels`: of the interval, of a rejection.

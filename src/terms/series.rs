@@ -100,6 +100,9 @@ pub struct Series {
     /// small, and nothing in its samples says so.
     #[serde(default)]
     pub by_luck: Vec<String>,
+    /// Why no comparison with this result is decided, if none is: the scene has no right answer.
+    #[serde(default)]
+    pub undecided: Option<String>,
 }
 
 impl Series {

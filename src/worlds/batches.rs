@@ -4,6 +4,7 @@
 //! independent and identically distributed. Errors come from their scatter; a batch has none of its own.
 
 use super::Settings;
+use super::coplanar::undecided;
 use super::sampled::{Estimator, film};
 use super::unseen::{by_luck, unseen};
 use crate::estimator::render::{Amount, Unwatched, render};
@@ -90,6 +91,7 @@ impl Side {
             cost: Cost::default(),
             unseen,
             by_luck: by_luck(scene, self.estimator),
+            undecided: undecided(scene),
         }
     }
 }

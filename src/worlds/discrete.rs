@@ -3,6 +3,7 @@
 //! `T_h = diag(ρ) F` as a matrix or as stored rays ([`realisation`](super::realisation)), `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
 //! same camera rays, gives the discretisation error |R_h − R_2h| that stands beside the Monte Carlo error in every verdict.
 
+use super::coplanar::undecided;
 use super::radius::{Radius, radii, sampled_noise};
 use super::realisation::{Difference, Factors, Realisation, Sampling as RaySampling, Stored};
 use super::{Observer, Settings, sampled, sampled::Sampled};
@@ -253,7 +254,10 @@ impl Matrix {
             self.sampling.map_or(String::new(), |s| format!(" of {} rays", s.per_row)),
             if settings.read_patches { ", read" } else { "" }
         );
-        sampled::sample(&t, &scene.camera, &gather, "radiosity", (World::Radiosity, label), settings, observer, stop)
+        let world = (World::Radiosity, label);
+        let mut seen = sampled::sample(&t, &scene.camera, &gather, "radiosity", world, settings, observer, stop);
+        seen.series.undecided = undecided(scene);
+        seen
     }
 }
 

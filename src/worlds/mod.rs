@@ -8,6 +8,7 @@
 //! | guided | both, with the matrix as a guide | [`guided`] |
 //! | radiosity | `T_h^k E` and the solve, through the same camera | [`discrete::radiosity`] |
 //! | batches | the same, small and one after another, for what is watched while it grows | [`batches::Side`] |
+//! | coplanar | where surfaces coincide and differ, and are seen | [`coplanar::seen`] |
 //! | equilibrium | both sides of L = E + T L, point by point and through the camera | [`equilibrium`] |
 //! | falling | how variance and squared error fall in one render | [`falling::Recorder`] |
 //! | split | the terms with so many samples each | [`split::measure`] |
@@ -19,6 +20,7 @@
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 
 pub mod batches;
+pub mod coplanar;
 pub mod discrete;
 pub mod equilibrium;
 pub mod falling;

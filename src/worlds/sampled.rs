@@ -2,6 +2,7 @@
 
 use super::{
     Observer, Settings,
+    coplanar::undecided,
     unseen::{by_luck, unseen},
 };
 use crate::estimator::render::{Amount, Watch, render};
@@ -100,6 +101,7 @@ pub(super) fn annotated(
 ) -> Sampled {
     result.series.unseen = unseen(scene, estimator, settings.technique);
     result.series.by_luck = by_luck(scene, estimator);
+    result.series.undecided = undecided(scene);
     let roulette = if estimator.is_some() { &settings.roulette } else { &settings.path_roulette };
     if !roulette.ends() {
         cut(&mut result.series, settings);
@@ -202,7 +204,15 @@ impl<'a> Run<'a> {
         };
         let image = |s: usize| TermImage::of(film, s..s + 1);
         Sampled {
-            series: Series { world, label, functionals: functionals(film), cost, unseen: vec![], by_luck: vec![] },
+            series: Series {
+                world,
+                label,
+                functionals: functionals(film),
+                cost,
+                unseen: vec![],
+                by_luck: vec![],
+                undecided: None,
+            },
             terms: (0..slots - 1).map(image).collect(),
             tail: if slots > 1 { image(slots - 1) } else { TermImage::default() },
             sum: if slots > 1 { TermImage::of(film, 0..slots - 1) } else { TermImage::default() },

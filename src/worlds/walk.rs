@@ -115,6 +115,7 @@ pub fn walk(
         cost: Cost::default(),
         unseen: vec![],
         by_luck: vec![],
+        undecided: None,
     };
     if !ends {
         series.functionals.iter_mut().for_each(|f| f.tail = Estimate::NONE);

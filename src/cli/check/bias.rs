@@ -5,7 +5,7 @@
 
 use super::super::args;
 use super::super::progress::stop_flag;
-use super::super::{Ending, Failure, note, output, paragraphs, say};
+use super::super::{Ending, Failure, facts, note, output, paragraphs, say};
 use super::sides::{Against, check_sides, finished, side};
 use super::{Common, fraction, usage};
 use crate::cli::open::Opened;
@@ -194,12 +194,16 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
         }
     }
 
-    let findings = detector.findings();
+    let mut findings = detector.findings();
     if findings.is_empty() {
         return Err(usage("the two sides have nothing in common to compare", "compare estimators that share a term"));
     }
     let second = against.label();
-    let outcome = detector.outcome();
+    let why = limits.iter().flatten().find_map(|s| s.undecided.as_deref());
+    let outcome = if why.is_some() { Outcome::Inconclusive } else { detector.outcome() };
+    if why.is_some() {
+        findings.iter_mut().for_each(|f| f.outcome = Outcome::Inconclusive);
+    }
     let record = Record {
         command: &loaded.command,
         first: first.label(),
@@ -217,7 +221,8 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
     if args.common.shared.json {
         say(&serde_json::to_string_pretty(&record)?)?;
     } else {
-        let mut foot = watch::judgement(outcome, &findings, args.alpha, criterion.beta);
+        let judged = watch::judgement(outcome, &findings, args.alpha, criterion.beta);
+        let mut foot = why.map_or(judged, facts::undecided);
         if let Some((from, why)) = &gap {
             foot += &format!("\nT{from} and everything longer: not compared, {why}");
         }
@@ -225,7 +230,7 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
             foot += &format!("\nwarning: {} samples were not finite; they are left in the sums", cost[2]);
         }
         if outcome == Outcome::Differs
-            && let Some(luck) = super::super::facts::luck(limits.iter().flatten())
+            && let Some(luck) = facts::luck(limits.iter().flatten())
         {
             foot += &format!("\nwarning: {luck}");
         }
@@ -259,6 +264,7 @@ fn cut(functionals: Vec<Functional>, gap: Option<&(usize, String)>) -> Vec<Funct
         cost: fredholm::terms::Cost::default(),
         unseen: vec![],
         by_luck: vec![],
+        undecided: None,
     };
     series.before(*from).functionals
 }

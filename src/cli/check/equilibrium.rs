@@ -2,7 +2,7 @@
 
 use super::super::args;
 use super::super::progress::{Progress, stop_flag};
-use super::super::{Ending, Failure, guard, note, output, paragraphs, say, write};
+use super::super::{Ending, Failure, facts, guard, note, output, paragraphs, say, write};
 use super::{Common, fraction, usage};
 use crate::cli::open::Opened;
 use clap::Args;
@@ -14,8 +14,8 @@ use fredholm::report::{picture, summary, table, typeset::Caption, zmap};
 use fredholm::scene::bsdf::Sampling;
 use fredholm::stats::{Outcome, estimate};
 use fredholm::terms::TermImage;
-use fredholm::worlds::Settings;
 use fredholm::worlds::equilibrium::{self, Balance, EVENTS, Group, Judgement, Origin, judge};
+use fredholm::worlds::{Settings, coplanar};
 use serde_json::json;
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -76,6 +76,8 @@ struct Found<'a> {
     loaded: Opened,
     groups: [(&'static str, Vec<Balance>); 2],
     judgement: Judgement,
+    /// Why there is no verdict, where the scene has no right answer.
+    undecided: Option<String>,
     images: [TermImage; 2],
     /// Samples per pixel of the images.
     spp: u32,
@@ -122,8 +124,13 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
     let images = equilibrium::through_camera(&loaded.scene, &seen, args.factor, &progress, stop);
     progress.finish();
     let parts: Vec<(&str, &[Balance])> = groups.iter().map(|(n, b)| (*n, b.as_slice())).collect();
-    let judgement = judge(&parts, args.alpha, args.delta);
-    let found = Found { args, loaded, groups, judgement, images, spp: seen.spp };
+    let mut judgement = judge(&parts, args.alpha, args.delta);
+    let undecided = coplanar::undecided(&loaded.scene);
+    if undecided.is_some() {
+        judgement.outcome = Outcome::Inconclusive;
+        judgement.groups.iter_mut().for_each(|g| g.outcome = Outcome::Inconclusive);
+    }
+    let found = Found { args, loaded, groups, judgement, undecided, images, spp: seen.spp };
     let files = write_all(&folder, &found, started)?;
     if args.common.shared.json {
         say(&serde_json::to_string_pretty(&record(&found))?)?;
@@ -182,6 +189,7 @@ fn people(found: &Found, folder: &Path, files: &[String]) -> String {
         significant(j.uniformity.p, 2)
     ));
     let verdict = match j.outcome {
+        _ if found.undecided.is_some() => "",
         Outcome::Agrees => "The equation holds, as closely as was asked for.",
         Outcome::Differs => "The equation does not hold.",
         Outcome::Inconclusive => {
@@ -189,7 +197,8 @@ fn people(found: &Found, folder: &Path, files: &[String]) -> String {
         }
     };
     let files = format!("written to {}: {}", folder.display(), files.join(", "));
-    paragraphs(&[head, lines.join("\n"), verdict.to_owned(), files])
+    let verdict = found.undecided.as_deref().map_or(verdict.to_owned(), facts::undecided);
+    paragraphs(&[head, lines.join("\n"), verdict, files])
 }
 
 /// The channel whose difference is bounded worst.

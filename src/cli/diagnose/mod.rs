@@ -12,7 +12,7 @@ use fredholm::diagnosis::candidates::Members;
 use fredholm::diagnosis::picture::{Code, Pictures, Slot};
 use fredholm::diagnosis::{self, Case, Diagnosis, Effort, Verdict, Watch, evidence};
 use fredholm::report::{diagnosis as figure, summary, typeset::Caption};
-use fredholm::worlds::Observer;
+use fredholm::worlds::{Observer, coplanar};
 use read::{File, Grouping};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -134,6 +134,11 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
             return Err(Failure::Usage(
                 "error: the light of a point or a direction changes with the scale of the scene\nhelp: leave --scale out".into(),
             ));
+        }
+        if let Some(why) = right.scene.as_ref().and_then(coplanar::undecided) {
+            return Err(Failure::Input(format!(
+                "error: {why}, so no picture of this scene is the right one\nhelp: move one of them by a thousandth of the scene"
+            )));
         }
         let candidates = right.scene.as_ref().map(|s| Members::new(s, *max_bounces, args.seed, stop_flag()));
         for (i, suspect) in members {

@@ -47,10 +47,10 @@ pub struct BruteForce {
 }
 
 impl BruteForce {
-    /// The primitives of `scene`. Rays start 10⁻⁷ of the scene's size off the surface.
+    /// The primitives of `scene` ([`Description::surfaces`]). Rays start 10⁻⁷ of the scene's size off the surface.
     pub fn new(scene: &Description) -> Self {
         let sides = |shape: usize| scene.materials.get(scene.shapes[shape].material).map_or(Sides::Both, |m| m.sides);
-        Self::of(scene.primitives().into_iter().map(|(s, p)| (p, sides(s))))
+        Self::of(scene.surfaces().list.into_iter().map(|(s, p)| (p, sides(s))))
     }
 
     /// These primitives.

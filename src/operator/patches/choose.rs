@@ -5,7 +5,7 @@
 //! ```
 
 use super::{
-    Chart, Corners, Cover, CoverTest, Finder, Grid, Near, Tree,
+    Chart, Corners, Cover, CoverTest, Finder, Grid, Tree,
     finder::Walk,
     polygon::{area_vector, extent},
     sides_of,
@@ -64,15 +64,16 @@ pub(super) fn outline(p: &Primitive) -> Option<Vec<DVec3>> {
     }
 }
 
-/// Cuts every flat primitive where others meet it and finds out which pieces are covered.
-pub(super) fn regions(primitives: &[(Primitive, Sides)], cover: &CoverTest, grading: f64) -> Vec<Region> {
+/// Cuts every flat primitive where others meet it and finds out which pieces are covered. Lengths below `tiny` (and below a
+/// share of the primitive's size) count as zero: emitters that were moved leave no slivers.
+pub(super) fn regions(primitives: &[(Primitive, Sides)], cover: &CoverTest, grading: f64, tiny: f64) -> Vec<Region> {
     let one = |(number, &(primitive, sides)): (usize, &(Primitive, Sides))| {
         let Some(polygon) = outline(&primitive) else {
             return Region::Curved { primitive, sides: sides_of(sides).count() };
         };
         let normal = area_vector(&polygon).normalize();
-        let mut tree = Tree::new(polygon.clone());
-        let sampled = !cut(&mut tree, &polygon, normal, (primitives, &cover.near), number);
+        let mut tree = Tree::new(polygon.clone(), tiny);
+        let sampled = !cut(&mut tree, &polygon, normal, (primitives, cover), number);
         let side = |side: usize, p: &[DVec3]| {
             if !sides_of(sides).contains(&side) {
                 return Cover::Covered;
@@ -95,22 +96,22 @@ fn cut(
     tree: &mut Tree,
     polygon: &[DVec3],
     normal: DVec3,
-    (all, near): (&[(Primitive, Sides)], &Near),
+    (all, cover): (&[(Primitive, Sides)], &CoverTest),
     own: usize,
 ) -> bool {
-    let size = polygon.iter().map(|p| p.distance(polygon[0])).fold(0.0, f64::max);
-    let margin = DVec3::splat(1e-9 * size);
+    let margin = DVec3::splat(tree.tiny());
     let fold = |p: &[DVec3]| p.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], &x| [a.min(x), b.max(x)]);
     let [lo, hi] = fold(polygon);
     let (mut cuts, mut close) = (0, vec![]);
-    near.within([lo - margin, hi + margin], |i| {
+    cover.near.within([lo - margin, hi + margin], |i| {
         close.push(i);
         true
     });
     close.sort_unstable();
-    for other in close.iter().filter(|i| **i != own).map(|i| &all[*i].0) {
+    for (number, other) in close.iter().filter(|i| **i != own).map(|i| (*i, &all[*i].0)) {
         let [a, b] = other.bounds();
-        if (a - margin).cmpgt(hi).any() || (b + margin).cmplt(lo).any() {
+        let coincides = cover.coincide(own, number);
+        if !coincides && ((a - margin).cmpgt(hi).any() || (b + margin).cmplt(lo).any()) {
             continue;
         }
         let Some(q) = outline(other) else {
@@ -118,12 +119,12 @@ fn cut(
             let corners = (0..8).map(|i| DVec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), a, b));
             let [s, t] = extent(&corners.collect::<Vec<_>>(), normal);
             let d = normal.dot(polygon[0]);
-            if s <= d + margin.x && t >= d - margin.x {
+            if coincides || (s <= d + margin.x && t >= d - margin.x) {
                 return false;
             }
             continue;
         };
-        for segment in meeting(polygon, normal, &q) {
+        for segment in meeting(polygon, normal, &q, if coincides { f64::INFINITY } else { tree.tiny() }) {
             if tree.cut(normal, segment) {
                 cuts += 1;
                 if cuts == MAX_CUTS {
@@ -194,7 +195,7 @@ impl Region {
             }
             Self::Curved { .. } => match grid(primitive, a) {
                 Some(grid) => Shape::Curved(grid),
-                None => Shape::Flat { tree: Tree::new(Vec::new()), cover: Vec::new() },
+                None => Shape::Flat { tree: Tree::new(Vec::new(), 0.0), cover: Vec::new() },
             },
         }
     }

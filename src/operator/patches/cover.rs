@@ -2,13 +2,17 @@
 //!
 //! ```text
 //! covered(x)  ⇔  every ray from x meets first the black back of a one-sided surface
-//!               or x lies on a reflecting side that coincides with one of lower number
+//!               or x lies on a side that coincides with one in front of it
 //! ```
+//!
+//! Which surfaces coincide, and that emitters lie in front, is decided in [`crate::scene::coplanar`], for rays and patches
+//! alike. Where that leaves it open, the lower number is in front if it reflects.
 //!
 //! The rays are a fixed set of 32: 16 over the hemisphere and 16 that graze the surface (slope 10⁻³), because only
 //! these leave the thin gap between a ceiling and a light hung below it.
 
-use super::{BruteForce, Near, SurfacePoint, polygon::at};
+use super::{BruteForce, Near, SurfacePoint, polygon::at, sides_of};
+use crate::scene::coplanar::Overlap;
 use crate::scene::{Primitive, description::Sides};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -27,13 +31,16 @@ pub(super) struct CoverTest {
     caster: BruteForce,
     primitives: Vec<(Primitive, Sides)>,
     pub(super) near: Near,
+    /// (side, primitive that coincides with it and lies in front), ascending; side 2i is the front of i, 2i + 1 its back.
+    in_front: Vec<(u32, u32)>,
     /// Some surface has a black back, so that rays can meet one.
     one_sided: bool,
     directions: Vec<DVec3>,
 }
 
 impl CoverTest {
-    pub(super) fn new(caster: BruteForce, primitives: Vec<(Primitive, Sides)>) -> Self {
+    pub(super) fn new(primitives: Vec<(Primitive, Sides)>, overlaps: &[Overlap]) -> Self {
+        let caster = BruteForce::of(primitives.iter().copied());
         let turn = |i: usize, z: f64| {
             // golden-angle spiral
             let phi = TAU * 0.618_033_988_749_894_9 * i as f64;
@@ -43,23 +50,39 @@ impl CoverTest {
         let directions = (0..32).map(|i| turn(i, if i < 16 { (i as f64 + 0.5) / 16.0 } else { 1e-3 })).collect();
         let near = Near::new(primitives.iter().map(|p| &p.0));
         let one_sided = primitives.iter().any(|p| p.1 == Sides::Front);
-        Self { caster, primitives, near, one_sided, directions }
+        let in_front = in_front(&primitives, overlaps);
+        Self { caster, primitives, near, in_front, one_sided, directions }
+    }
+
+    /// What coincides with one side of a primitive and lies in front of it.
+    fn over(&self, primitive: usize, normal: DVec3, position: DVec3) -> impl Iterator<Item = usize> {
+        let front = outward(&self.primitives[primitive].0, position).dot(normal) > 0.0;
+        let side = 2 * primitive as u32 + u32::from(!front);
+        let first = self.in_front.partition_point(|o| o.0 < side);
+        self.in_front[first..].iter().take_while(move |o| o.0 == side).map(|o| o.1 as usize)
     }
 
     pub(super) fn is_covered(&self, primitive: usize, at: SurfacePoint) -> bool {
-        let mut doubled = false;
-        self.near.within([at.position; 2], |i| {
-            doubled = i < primitive && coincides(&self.primitives[i], at);
-            !doubled
-        });
-        if doubled || !self.one_sided {
-            return doubled;
+        let mut over = self.over(primitive, at.normal, at.position);
+        if over.any(|i| holds(&self.primitives[i].0, at.position)) {
+            return true;
+        }
+        if !self.one_sided {
+            return false;
         }
         let (u, v) = at.normal.any_orthonormal_pair();
         self.directions
             .iter()
             .map(|d| self.near.first_hit(&self.caster, at, d.x * u + d.y * v + d.z * at.normal))
             .all(|hit| hit.is_some_and(|hit| !hit.reflects))
+    }
+
+    /// Whether two primitives coincide, one of them in front of the other.
+    pub(super) fn coincide(&self, a: usize, b: usize) -> bool {
+        let any = |own: usize, other: usize| {
+            [0, 1].iter().any(|s| self.in_front.binary_search(&(2 * own as u32 + s, other as u32)).is_ok())
+        };
+        any(a, b) || any(b, a)
     }
 
     /// The share of an m×m grid of points of `polygon` that is free; `lift` maps them to the true surface.
@@ -92,27 +115,58 @@ impl CoverTest {
     }
 }
 
-/// The point lies on a reflecting side of a flat primitive that faces the same way.
-fn coincides(&(primitive, sides): &(Primitive, Sides), at: SurfacePoint) -> bool {
+/// For every side, what lies in front of it.
+fn in_front(primitives: &[(Primitive, Sides)], overlaps: &[Overlap]) -> Vec<(u32, u32)> {
+    let mut all = vec![];
+    for o in overlaps {
+        for from_front in [true, false] {
+            let sides = o.sides(from_front);
+            let lower = || sides_of(primitives[o.pair[0]].1).contains(&sides[0]).then_some(0);
+            if let Some(seen) = o.nearer(from_front).or_else(lower) {
+                let hidden = 1 - seen;
+                all.push((2 * o.pair[hidden] as u32 + sides[hidden] as u32, o.pair[seen] as u32));
+            }
+        }
+    }
+    all.sort_unstable();
+    all
+}
+
+/// Normal of the front at a point of a primitive, of any length.
+fn outward(primitive: &Primitive, at: DVec3) -> DVec3 {
+    match *primitive {
+        Primitive::Triangle([a, b, c]) => (b - a).cross(c - a),
+        Primitive::Parallelogram { edge_u, edge_v, .. } => edge_u.cross(edge_v),
+        Primitive::Disk { normal, .. } => normal,
+        Primitive::Sphere { center, inward, .. } => {
+            if inward {
+                center - at
+            } else {
+                at - center
+            }
+        }
+    }
+}
+
+/// Whether a point of a surface that coincides with a primitive lies on it, too.
+fn holds(primitive: &Primitive, at: DVec3) -> bool {
     let inside = |origin: DVec3, e: DVec3, f: DVec3, triangle: bool| {
         let n = e.cross(f);
-        let p = at.position - origin;
+        let p = at - origin;
         let k = 1.0 / n.length_squared();
         let (u, v) = (p.cross(f).dot(n) * k, e.cross(p).dot(n) * k);
-        let size = e.length().max(f.length());
-        let flush = n.dot(p).abs() <= 1e-9 * size * n.length();
-        let within = u >= 0.0 && v >= 0.0 && if triangle { u + v <= 1.0 } else { u <= 1.0 && v <= 1.0 };
-        (n, flush && within)
+        u >= 0.0 && v >= 0.0 && if triangle { u + v <= 1.0 } else { u <= 1.0 && v <= 1.0 }
     };
-    let (n, inside) = match primitive {
+    match *primitive {
         Primitive::Triangle([a, b, c]) => inside(a, b - a, c - a, true),
         Primitive::Parallelogram { origin, edge_u, edge_v } => inside(origin, edge_u, edge_v, false),
         Primitive::Disk { center, normal, radius } => {
-            let p = at.position - center;
-            (normal, normal.dot(p).abs() <= 1e-9 * radius && p.length() <= radius)
+            let p = at - center;
+            (p - normal * normal.dot(p)).length() <= radius
         }
-        Primitive::Sphere { .. } => return false,
-    };
-    let cosine = n.dot(at.normal) / n.length();
-    inside && (cosine > 1.0 - 1e-9 || (sides == Sides::Both && cosine < -1.0 + 1e-9))
+        Primitive::Sphere { center, radius, z, .. } => {
+            let h = (at - center).z / radius;
+            h >= z[0] && h <= z[1]
+        }
+    }
 }

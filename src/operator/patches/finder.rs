@@ -236,7 +236,7 @@ mod tests {
     fn the_table_changes_no_answer() {
         // a skew quadrilateral, cut by a line that is parallel to nothing, in uneven parts
         let v = DVec3::new;
-        let mut tree = Tree::new(vec![v(0.0, 0.0, 1.0), v(2.0, 0.1, 1.0), v(1.7, 1.3, 1.0), v(0.2, 1.0, 1.0)]);
+        let mut tree = Tree::new(vec![v(0.0, 0.0, 1.0), v(2.0, 0.1, 1.0), v(1.7, 1.3, 1.0), v(0.2, 1.0, 1.0)], 0.0);
         assert!(tree.cut(DVec3::Z, [v(0.3, 0.1, 1.0), v(1.5, 1.1, 1.0)]));
         for cell in tree.cells().map(|c| c.0).collect::<Vec<_>>() {
             tree.bisect(cell, 700 + cell);

@@ -25,10 +25,10 @@ mod grading;
 mod locate;
 mod near;
 mod patch;
-pub mod polygon;
 mod segments;
 mod tree;
 
+pub use crate::math::polygon;
 use crate::scene::{Description, Primitive, SceneError, description::Sides};
 pub use brute_force::{BruteForce, Hit};
 use choose::Search;
@@ -106,7 +106,8 @@ impl Patches {
         }
         let crate::scene::centre::Centred { scene, origin, .. } = scene.centred();
         let scene = &scene;
-        let listed = scene.primitives();
+        let surfaces = scene.surfaces();
+        let listed = &surfaces.list;
         if listed.is_empty() {
             return Err(SceneError::new("the scene has no surface").help("add a shape"));
         }
@@ -114,7 +115,7 @@ impl Patches {
             let e = SceneError::new("a radiosity matrix holds light from surfaces only").key("lights");
             return Err(e.help("leave the radiosity world out"));
         }
-        for &(s, p) in &listed {
+        for &(s, p) in listed {
             let shape = &scene.shapes[s];
             if shape.material >= scene.materials.len() {
                 return Err(SceneError::new(format!("material {} does not exist", shape.material)).key(&shape.name));
@@ -131,10 +132,10 @@ impl Patches {
         }
         let sides = |s: usize| scene.materials[scene.shapes[s].material].sides;
         let primitives: Vec<(Primitive, Sides)> = listed.iter().map(|&(s, p)| (p, sides(s))).collect();
-        let cover = CoverTest::new(BruteForce::new(scene), primitives.clone());
+        let cover = CoverTest::new(primitives.clone(), &surfaces.overlaps);
 
         // cut, classify, and only then divide: covered regions take no patches
-        let regions = choose::regions(&primitives, &cover, grading);
+        let regions = choose::regions(&primitives, &cover, grading, 2.0 * surfaces.moved);
         let a = choose::cell_area(&regions, n);
 
         let mut patches = Self {
@@ -247,7 +248,7 @@ impl Patches {
         self.covered_area
     }
 
-    /// The primitives the patches lie on, in the order of [`Description::primitives`].
+    /// The primitives the patches lie on, those of [`Description::surfaces`].
     pub fn primitives(&self) -> &[Primitive] {
         &self.primitives
     }

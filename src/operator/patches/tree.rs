@@ -23,15 +23,23 @@ pub(super) struct Tree {
     nodes: Vec<Node>,
     /// Size of the primitive, metres: the unit of all tolerances.
     size: f64,
+    /// Lengths below this count as zero, metres.
+    tiny: f64,
 }
 
-/// Lengths below this share of the primitive's size count as zero.
+/// Lengths below this share of the primitive's size count as zero, whatever else does.
 const TINY: f64 = 1e-9;
 
 impl Tree {
-    pub(super) fn new(polygon: Vec<DVec3>) -> Self {
+    /// One cell; lengths below `tiny` will count as zero.
+    pub(super) fn new(polygon: Vec<DVec3>, tiny: f64) -> Self {
         let size = polygon.iter().map(|p| p.distance(polygon[0])).fold(0.0, f64::max);
-        Self { nodes: vec![Node::Cell(polygon.into())], size }
+        Self { nodes: vec![Node::Cell(polygon.into())], size, tiny: tiny.max(TINY * size) }
+    }
+
+    /// Lengths below this count as zero, metres.
+    pub(super) fn tiny(&self) -> f64 {
+        self.tiny
     }
 
     /// Numbers of the nodes that are cells, and their outlines.
@@ -73,16 +81,13 @@ impl Tree {
     /// Splits every cell that the segment really crosses along the line of the segment. Returns whether any was.
     pub(super) fn cut(&mut self, normal: DVec3, [a, b]: [DVec3; 2]) -> bool {
         let along = b - a;
-        if along.length() <= TINY * self.size {
+        if along.length() <= self.tiny {
             return false;
         }
         let axis = normal.cross(along).normalize();
         let offset = axis.dot(a);
-        let crossed: Vec<usize> = self
-            .cells()
-            .filter(|(_, p)| crosses(p, normal, a, b, axis, offset, TINY * self.size))
-            .map(|c| c.0)
-            .collect();
+        let crossed: Vec<usize> =
+            self.cells().filter(|(_, p)| crosses(p, normal, a, b, axis, offset, self.tiny)).map(|c| c.0).collect();
         for &cell in &crossed {
             self.split(cell, axis, offset);
         }
@@ -148,13 +153,13 @@ fn crosses(p: &[DVec3], normal: DVec3, a: DVec3, b: DVec3, axis: DVec3, offset: 
     (to - from) * a.distance(b) > tiny
 }
 
-/// The segments in which the convex polygon `q` meets the plane of `p`, if it comes near `p` at all.
-pub(super) fn meeting(p: &[DVec3], normal: DVec3, q: &[DVec3]) -> Vec<[DVec3; 2]> {
-    let size = p.iter().map(|x| x.distance(p[0])).fold(0.0, f64::max);
+/// The segments in which the convex polygon `q` meets the plane of `p`, if it comes near `p` at all. Heights up to `tiny` count
+/// as zero.
+pub(super) fn meeting(p: &[DVec3], normal: DVec3, q: &[DVec3], tiny: f64) -> Vec<[DVec3; 2]> {
     let offset = normal.dot(p[0]);
     let height = |x: DVec3| {
         let s = normal.dot(x) - offset;
-        if s.abs() <= TINY * size { 0.0 } else { s }
+        if s.abs() <= tiny { 0.0 } else { s }
     };
     let edges = || q.iter().enumerate().map(|(i, &a)| [a, q[(i + 1) % q.len()]]);
     if q.iter().all(|&x| height(x) == 0.0) {
@@ -194,7 +199,7 @@ mod tests {
     #[test]
     fn a_square_bisects_into_the_regular_grid() {
         for m in [1, 2, 4, 8] {
-            let mut tree = Tree::new(square());
+            let mut tree = Tree::new(square(), 0.0);
             tree.bisect(0, m * m);
             let mut seen = vec![false; m * m];
             for (i, p) in tree.cells() {
@@ -211,7 +216,7 @@ mod tests {
     #[test]
     fn only_crossed_cells_are_cut_and_boundary_segments_cut_nothing() {
         let v = |x: f64, y: f64| DVec3::new(x, y, 0.0);
-        let mut tree = Tree::new(square());
+        let mut tree = Tree::new(square(), 0.0);
         assert!(!tree.cut(DVec3::Z, [v(0.0, 0.0), v(1.0, 0.0)]));
         assert!(!tree.cut(DVec3::Z, [v(-1.0, 0.5), v(0.0, 0.5)]));
         // an inner square: four cuts, each through one remaining outer region, leave 5 cells

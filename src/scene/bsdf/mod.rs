@@ -228,7 +228,7 @@ impl Bsdf {
     }
 
     /// Whether f reaches the other side without a delta.
-    fn transmits(&self) -> bool {
+    pub(crate) fn transmits(&self) -> bool {
         matches!(self, Self::RoughDielectric(_))
     }
 }

@@ -16,7 +16,7 @@ pub mod cone;
 pub mod environment;
 mod mirror_ball;
 
-use super::description::{Description, Geometry, LightDescription};
+use super::description::{Description, LightDescription};
 use super::primitive::Primitive;
 use crate::math::{Rgb, luminance};
 use environment::Environment;
@@ -89,9 +89,9 @@ impl Lights {
                 up_to += prims[i as usize].1.area() / area;
                 up_to as f32
             });
-            let light = match shape.geometry {
-                Geometry::Sphere { center, radius, z: [-1.0, 1.0], inward: false } => {
-                    Light::Ball { prim: mine[0], center, radius }
+            let light = match mine.first().map(|&i| (i, prims[i as usize].1)) {
+                Some((prim, Primitive::Sphere { center, radius, z: [-1.0, 1.0], inward: false })) => {
+                    Light::Ball { prim, center, radius }
                 }
                 _ => Light::Surface { cdf: cdf.collect(), prims: mine },
             };

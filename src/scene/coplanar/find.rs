@@ -1,0 +1,218 @@
+//! Which primitives coincide: neighbours from a tree of boxes, each pair decided in `f64`.
+//!
+//! ```text
+//! parallel    |n·m| ≥ 0.99                     the heights below are the sharper test
+//! one plane   |h| ≤ γ at every corner of one of the two, over the plane of the other
+//! overlap     no edge of either leaves the other outside, or inside by less than 2γ    (separating axes)
+//! ```
+//!
+//! Edges that touch overlap by rounding only, and a plane is known no better than γ: hence 2γ. Two convex polygons are apart
+//! if and only if an edge of one of them separates them. Reference: Ericson, *Real-Time Collision Detection* (2005), 5.2.1.
+
+use super::{Overlap, Scale};
+use crate::scene::primitive::Primitive;
+use glam::DVec3;
+use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2};
+use rayon::prelude::*;
+
+/// Cosine from which on two normals are compared at all.
+const PARALLEL: f64 = 0.99;
+
+/// A primitive relative to the centre of the scene.
+enum Sheet {
+    /// Corners counter-clockwise seen from the front; three of four are used of a triangle.
+    Polygon {
+        n: DVec3,
+        corners: [DVec3; 4],
+        count: usize,
+    },
+    Disk {
+        n: DVec3,
+        center: DVec3,
+        radius: f64,
+    },
+    Sphere {
+        center: DVec3,
+        radius: f64,
+        z: [f64; 2],
+        inward: bool,
+    },
+}
+
+/// All pairs that coincide, in ascending order.
+pub(super) fn overlaps(list: &[(usize, Primitive)], scale: &Scale) -> Vec<Overlap> {
+    let sheets: Vec<Sheet> = list.iter().map(|(_, p)| Sheet::new(p, scale.center)).collect();
+    let margin = DVec3::splat(2.0 * scale.largest_gap());
+    let boxes: Vec<Aabb> = list
+        .iter()
+        .map(|(_, p)| {
+            let [lo, hi] = p.bounds().map(|x| x - scale.center);
+            Aabb::new((lo - margin).as_vec3().into(), (hi + margin).as_vec3().into())
+        })
+        .collect();
+    let params = BvhBuildParams::fast_build();
+    let tree = obvhs::bvh2::builder::build_bvh2(&boxes, params, &mut std::time::Duration::default());
+    let of = |i: usize| {
+        let mut found = vec![];
+        near(&tree, boxes[i], |j| {
+            found.extend((j > i).then(|| meeting(&sheets, [i, j], scale)).flatten());
+        });
+        found.sort_unstable_by_key(|o: &Overlap| o.pair);
+        found
+    };
+    (0..list.len()).into_par_iter().with_min_len(256).flat_map_iter(of).collect()
+}
+
+/// Calls `see` with everything whose box meets this one.
+fn near(tree: &Bvh2, own: Aabb, mut see: impl FnMut(usize)) {
+    tree.aabb_traverse(own, |tree, node| {
+        let node = &tree.nodes[node as usize];
+        let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
+        tree.primitive_indices[leaf].iter().for_each(|i| see(*i as usize));
+        true
+    });
+}
+
+fn meeting(sheets: &[Sheet], pair: [usize; 2], scale: &Scale) -> Option<Overlap> {
+    let [a, b] = pair.map(|i| &sheets[i]);
+    if let (
+        Sheet::Sphere { center: c, radius: r, z, inward },
+        Sheet::Sphere { center: d, radius: s, z: w, inward: v },
+    ) = (a, b)
+    {
+        let gap = scale.largest_gap();
+        let (apart, over) = (c.distance(*d), if *inward { s - r } else { r - s });
+        let shared = z[1].min(w[1]) - z[0].max(w[0]);
+        let one = apart + over.abs() <= gap && shared * r.min(*s) > 2.0 * gap;
+        return one.then(|| Overlap { pair, same_way: inward == v, height: [over - apart, over + apart], gap });
+    }
+    let (n, m) = (a.normal()?, b.normal()?);
+    let cosine = n.dot(m);
+    if cosine.abs() < PARALLEL {
+        return None;
+    }
+    let gap = scale.gap(n).max(scale.gap(m));
+    let height = heights(a, b, gap)?;
+    if apart(a, b, 2.0 * gap) || apart(b, a, 2.0 * gap) {
+        return None;
+    }
+    Some(Overlap { pair, same_way: cosine > 0.0, height, gap })
+}
+
+/// Lowest and highest height of `a` over `b` along the normal of `a`, by the corners of one over the plane of the other;
+/// nothing where neither stays within `gap`.
+fn heights(a: &Sheet, b: &Sheet, gap: f64) -> Option<[f64; 2]> {
+    let (n, m) = (a.normal()?, b.normal()?);
+    let m = if n.dot(m) < 0.0 { -m } else { m };
+    let (p, q) = (a.anchor(), b.anchor());
+    let [lo, hi] = a.extent(m).map(|x| x - m.dot(q));
+    let by_mine = [lo, hi];
+    let [lo, hi] = b.extent(n).map(|x| n.dot(p) - x);
+    let by_theirs = [hi, lo];
+    [by_mine, by_theirs].into_iter().find(|[lo, hi]| *lo >= -gap && *hi <= gap)
+}
+
+/// Whether an edge of `a` has all of `b` outside, or less than `least` of it inside. Of a disk every tangent is an edge; the
+/// one that matters lies towards `b`.
+fn apart(a: &Sheet, b: &Sheet, least: f64) -> bool {
+    match (a, b) {
+        (Sheet::Polygon { n, corners, count }, _) => (0..*count).any(|i| {
+            let (p, q) = (corners[i], corners[(i + 1) % count]);
+            let inward = n.cross(q - p).normalize();
+            b.extent(inward)[1] - inward.dot(p) <= least
+        }),
+        (Sheet::Disk { n, center, radius }, _) => {
+            let to = b.nearest(*center, *n) - *center;
+            radius - (to - *n * n.dot(to)).length() <= least
+        }
+        (Sheet::Sphere { .. }, _) => true,
+    }
+}
+
+impl Sheet {
+    fn new(p: &Primitive, origin: DVec3) -> Self {
+        match *p {
+            Primitive::Triangle(p) => {
+                let [a, b, c] = p.map(|p| p - origin);
+                Self::Polygon { n: (b - a).cross(c - a).normalize(), corners: [a, b, c, c], count: 3 }
+            }
+            Primitive::Parallelogram { origin: o, edge_u: u, edge_v: v } => {
+                let o = o - origin;
+                Self::Polygon { n: u.cross(v).normalize(), corners: [o, o + u, o + u + v, o + v], count: 4 }
+            }
+            Primitive::Disk { center, normal, radius } => Self::Disk { n: normal, center: center - origin, radius },
+            Primitive::Sphere { center, radius, z, inward } => {
+                Self::Sphere { center: center - origin, radius, z, inward }
+            }
+        }
+    }
+
+    /// Unit normal of a flat front.
+    fn normal(&self) -> Option<DVec3> {
+        match *self {
+            Self::Polygon { n, .. } | Self::Disk { n, .. } => Some(n),
+            Self::Sphere { .. } => None,
+        }
+    }
+
+    /// A point of the plane.
+    fn anchor(&self) -> DVec3 {
+        match self {
+            Self::Polygon { corners, .. } => corners[0],
+            Self::Disk { center, .. } | Self::Sphere { center, .. } => *center,
+        }
+    }
+
+    /// Lowest and highest value of `axis·x`.
+    fn extent(&self, axis: DVec3) -> [f64; 2] {
+        match self {
+            Self::Polygon { corners, count, .. } => crate::math::polygon::extent(&corners[..*count], axis),
+            Self::Disk { n, center, radius } => {
+                let (middle, reach) = (axis.dot(*center), radius * (axis - *n * n.dot(axis)).length());
+                [middle - reach, middle + reach]
+            }
+            Self::Sphere { center, radius, .. } => [axis.dot(*center) - radius, axis.dot(*center) + radius],
+        }
+    }
+
+    /// The point nearest to `p`, which lies in the plane with normal `n`.
+    fn nearest(&self, p: DVec3, n: DVec3) -> DVec3 {
+        match self {
+            Self::Polygon { corners, count, n: own } => {
+                let edges = || (0..*count).map(|i| [corners[i], corners[(i + 1) % count]]);
+                if edges().all(|[a, b]| own.cross(b - a).dot(p - a) >= 0.0) {
+                    return p;
+                }
+                let on = edges().map(|[a, b]| {
+                    let t = (p - a).dot(b - a) / (b - a).length_squared();
+                    a + (b - a) * t.clamp(0.0, 1.0)
+                });
+                on.min_by(|a, b| a.distance_squared(p).total_cmp(&b.distance_squared(p))).unwrap_or(p)
+            }
+            Self::Disk { center, radius, .. } | Self::Sphere { center, radius, .. } => {
+                let to = p - *center;
+                let to = to - n * n.dot(to);
+                if to.length() <= *radius { p } else { *center + to * (radius / to.length()) }
+            }
+        }
+    }
+}
+
+/// Corners of a polygon inscribed in a disk.
+const FACETS: usize = 32;
+
+/// Outline and unit normal of a flat primitive; of a disk, an inscribed polygon.
+pub(super) fn outline(p: &Primitive) -> Option<(Vec<DVec3>, DVec3)> {
+    match (*p, Sheet::new(p, DVec3::ZERO)) {
+        (Primitive::Disk { center, normal, radius }, _) => {
+            let (u, v) = normal.any_orthonormal_pair();
+            let corner = |i: usize| {
+                let (s, c) = (std::f64::consts::TAU * i as f64 / FACETS as f64).sin_cos();
+                center + radius * (c * u + s * v)
+            };
+            Some(((0..FACETS).map(corner).collect(), normal))
+        }
+        (_, Sheet::Polygon { n, corners, count }) => Some((corners[..count].to_vec(), n)),
+        _ => None,
+    }
+}
