@@ -56,6 +56,7 @@ fn simulated(rng: &mut Noise, design: Design, truth: impl Fn(usize, usize) -> f6
         cost: Cost::default(),
         unseen: vec![],
         by_luck: vec![],
+        variance: Default::default(),
     }
 }
 

@@ -37,6 +37,7 @@ fn series(cv: f64) -> Series {
         cost: Cost::default(),
         unseen: vec![],
         by_luck: vec![],
+        variance: Default::default(),
     }
 }
 

@@ -11,7 +11,7 @@ use crate::estimator::{PathTracer, Plan};
 use crate::operator::SceneTransport;
 use crate::scene::Scene;
 use crate::terms::functional::functionals;
-use crate::terms::{Cost, Estimate, Functional, Series, World};
+use crate::terms::{Cost, Estimate, Functional, Series, Variance, World};
 use std::sync::atomic::AtomicBool;
 
 /// One way of rendering.
@@ -90,6 +90,7 @@ impl Side {
             cost: Cost::default(),
             unseen,
             by_luck: by_luck(scene, self.estimator),
+            variance: Variance::Finite,
         }
     }
 }

@@ -259,6 +259,7 @@ fn cut(functionals: Vec<Functional>, gap: Option<&(usize, String)>) -> Vec<Funct
         cost: fredholm::terms::Cost::default(),
         unseen: vec![],
         by_luck: vec![],
+        variance: Default::default(),
     };
     series.before(*from).functionals
 }
