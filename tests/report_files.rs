@@ -345,6 +345,7 @@ fn full_summary() -> Summary {
         unseen: vec![],
         by_luck: vec![],
         undecided: None,
+        variance: Default::default(),
     };
     let verdict = Verdict {
         name: "T1: terms − radiosity".into(),
@@ -368,6 +369,7 @@ fn full_summary() -> Summary {
             spectral_radius: DVec3::splat(0.58),
             spectral_radius_limit: DVec3::splat(0.59),
             spectral_radius_limit_error: DVec3::NAN,
+            unlit_sides: 0,
             norms: vec![],
             discretisation: DVec3::NAN,
         }),

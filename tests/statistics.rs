@@ -57,6 +57,7 @@ fn simulated(rng: &mut Noise, design: Design, truth: impl Fn(usize, usize) -> f6
         unseen: vec![],
         by_luck: vec![],
         undecided: None,
+        variance: Default::default(),
     }
 }
 

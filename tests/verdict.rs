@@ -38,6 +38,7 @@ fn series(cv: f64) -> Series {
         unseen: vec![],
         by_luck: vec![],
         undecided: None,
+        variance: Default::default(),
     }
 }
 

@@ -1,13 +1,16 @@
 //! What a run says beside its tables: the judgement, facts about the matrix and the decay, warnings.
 
 use super::solve::Found;
+use fredholm::estimator::Roulette;
 use fredholm::operator::guided::warp::CELLS;
 use fredholm::report::extrapolation::{self, Measured};
 use fredholm::report::{refine::limit_words, summary};
+use fredholm::scene::{Description, bsdf};
 use fredholm::stats::{self, Comparison, TermMeans, observed_rate};
 use fredholm::terms::Series;
 use fredholm::terms::functional::Replicates;
-use fredholm::worlds::discrete::Discrete;
+use fredholm::worlds::discrete::{Discrete, Unlit};
+use fredholm::worlds::growth;
 use fredholm::worlds::guided::Prepared;
 use fredholm::worlds::radius::radius_limit;
 use fredholm::worlds::realisation::{Difference, Sampling};
@@ -156,7 +159,9 @@ pub fn decay_facts(found: &Found) -> Vec<String> {
 pub fn extrapolated(found: &Found) -> Option<String> {
     let last = found.settings.max_bounces / 2 + 1;
     // two terms are too few for what is shown, and without a tail there is no whole
-    if last < 3 || found.surface.is_empty() || !found.settings.roulette.ends() {
+    // and where the tail has no error bar, nothing is known of how far off anything is
+    let doubted = found.terms.iter().any(|t| t.series.variance != fredholm::terms::Variance::Finite);
+    if last < 3 || found.surface.is_empty() || doubted || !found.settings.roulette.ends() {
         return None;
     }
     let radii = found.radiosity.as_ref().map(|r| r.matrix.spectral.each_ref().map(|s| s.radius));
@@ -236,11 +241,66 @@ pub fn warnings(found: &Found) -> Vec<String> {
             r.matrix.invariants.row_sum_max
         ));
     }
-    if let Some(what) = found.radii.and_then(|r| r.warning()) {
-        out.push(format!(
-            "the path tracer under roulette {} {what};\n--roulette albedo or optimal is safe",
-            found.settings.path_roulette
-        ));
+    out.extend(variances(found));
+    out
+}
+
+/// What has no error bar because its variance is infinite or not known, and what would have one.
+fn variances(found: &Found) -> Vec<String> {
+    let s = &found.settings;
+    let safe = if found.guide.is_some() {
+        "leave --guide out"
+    } else if growth::proved(&found.scene, s.sampling, &Roulette::Albedo { from: 0 }) {
+        "--roulette albedo is safe"
+    } else if s.sampling == bsdf::Sampling::Uniform {
+        "leave --sampling uniform out"
+    } else {
+        "try --roulette albedo"
+    };
+    let terms = found.terms.iter().map(|t| ("the tail of the terms", &s.roulette, t));
+    let path = found.path.iter().map(|p| ("the path tracer", &s.path_roulette, p));
+    let mut out: Vec<String> = vec![];
+    for (who, roulette, result) in terms.chain(path) {
+        if let Some(what) = result.doubt.and_then(|d| d.doubt()) {
+            let words = format!("{who} under roulette {roulette} {what},\nand no ± stands beside it; {safe}");
+            out.extend((!out.contains(&words)).then_some(words));
+        }
+    }
+    // the matrix, or a bound, speaks where nothing was measured: of what it proves, and of the error of an error bar
+    if let (Some(r), true) = (found.radii, found.path.as_ref().is_some_and(|p| p.doubt.is_none())) {
+        let proved = !r.bounds || r.second < 1.0;
+        out.extend(
+            r.warning()
+                .filter(|_| proved)
+                .map(|what| format!("the path tracer under roulette {} {what};\n{safe}", s.path_roulette)),
+        );
     }
     out
 }
+
+/// Sides that light never reaches, in words, by shape; nothing if there are none.
+pub fn unlit(found: &[Unlit], description: &Description) -> Option<String> {
+    let owner: Vec<usize> = description.primitives().iter().map(|(shape, _)| *shape).collect();
+    let mut shapes: Vec<(String, [bool; 3], usize)> = vec![];
+    for side in found {
+        let name = &description.shapes[owner[side.primitive]].name;
+        match shapes.iter_mut().find(|(n, c, _)| n == name && *c == side.channels) {
+            Some(known) => known.2 += 1,
+            None => shapes.push((name.clone(), side.channels, 1)),
+        }
+    }
+    let words = |(name, channels, n): &(String, [bool; 3], usize)| {
+        let colours: Vec<&str> = (0..3).filter(|&c| channels[c]).map(|c| ["red", "green", "blue"][c]).collect();
+        let of = if colours.len() == 3 { String::new() } else { format!(" (no {})", colours.join(", ")) };
+        format!("{name}: {n}{of}")
+    };
+    let sides = found.len();
+    let list: Vec<String> = shapes.iter().take(SHAPES).map(words).collect();
+    let more = if shapes.len() > SHAPES { format!(", … {} shapes in all", shapes.len()) } else { String::new() };
+    let (s, are) = if sides == 1 { ("", "is") } else { ("s", "are") };
+    (sides > 0)
+        .then(|| format!("{sides} side{s} {are} never reached by light and left out of T: {}{more}", list.join(", ")))
+}
+
+/// Shapes that are listed by name.
+const SHAPES: usize = 6;

@@ -9,6 +9,7 @@ use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::Settings;
+use fredholm::worlds::resort::with_last_resort;
 use fredholm::worlds::stages::{KAJIYA, NOISE, Recipe, reference_seed, render_stages};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -209,7 +210,7 @@ fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Endin
     let [w, h] = args.size.unwrap_or(recipe.size);
     let loaded =
         load::scene(recipe.scene, &Options { set: vec![format!("camera.size=[{w},{h}]")], ..Options::default() })?;
-    let (description, scene) = (&loaded.description, Scene::new(&loaded.description));
+    let (description, scene) = (&loaded.description, with_last_resort(Scene::new(&loaded.description)));
     let max_bounces = 8;
     let end = Roulette::Albedo { from: 2 };
     let settings = Settings {

@@ -2,14 +2,13 @@
 
 use super::Failure;
 use super::args::{FactorsName, Run, WorldName};
-use fredholm::estimator::Technique;
-use fredholm::math::{Key, Purpose, Rng};
-use fredholm::operator::{SceneTransport, Transport};
-use fredholm::scene::{Description, Scene, SurfaceSensor, bsdf::Sampling};
+use fredholm::estimator::{Roulette, Technique};
+use fredholm::scene::{Description, Scene, bsdf::Sampling};
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::MatrixError;
+use fredholm::worlds::length::{Length, length};
 use fredholm::worlds::realisation::Factors;
-use fredholm::worlds::{sampled::Estimator, unseen::unseen};
+use fredholm::worlds::{sampled::Estimator, trap::trapped, unseen::unseen};
 
 /// The sums of all terms, pixels and replicates are held at once: better refused now than killed later.
 pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
@@ -218,37 +217,47 @@ fn available(meminfo: &str) -> Option<u64> {
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|k| 1024 * k)
 }
 
-/// Refuses a scene in which a channel keeps all its light, if anything longer than K is asked for: `L = E + T L` has no
-/// solution, and paths that only absorption ends would never end.
+/// Refuses a scene in which light never gets out, if anything longer than K is asked for: `L = E + T L` has no solution, and paths
+/// that only absorption ends would never end. Says what long paths cost.
 pub fn light_is_lost(scene: &Scene, settings: &Settings, worlds: &[WorldName]) -> Result<(), Failure> {
     let has = |world| worlds.contains(&world);
-    let asked = has(WorldName::Radiosity)
-        || has(WorldName::Terms) && settings.roulette.ends()
-        || has(WorldName::Path) && settings.path_roulette.ends();
-    let bound = scene.max_albedo().max_element();
-    if asked && bound >= 1.0 && (0..WALKS).any(|walk| never_ends(scene, walk)) {
+    let walked = [
+        (has(WorldName::Terms) && settings.roulette.ends(), &settings.roulette),
+        (has(WorldName::Path) && settings.path_roulette.ends(), &settings.path_roulette),
+    ];
+    let walked: Vec<&Roulette> = walked.into_iter().filter(|w| w.0).map(|w| w.1).collect();
+    if !(has(WorldName::Radiosity) || !walked.is_empty()) {
+        return Ok(());
+    }
+    if trapped(scene).is_some() {
         return Err(MatrixError::Singular.into());
+    }
+    if let Some((vertex, q)) = scene.last_resort().filter(|_| walked.iter().any(|r| r.fixed(usize::MAX).is_none())) {
+        super::note(&format!(
+            "note: an albedo is 1, or only known to be at most 1: from vertex {vertex} on paths end with q ≥ {q}\n\
+             (second moments of light lose more than {:.2} at a vertex, so that the variance stays finite)",
+            4.0 * q
+        ));
+    }
+    // only a bound near 1 makes paths long
+    if let (Some(roulette), true) = (walked.last(), scene.max_albedo().max_element() > LONG) {
+        let Length { rays, seconds } = length(scene, roulette, settings);
+        if rays > MANY {
+            let [w, h] = scene.camera.size.map(f64::from);
+            let paths = w * h * f64::from(settings.spp) * walked.len() as f64;
+            let each = seconds / rayon::current_num_threads() as f64;
+            let time = if settings.time.is_some() {
+                String::new()
+            } else {
+                format!("; {} paths take about {:.0} s", fredholm::report::table::count(paths as u64), paths * each)
+            };
+            super::note(&format!("note: paths are long, {} rays each in the mean{time}", rays.round()));
+        }
     }
     Ok(())
 }
 
-/// Walks, and bounces of each: an opening of 0.1 % of the surface lets one of 5·10⁸ walks pass for closed.
-const WALKS: u32 = 16;
-const BOUNCES: usize = 20_000;
-
-/// Whether in some channel a walk still has all its light after many bounces.
-fn never_ends(scene: &Scene, walk: u32) -> bool {
-    let t = SceneTransport::new(scene);
-    let stream = |bounce| Rng::at(Key::new(0, "closed"), walk, 0, bounce, Purpose::Scatter);
-    let mut at = SurfaceSensor::new(scene).vertex(scene, &mut stream(0));
-    let mut keeps = [true; 3];
-    for bounce in 1..=BOUNCES {
-        let albedo = t.albedo(&at).to_array();
-        keeps = std::array::from_fn(|c| keeps[c] && albedo[c] >= 1.0);
-        match t.scatter(&at, &mut stream(bounce)) {
-            Some(step) if keeps != [false; 3] => at = step.state,
-            _ => return false,
-        }
-    }
-    true
-}
+/// Below this albedo nobody has to be told how long paths are.
+const LONG: f32 = 0.99;
+/// Rays of a path that are many.
+const MANY: f64 = 200.0;

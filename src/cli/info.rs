@@ -109,6 +109,15 @@ fn people(d: &Description, scene: &Scene) -> String {
     if scene.has_environment() {
         out += "  T is not closed: a ray that leaves the scene meets the sky, and the light it brings is E\n";
     }
+    if let Some(matrix) = super::solve::coarse(d, scene)
+        && let Some(what) = super::facts::unlit(&matrix.unlit, d)
+    {
+        let radius = matrix.spectral.each_ref().map(|s| format!("{:.3}", s.radius)).join(", ");
+        out += &format!(
+            "  {what};\n  r(T) of what light reaches, on {} patches: ({radius})\n",
+            matrix.radiosity.patches.len()
+        );
+    }
     let g = f64::from(rho.max_element());
     if scene.has_environment() || scene.lights.any_delta() {
         out += "  E is not all on surfaces: bounds of ‖L − S_K‖₁ start from ‖T E‖₁, and need ‖T‖₁ < 1\n";

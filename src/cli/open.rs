@@ -5,6 +5,7 @@ use clap::Args;
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
 use fredholm::worlds::coplanar;
+use fredholm::worlds::resort::with_last_resort;
 use std::path::PathBuf;
 
 /// What changes a scene.
@@ -91,7 +92,7 @@ pub fn threads(n: Option<u16>) -> Result<(), Failure> {
 pub fn scene(name: &str, changes: &Changes, size: Option<[u32; 2]>) -> Result<Opened, Failure> {
     let loaded = load::scene(name, &changes.options(size))?;
     loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-    let scene = Scene::new(&loaded.description);
+    let scene = with_last_resort(Scene::new(&loaded.description));
     coplanar(&scene);
     let hash = solve::scene_hash(&loaded.canonical);
     Ok(Opened { command: output::canonical_command(), description: loaded.description, scene, hash })

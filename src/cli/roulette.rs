@@ -13,6 +13,7 @@ use fredholm::scene::{Description, Scene, Selection};
 use fredholm::stats::Noise;
 use fredholm::terms::cross_moments::{Recorded, Value};
 use fredholm::worlds::Settings;
+use fredholm::worlds::resort::with_last_resort;
 use fredholm::worlds::roulette::{self, Radii};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -230,7 +231,7 @@ fn scene(args: &Args) -> Result<(Description, Scene, String), Failure> {
         loaded = load(Some([w, h].map(|side| (side * SIDE / w.max(h)).max(1))))?;
     }
     loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-    let scene = Scene::new(&loaded.description).select_lights(args.lights);
+    let scene = with_last_resort(Scene::new(&loaded.description)).select_lights(args.lights);
     Ok((loaded.description, scene, solve::scene_hash(&loaded.canonical)))
 }
 

@@ -8,11 +8,12 @@ use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::math::Points;
 use fredholm::report::{summary, table};
+use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::{Description, Scene};
 use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, compare, discretisation};
 use fredholm::terms::functional::Replicates;
-use fredholm::terms::{Recorded, Series};
+use fredholm::terms::{Recorded, Series, Variance};
 use fredholm::worlds::discrete::{self, Discrete, Matrix, MatrixError};
 use fredholm::worlds::guided::{self, Prepared};
 use fredholm::worlds::pyramid::{self, Strategy};
@@ -268,6 +269,12 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         return Ok(nothing_to_save(&found));
     }
     found.radii = radii(&found);
+    // a matrix knows more than walkers that may have missed where light is trapped
+    if found.radii.and_then(|r| r.variance()) == Some(Variance::Infinite) {
+        let alike = found.settings.roulette == found.settings.path_roulette;
+        let terms = found.terms.iter_mut().filter(|_| alike);
+        found.path.iter_mut().chain(terms).for_each(|s| s.distrust(Variance::Infinite));
+    }
     found.verdicts = verdicts(&found);
     let summary = write::all(&found, default.export)?;
     if run.shared.json {
@@ -293,8 +300,15 @@ fn nothing_to_save(found: &Found) -> Ending {
 /// Whether the variance of the path tracer is finite can be known from the matrix; a coarse one will do. Where there is none,
 /// the largest albedo gives a bound.
 fn radii(found: &Found) -> Option<Radii> {
-    let Roulette::Constant { q, .. } = found.settings.path_roulette else { return None };
-    found.path.as_ref()?;
+    let q = match &found.settings.path_roulette {
+        Roulette::Constant { q, .. } => *q,
+        Roulette::Table(q) => *q.last()?,
+        _ => return None,
+    };
+    // both speak of directions drawn by the cosine, without a guide
+    if found.path.is_none() || found.guide.is_some() || found.settings.sampling == Sampling::Uniform {
+        return None;
+    }
     if let Some(matrix) = found.radiosity.as_ref().and_then(|r| r.matrix.radiosity.dense()) {
         return Some(Radii::new(Some(matrix), &found.scene, q));
     }
@@ -430,6 +444,7 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     blocks.extend(found.path.iter().map(|p| world(p, &[])));
     blocks.extend(found.radiosity.iter().map(|r| world(&r.fine, &[])));
     let mut lines: Vec<String> = found.radiosity.iter().map(|r| facts::matrix_facts(r, verbose)).collect();
+    lines.extend(found.radiosity.as_ref().and_then(|r| facts::unlit(&r.matrix.unlit, &found.description)));
     lines.extend(found.by_rays.iter().map(facts::difference));
     lines.extend(facts::decay_facts(found));
     lines.extend(facts::orders(&found.orders));

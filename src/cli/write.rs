@@ -158,6 +158,7 @@ fn radiosity_summary(r: &Discrete) -> summary::Radiosity {
         spectral_radius_limit: of(&|l| l.value),
         spectral_radius_limit_error: of(&|l| l.half_width),
         norms: summary::bounce_norms(r.matrix.radiosity.patches(), &r.matrix.terms),
+        unlit_sides: r.matrix.unlit.len(),
         discretisation: (fine.total.mean - coarse.total.mean).abs(),
     }
 }

@@ -17,7 +17,7 @@
 //! Reference: von Neumann and Ulam, after Forsythe and Leibler (1950); Spanier and Gelbard, *Monte Carlo Principles* (1969).
 
 use super::{Batch, Paths, Plan, TermEstimator, TermSink};
-use crate::math::{Purpose, Rgb, Rng};
+use crate::math::{Purpose, Rng};
 use crate::operator::{Sensor, Transport};
 
 /// The absorption estimator; the plan's technique has no part in it.
@@ -36,7 +36,7 @@ impl<T: Transport> TermEstimator<T> for Absorption {
             let rng = |v, purpose| Rng::at(batch.key, pixel, sample, v, purpose);
             sink.rays(0, 1);
             let Some(mut x) = sensor.start(t, pixel, &mut rng(0, Purpose::Start)) else { continue };
-            let mut w = Rgb::ONE;
+            let mut w = t.lit();
             for v in 0.. {
                 let here = t.absorption(&x);
                 // without roulette a path has no end at which it could score
@@ -44,7 +44,7 @@ impl<T: Transport> TermEstimator<T> for Absorption {
                     break;
                 }
                 let slot = v.min(max_bounces + 1);
-                let q = here.unwrap_or_else(|| roulette.termination(v, w, t.albedo(&x)));
+                let q = here.unwrap_or_else(|| roulette.q(t, v, w, &x, 0.0));
                 if q > 0.0 && rng(v, Purpose::Roulette).one() < q {
                     value.set(0, w * t.emission(&x) / q);
                     sink.add(slot, &[pixel], &[sample], &value);

@@ -37,7 +37,7 @@ impl LightTracer {
         let Plan { max_bounces, ref roulette, .. } = self.0;
         let numbers = |vertex: usize, purpose: Purpose| Rng::at(key, pixel, sample, vertex, purpose);
         let Some((mut y, density)) = t.emit(&mut numbers(0, Purpose::Start)) else { return };
-        let (mut through, mut relative, mut role) = (Rgb::splat(1.0 / density), Rgb::ONE, Role::Emission);
+        let (mut through, mut relative, mut role) = (Rgb::splat(1.0 / density), t.lit(), Role::Emission);
         for v in 0.. {
             // term v, seen by the eye
             let slot = v.min(max_bounces + 1);

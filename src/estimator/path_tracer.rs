@@ -32,7 +32,7 @@ impl PathTracer {
         let mut rays = 0;
         // the copies of a path that wait until it has ended
         let mut waiting = vec![];
-        let mut next = Some(Walker { vertex: 0, x: start, alpha: Rgb::ONE, key, siblings: 1, scored: false });
+        let mut next = Some(Walker { vertex: 0, x: start, alpha: t.lit(), key, siblings: 1, scored: false });
         while let Some(walker) = next {
             self.follow(t, walker, expected, [pixel, sample], &mut waiting, (&mut colour, &mut rays));
             next = waiting.pop();

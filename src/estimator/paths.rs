@@ -12,7 +12,7 @@ use super::TermSink;
 use super::branching::lineage;
 use super::roulette::Roulette;
 use super::technique::Technique;
-use crate::math::{Columns, Key, Purpose, Rgb, Streams, columns};
+use crate::math::{Columns, Key, Purpose, Streams, columns};
 use crate::operator::{Samples, Sensor, Transport, Wave};
 use std::ops::Range;
 
@@ -93,7 +93,7 @@ impl<W> Paths<W> {
         }
         let streams = streams(batch.key, &self.pixel[..self.n], &self.sample[..self.n], 0, Purpose::Start);
         sensor.start_wave(t, &mut self.state, streams, &mut self.alive);
-        self.through.fill(self.n, Rgb::ONE);
+        self.through.fill(self.n, t.lit());
         self.siblings.fill(1);
         self.compact();
         for i in 0..self.n {

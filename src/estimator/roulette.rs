@@ -6,7 +6,18 @@
 //!
 //! How large q may be is another matter: with constant survival s the variance is finite only where the spectral radius of
 //! ρ²F/s is below 1 (`q < 1 − ρ²` in a furnace), and the *measured* variance can be trusted only where the fourth moment is
-//! finite (`ρ⁴ < (1 − q)³`).
+//! finite (`ρ⁴ < (1 − q)³`). With s = ρ that operator is T itself. `worlds::growth` measures the radius where it is not known.
+//!
+//! Roulette by albedo ends no path where the albedo is 1, or is only known to be at most 1. Two rules end those, and neither makes
+//! an infinite variance out of a finite one:
+//!
+//! | rule | from vertex | why it is harmless |
+//! |---|---|---|
+//! | survive with α/τ where the throughput α is below τ = 1/16 | 128 | survivors weigh τ < 1: `E[X²] ≤ 2 max(α) Σ_k (k + 1) T^k`, finite where r(T) < 1 |
+//! | survive with 1 − 2/v | V = 16384 | weights grow like v², and `Σ_v v² r^v` is finite for every r < 1; 2V vertices in the mean |
+//!
+//! A constant q in their place needs r < 1 − q, and is used where that is known: [`Transport::last_resort`]. Channels in which nothing emits, or in which a path carries nothing any more,
+//! have no say.
 //!
 //! Reference for roulette by expected contribution: Vorba and Křivánek, *Adjoint-Driven Russian Roulette and Splitting in Light
 //! Transport Simulation* (2016).
@@ -15,9 +26,17 @@ use crate::math::Rgb;
 use crate::operator::Transport;
 use std::{fmt, str::FromStr};
 
-/// From this vertex on roulette by albedo ends every path, with at least this probability: an albedo may be a bound that is 1
-/// where light is lost, as in a hollow ball of rough metal. Earlier it would only add noise to what keeps all its light.
-const AT_LAST: (usize, f32) = (128, 1.0 / 64.0);
+/// From this vertex on paths that carry less than this are brought up to it: an albedo may be a bound that is 1 where light is
+/// lost, as in a hollow ball of rough metal.
+const FAINT: (usize, f32) = (128, 1.0 / 16.0);
+/// From this vertex V on paths survive with 1 − 2/v at most: V²/v² of them reach vertex v, 2V is their mean length.
+const LONG: usize = 16_384;
+
+/// The largest survival at vertex `v` that ends every path at last.
+#[inline(always)]
+fn at_last(v: usize) -> f32 {
+    if v < LONG { 1.0 } else { 1.0 - 2.0 / v as f32 }
+}
 
 /// A schedule of termination probabilities.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +52,8 @@ pub enum Roulette {
     },
     /// q\[v\] as listed; the last entry holds for all later vertices.
     Table(Vec<f64>),
-    /// 0 before `from`, then q = 1 − the largest channel of the albedo: the analog walk, whose variance is always finite. At
-    /// least 1/64 from vertex 128 on, so that paths end where the albedo is only known to be at most 1.
+    /// 0 before `from`, then q = 1 − the largest channel of the albedo: the analog walk, whose variance is finite where r(T) < 1 and
+    /// no weight exceeds the albedo. The [module](self) says what ends paths where the albedo is 1.
     Albedo {
         /// First vertex with roulette.
         from: usize,
@@ -60,10 +79,12 @@ pub enum Roulette {
     },
 }
 
-/// A path that is one of so many copies splits no more.
+/// A path that is one of so many copies splits no more: unbiased, since it goes on with weight 1 for certain. Where weights still grow
+/// then, `worlds::growth` sees it.
 const CROWD: u32 = 64;
 
-/// Survivors of roulette by contribution weigh no more than ten times what they did.
+/// Survivors of roulette by contribution weigh no more than ten times what they did; what is lighter still is tested at every
+/// vertex, so that paths without a future end after a few.
 const LEAST_SURVIVAL: f32 = 0.1;
 /// Where less than this part of the pixel is expected of a path, roulette brings the survivors up to it. Between this and 1 nothing
 /// happens to a path: to end and to split have a price, too, and where light comes from everywhere ending at 1 costs more than it saves.
@@ -91,17 +112,21 @@ impl Roulette {
             Self::Table(q) => q.get(v).or(q.last()).map_or(0.0, |&q| q as f32),
             Self::Albedo { from } | Self::Contribution { from } | Self::Window { from } => {
                 if v < *from {
-                    0.0
-                } else {
-                    let q = 1.0 - albedo.max_element().clamp(0.0, 1.0);
-                    if v < AT_LAST.0 { q } else { q.max(AT_LAST.1) }
+                    return 0.0;
                 }
+                // a channel that carries nothing has no say
+                let carried = Rgb::select(throughput.cmpgt(Rgb::ZERO), albedo, Rgb::ZERO);
+                let s = carried.max_element().clamp(0.0, 1.0);
+                if v < FAINT.0 {
+                    return 1.0 - s;
+                }
+                1.0 - (s * (throughput.max_element() / FAINT.1).min(1.0)).min(at_last(v))
             }
             Self::Throughput { from } => {
                 if v < *from {
                     0.0
                 } else {
-                    1.0 - throughput.max_element().clamp(0.0, 1.0)
+                    1.0 - throughput.max_element().clamp(0.0, at_last(v))
                 }
             }
         }
@@ -117,6 +142,19 @@ impl Roulette {
         }
     }
 
+    /// From this vertex on the schedule is the same everywhere.
+    pub fn settled(&self) -> usize {
+        match self {
+            Self::Never => 0,
+            Self::Table(q) => q.len().saturating_sub(1),
+            Self::Constant { from, .. }
+            | Self::Albedo { from }
+            | Self::Throughput { from }
+            | Self::Contribution { from }
+            | Self::Window { from } => *from,
+        }
+    }
+
     /// The same q before vertex `v`, as a table, and `q` from there on; none where it is not the same on every path.
     pub fn then(&self, v: usize, q: f64) -> Option<Self> {
         let before: Option<Vec<f64>> = (0..v).map(|i| self.fixed(i)).collect();
@@ -127,19 +165,29 @@ impl Roulette {
     /// of the path at its start, 0 if nobody knew. Below 0 it splits into 1 − q copies in the mean.
     #[inline(always)]
     pub fn q<T: Transport>(&self, t: &T, v: usize, throughput: Rgb, at: &T::State, start: f32) -> f32 {
+        let q = self.own(t, v, throughput, at, start);
+        match t.last_resort() {
+            Some((from, last)) if v >= from && q >= 0.0 && self.fixed(v).is_none() && !self.sleeps(v) => q.max(last),
+            _ => q,
+        }
+    }
+
+    /// The same before the last resort of the scene.
+    #[inline(always)]
+    fn own<T: Transport>(&self, t: &T, v: usize, throughput: Rgb, at: &T::State, start: f32) -> f32 {
         if let Self::Contribution { from } | Self::Window { from } = self
             && v >= *from
-            && v < AT_LAST.0
             && start > 0.0
             && let Some(expected) = t.expected(at)
         {
-            let w = throughput.element_sum() * expected.indirect / (3.0 * start);
+            let w = throughput.element_sum() * expected.indirect / (t.lit().element_sum() * start);
             let copies = match self {
                 Self::Contribution { .. } => w.min(1.0),
                 _ if w < WINDOW => w / WINDOW,
                 _ => w.clamp(1.0, Self::MOST as f32),
             };
-            return 1.0 - copies.max(LEAST_SURVIVAL);
+            // what splits is heavy, and ends sooner or later by becoming light: only its survival is bounded
+            return 1.0 - if copies > 1.0 { copies } else { copies.max(LEAST_SURVIVAL).min(at_last(v)) };
         }
         self.termination(v, throughput, t.albedo(at))
     }
@@ -268,14 +316,27 @@ mod tests {
         }
     }
 
-    /// Also where the albedo is only known to be at most 1.
+    /// Also where the albedo is only known to be at most 1; and weights grow more slowly than any geometric sequence.
     #[test]
     fn albedo_ends_every_path() {
         let r = Roulette::Albedo { from: 2 };
         assert_eq!(r.termination(1, Rgb::ONE, Rgb::ONE), 0.0);
-        assert_eq!(r.termination(127, Rgb::ONE, Rgb::ONE), 0.0);
-        assert_eq!(r.termination(128, Rgb::ONE, Rgb::ONE), 1.0 / 64.0);
         assert_eq!(r.termination(2, Rgb::ONE, Rgb::splat(0.25)), 0.75);
+        // full weight: nothing before V, then a survival whose product falls like 1/v²
+        assert_eq!(r.termination(LONG - 1, Rgb::ONE, Rgb::ONE), 0.0);
+        let survival = |to: usize| (LONG..to).map(|v| 1.0 - f64::from(r.termination(v, Rgb::ONE, Rgb::ONE))).product();
+        let (twice, eight): (f64, f64) = (survival(2 * LONG), survival(8 * LONG));
+        assert!((twice - 1.0 / 4.0).abs() < 1e-3 && (eight - 1.0 / 64.0).abs() < 1e-3, "{twice} {eight}");
+        // the analog walk is left alone as long as it ends by itself
+        assert_eq!(r.termination(10_000, Rgb::ONE, Rgb::splat(0.999)), 1.0 - 0.999);
+        // what weighs little comes to weigh 1/16, no more
+        assert_eq!(r.termination(127, Rgb::splat(1.0 / 64.0), Rgb::ONE), 0.0);
+        assert_eq!(r.termination(128, Rgb::splat(1.0 / 64.0), Rgb::ONE), 0.75);
+        // channels that carry nothing keep no path alive
+        assert_eq!(r.termination(2, Rgb::new(0.5, 0.0, 0.0), Rgb::new(0.25, 1.0, 1.0)), 0.75);
+        assert_eq!(r.termination(2, Rgb::ZERO, Rgb::ONE), 1.0);
+        let throughput = Roulette::Throughput { from: 2 };
+        assert_eq!(throughput.termination(LONG, Rgb::ONE, Rgb::ONE), 2.0 / LONG as f32);
     }
 
     /// The mean of copies · weight over u is 1, whatever q; and a path that has split often enough goes on alone.

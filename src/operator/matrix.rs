@@ -16,6 +16,7 @@
 
 mod columns;
 mod lanczos;
+mod reach;
 mod spectrum;
 mod weight;
 
@@ -23,6 +24,7 @@ use super::form_factor::FormFactors;
 pub use columns::{Columns, PatchColumns, Transposed};
 pub use lanczos::{Extremes, Ritz, extremes, leading};
 use rayon::prelude::*;
+pub use reach::reached;
 pub use spectrum::{Spectral, spectral_radius};
 pub use weight::Weight;
 

@@ -106,6 +106,11 @@ impl Transport for MatrixWalk {
     fn albedo(&self, &i: &u32) -> Rgb {
         self.rho[i as usize]
     }
+
+    fn lit(&self) -> Rgb {
+        let sum = self.emission.iter().fold(Rgb::ZERO, |a, e| a.max(*e));
+        Rgb::select(sum.cmpgt(Rgb::ZERO), Rgb::ONE, Rgb::ZERO)
+    }
 }
 
 impl MatrixWalk {

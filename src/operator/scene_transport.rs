@@ -214,6 +214,14 @@ impl Transport for SceneTransport<'_> {
         }
     }
 
+    fn lit(&self) -> Rgb {
+        self.scene.lit()
+    }
+
+    fn last_resort(&self) -> Option<(usize, f32)> {
+        self.scene.last_resort()
+    }
+
     fn connects_to_all(&self) -> bool {
         !self.scene.any_delta_surface()
     }

@@ -55,6 +55,17 @@ pub trait Transport: Sync {
     /// A bound on (T 1)(x).
     fn albedo(&self, at: &Self::State) -> Rgb;
 
+    /// 1 in the channels in which anything emits, 0 in the others: what a path carries at its start.
+    fn lit(&self) -> Rgb {
+        Rgb::ONE
+    }
+
+    /// From which vertex on, and with which probability at least, a path ends that goes by its albedo or its throughput: where albedos
+    /// may be 1, and q is known to keep the variance finite.
+    fn last_resort(&self) -> Option<(usize, f32)> {
+        None
+    }
+
     /// The probability that a walk is absorbed at `at`, where that is a property of the place; elsewhere roulette decides.
     fn absorption(&self, _at: &Self::State) -> Option<f32> {
         None

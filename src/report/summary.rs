@@ -16,12 +16,12 @@
 //! | `tail` | estimate: everything longer than K; all `null` with `replicates` 0 where paths are cut at K (`--roulette none`) |
 //! | `sum` | estimate: Σ_{k≤K} of the terms |
 //! | `path` | estimate by the full path tracer, or `null` |
-//! | `radiosity` | the matrix world, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solve), `spectral_radius` per channel, `spectral_radius_limit` and its `…_error` (h → 0, from three meshes), `norms` (k, 1-, 2- and 1/ρ-weighted norm of T_h^k E over the patches), `discretisation` (abs. difference to half as many patches) |
+//! | `radiosity` | the matrix world, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solve), `spectral_radius` per channel, `spectral_radius_limit` and its `…_error` (h → 0, from three meshes), `norms` (k, 1-, 2- and 1/ρ-weighted norm of T_h^k E over the patches), `unlit_sides` (never reached by light, left out of T), `discretisation` (abs. difference to half as many patches) |
 //! | `bounds` | `max_albedo` per channel (the guarantee ‖T‖₁ ≤ max albedo), `observed_rate` and `observed_rate_error` (fitted, no guarantee), `tail_bound` (a-posteriori bound of the surface norm beyond K) |
 //! | `cross_moments` | of paths without roulette up to vertex K, or `null` where none were recorded: `max_bounces` (their own K), `paths`, `beyond` (q from vertex K on), `slots` (per slot `vertex`, `kind` `hit`, `connect` or `tail`, and `term`), `second` and `product` (per channel M_ab and m_ab, rows of numbers), `rays` (per path, by slot); see [`crate::stats::schedule`] for what they predict |
 //! | `verdicts` | list of `name`, `effect`, `interval`, `p`, `min_detectable`, `outcome` (`agrees`, `differs`, `inconclusive`) |
 //! | `files` | names of the files of this run, relative to this one |
-//! | `series` | per world: `world`, `label`, `functionals` (`name`, `terms`, `tail`, `sum`, `total` as estimates; the image mean first, then regions and projections), `cost` (`paths`, `rays`, `non_finite`, `seconds`) |
+//! | `series` | per world: `world`, `label`, `functionals` (`name`, `terms`, `tail`, `sum`, `total` as estimates; the image mean first, then regions and projections), `cost` (`paths`, `rays`, `non_finite`, `seconds`), `variance` of tail and total (`finite`, `infinite`, `unknown`; unless it is finite their `std_error` is `null`) |
 
 use std::path::Path;
 
@@ -150,6 +150,9 @@ pub struct Radiosity {
     /// Norms of T_h^k E over the patches, k = 0..=K.
     #[serde(default)]
     pub norms: Vec<BounceNorms>,
+    /// Sides that light never reaches: T and its spectral radius leave them out.
+    #[serde(default)]
+    pub unlit_sides: usize,
     /// |R_h − R_2h| of the image mean: how much the mesh may matter.
     pub discretisation: DVec3,
 }

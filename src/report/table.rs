@@ -163,12 +163,19 @@ pub(super) fn signed(value: f64) -> String {
         return dash();
     }
     let sign = if value > 0.0 { "+" } else { "" };
+    if value.is_infinite() {
+        return if value > 0.0 { "+∞".into() } else { "−∞".into() };
+    }
     format!("{sign}{}", significant(value, 3))
 }
 
-/// Two digits; a dash where nothing is known.
+/// Two digits; a dash where nothing is known, ∞ for an error whose variance is infinite.
 pub(super) fn known(value: f64) -> String {
-    if value.is_nan() { dash() } else { significant(value, 2) }
+    match value {
+        v if v.is_nan() => dash(),
+        v if v.is_infinite() => "∞".into(),
+        v => significant(v, 2),
+    }
 }
 
 fn dash() -> String {

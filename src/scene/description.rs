@@ -36,6 +36,20 @@ impl Description {
             None => Ok(()),
         }
     }
+
+    /// 1 in the channels in which anything emits, 0 in the others.
+    pub fn lit(&self) -> DVec3 {
+        let light = |l: &LightDescription| match l {
+            LightDescription::Point { intensity, .. } => *intensity,
+            LightDescription::Directional { irradiance, .. } => *irradiance,
+            LightDescription::Environment { sky: Sky::Constant(radiance), scale, .. } => *radiance * *scale,
+            LightDescription::Environment { sky: Sky::LatLong(image) | Sky::MirrorBall(image), scale, .. } => {
+                image.mean() * *scale
+            }
+        };
+        let all = self.shapes.iter().map(|s| s.emission).chain(self.lights.iter().map(light));
+        DVec3::select(all.fold(DVec3::ZERO, DVec3::max).cmpgt(DVec3::ZERO), DVec3::ONE, DVec3::ZERO)
+    }
 }
 
 /// A pinhole camera; a pixel is the mean radiance over its square.

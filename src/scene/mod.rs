@@ -95,6 +95,10 @@ pub struct Scene {
     any_delta: bool,
     /// Shapes that coincide and differ.
     conflicts: Vec<Relation>,
+    /// 1 in the channels in which anything emits.
+    lit: Rgb,
+    /// How paths end that nothing else ends.
+    last_resort: Option<(usize, f32)>,
 }
 
 impl Scene {
@@ -142,6 +146,8 @@ impl Scene {
             accel: Accel::new(shapes, &widened),
             albedo: albedo.collect(),
             any_delta: bsdf.iter().any(Bsdf::has_delta),
+            lit: description.lit().as_vec3(),
+            last_resort: None,
             center: center.as_vec3(),
             radius: radius as f32,
             beyond: (4.0 * reach) as f32,
@@ -244,6 +250,24 @@ impl Scene {
     /// Whether some surface is a mirror or glass, at least in part: no connection finds what it shows.
     pub fn any_delta_surface(&self) -> bool {
         self.any_delta
+    }
+
+    /// 1 in the channels in which anything emits, 0 in the others.
+    #[inline(always)]
+    pub fn lit(&self) -> Rgb {
+        self.lit
+    }
+
+    /// From which vertex on, and with which probability at least, paths end that nothing else ends; see `worlds::resort`.
+    #[inline(always)]
+    pub fn last_resort(&self) -> Option<(usize, f32)> {
+        self.last_resort
+    }
+
+    /// The same scene with such an end.
+    #[must_use]
+    pub fn ending_at(self, vertex: usize, q: f32) -> Self {
+        Self { last_resort: Some((vertex, q)), ..self }
     }
 
     /// Whether a ray can leave for the sky and bring light from there.

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::operator::{
     form_factor::FormFactors,
-    matrix::{PatchOperator, Spectral, spectral_radius},
+    matrix::{PatchOperator, Spectral, reached, spectral_radius},
     patches::Patches,
 };
 use glam::DVec3;
@@ -64,6 +64,17 @@ impl Radiosity {
     /// T_h of channel 0, 1 or 2.
     pub fn operator(&self, channel: usize) -> PatchOperator<'_> {
         PatchOperator::new(&self.factors, self.reflectance(channel))
+    }
+
+    /// Whether light reaches each patch, per channel.
+    pub fn reached(&self) -> Vec<[bool; 3]> {
+        let channel = |c: usize| {
+            let sees = |i: usize, sends: &[bool]| self.factors.row(i).iter().zip(sends).any(|(f, s)| *s && *f > 0.0);
+            let p = &self.patches;
+            reached(p.len(), |i| p[i].emission[c] > 0.0, |i| p[i].reflectance[c] > 0.0, sees)
+        };
+        let [r, g, b] = [0, 1, 2].map(channel);
+        r.into_iter().zip(g).zip(b).map(|((r, g), b)| [r, g, b]).collect()
     }
 
     /// T_h^k E for k = 0 ..= `k_max`: one vector over the patches per k.

@@ -65,6 +65,9 @@ pub fn difference(a: Measured, b: Measured) -> Measured {
     let scale = va.max(vb);
     let dof = if va + vb == 0.0 {
         f64::INFINITY
+    } else if !(va + vb).is_finite() {
+        // an error that is not known, or has no bound: what is known of it does not come from the numbers
+        a.dof.min(b.dof)
     } else {
         let (ra, rb) = (va / scale, vb / scale);
         (ra + rb) * (ra + rb) / (ra * ra / a.dof + rb * rb / b.dof)

@@ -192,6 +192,9 @@ pub const ENTRIES: &[Entry] = &[
     entry("lights_are_rejected_in_199_of_200_runs", 1, 1e-9),
     entry("specular_are_rejected_in_199_of_200_runs", 1, 1e-9),
     entry("bookkeeping_are_rejected_in_199_of_200_runs", 1, 1e-9),
+    // tests/long_series.rs
+    entry("a_thousand_bounces_have_their_closed_form", 6, 1e-9),
+    entry("albedo_one_with_a_hole_has_its_closed_form", 12, 1e-9),
     // tests/rays.rs
     entry("rows_agree_with_the_matrix", 5_000, 1e-9),
     // tests/bsdf.rs

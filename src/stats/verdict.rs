@@ -103,6 +103,9 @@ const NO_ERROR: &str = "the standard error is unknown: one replicate only (raise
 pub(super) const NOT_FINITE: &str = "a mean is not finite";
 pub(super) const FEW: &str = "a mean rests on too few events (hits) for its error to be known: raise --spp";
 const NO_ANSWER: &str = "the scene has no right answer";
+pub(super) const INFINITE: &str = "the variance is infinite under this roulette, so that no error bar means anything";
+pub(super) const UNKNOWN: &str =
+    "the variance may be infinite under this roulette, so that no error bar can be trusted";
 const ALLOWANCE: &str = "the allowance for discretisation alone exceeds what δ can resolve: refine the mesh";
 
 /// An allowance from two meshes is itself uncertain; a rejection must exceed it by this factor, the one that Roache asks for
@@ -349,6 +352,8 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Ve
     let reason = match outcome {
         Outcome::Agrees | Outcome::Differs => None,
         Outcome::Inconclusive if !effect.is_finite() => Some(NOT_FINITE),
+        Outcome::Inconclusive if s.is_infinite() => Some(INFINITE),
+        Outcome::Inconclusive if s.is_nan() && item.effect.dof > 0.0 => Some(UNKNOWN),
         Outcome::Inconclusive if s.is_nan() => Some(NO_ERROR),
         Outcome::Inconclusive if item.few => Some(FEW),
         Outcome::Inconclusive if room <= 0.0 => Some(ALLOWANCE),

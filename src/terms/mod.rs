@@ -23,4 +23,4 @@ pub mod variance;
 pub use cross_moments::{CrossMoments, Recorded};
 pub use film::{Shape, TermFilm};
 pub use image::TermImage;
-pub use series::{Cost, Estimate, Functional, Series, Unseen, World};
+pub use series::{Cost, Estimate, Functional, Series, Unseen, Variance, World};

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Estimate {
     /// The estimated value.
     pub mean: DVec3,
-    /// Standard error of `mean`; NaN where it is not known (one replicate).
+    /// Standard error of `mean`; ∞ where the variance is infinite, NaN where it is not known (one replicate, or a variance that may
+    /// be infinite).
     pub std_error: DVec3,
     /// Independent replicates behind the error: `replicates − 1` degrees of freedom. 0 means exact.
     pub replicates: u64,
@@ -26,6 +27,30 @@ impl Estimate {
     /// Whether this is [`Estimate::NONE`]. (A broken render is NaN too, but it has replicates.)
     pub fn is_none(&self) -> bool {
         self.replicates == 0 && self.mean.is_nan()
+    }
+}
+
+/// Whether sums without end (the tail, the whole) have a finite variance, which is what makes an error bar of samples mean anything.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Variance {
+    /// Yes.
+    #[default]
+    Finite,
+    /// No.
+    Infinite,
+    /// Nobody knows.
+    Unknown,
+}
+
+impl Variance {
+    /// What stands in place of a standard error; none where it means what it says.
+    pub fn instead(self) -> Option<f64> {
+        match self {
+            Self::Finite => None,
+            Self::Infinite => Some(f64::INFINITY),
+            Self::Unknown => Some(f64::NAN),
+        }
     }
 }
 
@@ -103,6 +128,9 @@ pub struct Series {
     /// Why no comparison with this result is decided, if none is: the scene has no right answer.
     #[serde(default)]
     pub undecided: Option<String>,
+    /// Whether the tail and the whole have a finite variance.
+    #[serde(default)]
+    pub variance: Variance,
 }
 
 impl Series {
@@ -126,6 +154,17 @@ impl Series {
             f.tail = Estimate::NONE;
         }
         cut
+    }
+
+    /// Takes back the error bars of the tail and of the whole, unless their variance is finite.
+    pub fn judge(&mut self, variance: Variance) {
+        self.variance = variance;
+        let Some(instead) = variance.instead() else { return };
+        for f in &mut self.functionals {
+            for e in [&mut f.tail, &mut f.total].into_iter().filter(|e| e.replicates > 0) {
+                e.std_error = DVec3::splat(instead);
+            }
+        }
     }
 
     /// The image means.

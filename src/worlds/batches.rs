@@ -12,7 +12,7 @@ use crate::estimator::{PathTracer, Plan};
 use crate::operator::SceneTransport;
 use crate::scene::Scene;
 use crate::terms::functional::functionals;
-use crate::terms::{Cost, Estimate, Functional, Series, World};
+use crate::terms::{Cost, Estimate, Functional, Series, Variance, World};
 use std::sync::atomic::AtomicBool;
 
 /// One way of rendering.
@@ -92,6 +92,7 @@ impl Side {
             unseen,
             by_luck: by_luck(scene, self.estimator),
             undecided: undecided(scene),
+            variance: Variance::Finite,
         }
     }
 }

@@ -12,9 +12,9 @@ use crate::operator::SceneTransport;
 use crate::operator::form_factor::{FormFactors, Invariants, Sampling, Watch};
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
-use crate::operator::rays::{Half, Hit, Light, Rays, Record, record};
+use crate::operator::rays::{Half, Hit, Light, Rays, Record, Solved, record};
 use crate::scene::{Description, Scene, SceneError};
-use crate::solver::{Radiosity, Solution};
+use crate::solver::{Radiosity, Solution, residual, settle};
 use crate::terms::{TermImage, World};
 use glam::DVec3;
 use std::sync::Mutex;
@@ -40,6 +40,31 @@ pub struct Matrix<R = Realisation> {
     pub sampling: Option<RaySampling>,
     /// Surface means `Σ A_i (T_h^k E)_i / A`.
     pub surface: Vec<DVec3>,
+    /// What light never reaches, and what all of the above leaves out.
+    pub unlit: Vec<Unlit>,
+}
+
+/// A side of a primitive that light never reaches in some channels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unlit {
+    /// Number of the primitive.
+    pub primitive: usize,
+    /// The side of its normal.
+    pub front: bool,
+    /// By channel: light reaches no patch of it, and something emits in that channel.
+    pub channels: [bool; 3],
+}
+
+/// The sides of which no patch is reached, in channels in which something emits.
+fn unlit(patches: &Patches, lit: &[[bool; 3]]) -> Vec<Unlit> {
+    let any: [bool; 3] = [0, 1, 2].map(|c| patches.iter().any(|p| p.emission[c] > 0.0));
+    let mut sides = std::collections::BTreeMap::new();
+    for (p, lit) in patches.iter().zip(lit) {
+        let dark = sides.entry((p.primitive, !p.front)).or_insert(any);
+        (0..3).for_each(|c| dark[c] &= !lit[c]);
+    }
+    let dark = sides.into_iter().filter(|(_, dark)| *dark != [false; 3]);
+    dark.map(|((primitive, back), channels)| Unlit { primitive, front: !back, channels }).collect()
 }
 
 /// From this spectral radius on a channel keeps all its light, as far as form factors can tell.
@@ -56,6 +81,24 @@ pub enum MatrixError {
         "error: a channel keeps all its light, so L = E + T L has no solution\nhelp: lower a reflectance below 1, or look at the first terms alone with --worlds terms,path --roulette none"
     )]
     Singular,
+    /// r(T_h) is 1 or more, although every reflectance that light meets is below 1.
+    #[error(
+        "error: the form factors of this mesh are known too poorly: r(T_h) = {radius:.6}, although no reflectance is above {albedo:.6}\nhelp: raise --patches, or leave the radiosity world out: --worlds terms,path"
+    )]
+    Coarse {
+        /// r(T_h).
+        radius: f64,
+        /// The largest reflectance that light meets.
+        albedo: f64,
+    },
+    /// The iteration over stored rays came to no end.
+    #[error(
+        "error: the solution by stored rays has not settled: its residual is {residual:.1e} of the direct light\nhelp: use --factors dense, or leave the radiosity world out: --worlds terms,path"
+    )]
+    Unsettled {
+        /// ‖D − (I − T) u‖ / ‖D‖ of the worst channel.
+        residual: f64,
+    },
     /// Interrupted.
     #[error("interrupted")]
     Stopped,
@@ -63,8 +106,10 @@ pub enum MatrixError {
 
 /// The Neumann series of stored rays ends when what is left is this small against the sum.
 const LEFT: f64 = 1e-7;
-/// Or after so many steps; the residual then tells.
+/// Or after so many steps; GMRES takes over then.
 const MOST_STEPS: usize = 2000;
+/// What GMRES must bring the residual below, as [`settle`] has it.
+const SETTLED: f64 = 1e-8;
 
 /// Meshes a scene into about `patches` patches and solves it.
 ///
@@ -147,18 +192,48 @@ fn dense(
     let watch = Watch { progress: Some(&progress), stop: Some(stop) };
     let factors = FormFactors::new(&patches, scene, Sampling::default(), watch).map_err(|_| MatrixError::Stopped)?;
     let invariants = factors.invariants();
-    let radiosity = Radiosity::new(patches, factors);
+    let mut radiosity = Radiosity::new(patches, factors);
+    let lit = radiosity.reached();
+    let unlit = unlit(&radiosity.patches, &lit);
+    radiosity.patches.darken(&lit);
+    // where nothing leaves, no light may be lost or made by errors of F
+    let inside: Vec<bool> = lit.iter().map(|l| l.contains(&true)).collect();
+    if closed(&radiosity.patches, scene, &inside, stop)? {
+        radiosity.factors.close(&inside);
+    }
     // LU of a matrix that is singular but for rounding succeeds, and means nothing
     let spectral = radiosity.spectral_radius();
-    if spectral.iter().any(|s| s.radius >= KEEPS_ALL) {
-        return Err(MatrixError::Singular);
-    }
+    loses(&radiosity.patches, &spectral)?;
     let terms = radiosity.terms(max_bounces);
     let solution = radiosity.solve().map_err(|_| MatrixError::Singular)?;
     let surface = terms.iter().map(|t| radiosity.patches.surface_mean(t)).collect();
     let norms = Some(radiosity.norms());
     let radii = vec![Radius::of(&radiosity.patches, &spectral, DVec3::ZERO)];
-    Ok(Matrix { spectral, radii, norms, radiosity, terms, solution, invariants, sampling: None, surface })
+    Ok(Matrix { spectral, radii, norms, radiosity, terms, solution, invariants, sampling: None, surface, unlit })
+}
+
+/// Whether no ray from these patches leaves the scene, or meets what takes no part: 64 are tried from each.
+fn closed(patches: &Patches, scene: &Scene, inside: &[bool], stop: &AtomicBool) -> Result<bool, MatrixError> {
+    if scene.has_environment() || patches.len() > Hit::MOST {
+        return Ok(false);
+    }
+    let watch = Watch { progress: None, stop: Some(stop) };
+    let rays = Rays::new(patches, scene, 64, 0, watch).map_err(|_| MatrixError::Stopped)?;
+    let gone =
+        |i: usize| rays.row(i).iter().flat_map(|half| half.iter()).filter(|h| **h == Hit::NOTHING).count() as u64;
+    Ok((0..patches.len()).filter(|&i| inside[i]).map(gone).sum::<u64>() <= rays.lost)
+}
+
+/// Refuses what keeps all its light, or seems to.
+fn loses(patches: &Patches, spectral: &[Spectral; 3]) -> Result<(), MatrixError> {
+    for (c, s) in spectral.iter().enumerate().filter(|(_, s)| s.radius >= KEEPS_ALL) {
+        let albedo = patches.iter().map(|p| p.reflectance[c]).fold(0.0, f64::max);
+        return Err(match albedo < KEEPS_ALL {
+            true => MatrixError::Coarse { radius: s.radius, albedo },
+            false => MatrixError::Singular,
+        });
+    }
+    Ok(())
 }
 
 fn trace(
@@ -179,7 +254,10 @@ fn trace(
     Rays::new(patches, scene, per_row as usize, seed, watch).map_err(|_| MatrixError::Stopped)
 }
 
-fn by_rays(stored: Stored, max_bounces: usize) -> Result<Matrix<Stored>, MatrixError> {
+fn by_rays(mut stored: Stored, max_bounces: usize) -> Result<Matrix<Stored>, MatrixError> {
+    let lit = Light { patches: &stored.patches, rays: &stored.rays }.reached();
+    let unlit = unlit(&stored.patches, &lit);
+    stored.patches.darken(&lit);
     let light = Light { patches: &stored.patches, rays: &stored.rays };
     let (solution, spectral, sampling) = solve_by_rays(&light)?;
     let c = sampling.checks;
@@ -197,7 +275,18 @@ fn by_rays(stored: Stored, max_bounces: usize) -> Result<Matrix<Stored>, MatrixE
     let terms = light.terms(max_bounces);
     let surface = terms.iter().map(|t| stored.patches.surface_mean(t)).collect();
     let sampling = Some(sampling);
-    Ok(Matrix { radiosity: stored, terms, solution, invariants, spectral, radii, norms: None, sampling, surface })
+    Ok(Matrix {
+        radiosity: stored,
+        terms,
+        solution,
+        invariants,
+        spectral,
+        radii,
+        norms: None,
+        sampling,
+        surface,
+        unlit,
+    })
 }
 
 fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], RaySampling), MatrixError> {
@@ -205,14 +294,33 @@ fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], RaySampl
     // the last term is close to the top mode; where the series has died out, start from ρ
     let died = (0..3).any(|c| solved.last.iter().all(|x| x[c] == 0.0));
     let albedo = || light.patches.iter().map(|p| record(p.reflectance)).collect::<Vec<Record>>();
-    let spectral = light.spectral_radius(&if died { albedo() } else { solved.last }, 1e-7, 500);
-    if spectral.iter().any(|s| s.radius >= KEEPS_ALL) {
-        return Err(MatrixError::Singular);
-    }
+    let spectral = light.spectral_radius(&if died { albedo() } else { solved.last.clone() }, 1e-7, 500);
+    loses(light.patches, &spectral)?;
+    let solved = settled(light, solved)?;
     let u: Vec<DVec3> = solved.radiance.iter().zip(light.patches.iter()).map(|(l, p)| *l - p.emission).collect();
     let noise = light.norm(&light.noise(&solved.radiance)) / light.norm(&u);
     let sampling = RaySampling { per_row: light.rays.per_row, noise, checks: light.checks(), steps: solved.steps };
     Ok((Solution { radiance: solved.radiance, residual: solved.residual }, spectral, sampling))
+}
+
+/// The Neumann series if it has come to its end; where it is too long, the same system by GMRES, channel by channel.
+fn settled(light: &Light<'_>, mut solved: Solved) -> Result<Solved, MatrixError> {
+    if solved.steps < MOST_STEPS {
+        return Ok(solved);
+    }
+    let direct = light.direct();
+    for c in 0..3 {
+        let rho = light.patches.iter().map(|p| p.reflectance[c]).collect();
+        let d: Vec<f64> = direct.iter().map(|d| d[c]).collect();
+        let operator = light.rays.operator(rho);
+        let found = settle(&operator, &d).map_err(|_| MatrixError::Unsettled { residual: SETTLED })?;
+        solved.steps += found.applications;
+        solved.residual[c] = residual(&operator, &d, &found.x).iter().fold(0.0, |a: f64, r| a.max(r.abs()));
+        for ((l, u), p) in solved.radiance.iter_mut().zip(found.x).zip(light.patches.iter()) {
+            l[c] = u + p.emission[c];
+        }
+    }
+    Ok(solved)
 }
 
 impl Matrix {
@@ -299,6 +407,7 @@ impl<R> Matrix<R> {
             norms: self.norms,
             sampling: self.sampling,
             surface: self.surface,
+            unlit: self.unlit,
         }
     }
 }

@@ -2,9 +2,10 @@
 //!
 //! `L_h → p(ω) → T^k E`: the matrix of some hundred patches decides where rays look, the scene decides what they see.
 
+use super::growth::{self, Growth};
 use super::sampled::{self, Estimator, Sampled, annotated, spread};
 use super::{Observer, Settings};
-use crate::estimator::{Branching, PathTracer, Plan, Prefix, SingleTerm};
+use crate::estimator::{Branching, PathTracer, Plan, Prefix, Roulette, SingleTerm};
 use crate::math::Key;
 use crate::operator::SceneTransport;
 use crate::operator::guided::{Guide, GuidedTransport, Recipe};
@@ -86,7 +87,8 @@ impl Prepared {
             }
             Estimator::Light | Estimator::Bidirectional => return None,
         };
-        Some(annotated(result, scene, Some(estimator), settings))
+        let doubt = self.doubt(&t, settings.roulette_of(Some(estimator)), settings);
+        Some(annotated(result, scene, Some(estimator), settings).judged(doubt))
     }
 
     /// The full path tracer.
@@ -97,6 +99,12 @@ impl Prepared {
         let name = (World::Path, label);
         let path = PathTracer(plan);
         let result = sampled::sample(&t, &scene.camera, &path, "guided path", name, settings, observer, stop);
-        annotated(result, scene, None, settings)
+        let doubt = self.doubt(&t, &settings.path_roulette, settings);
+        annotated(result, scene, None, settings).judged(doubt)
+    }
+
+    /// A guide's weights are what they are: whether they grow is measured.
+    fn doubt(&self, t: &GuidedTransport<'_>, roulette: &Roulette, settings: &Settings) -> Option<Growth> {
+        if !roulette.ends() { None } else { growth::doubt_from_eye(t, &t.scene.scene.camera, roulette, settings) }
     }
 }

@@ -16,6 +16,8 @@
 //! | strategies | every way to find every term from both ends | [`pyramid::strategies`] |
 //! | refine | the matrix on finer and finer meshes, against rays | [`refine::refine`] |
 //! | walk | the same estimators on the radiosity matrix | [`walk::walk`], [`zero_variance::study`] |
+//! | growth | whether the variance of long paths is finite | [`growth::growth`] |
+//! | trap, resort | whether light gets out, and how paths end that nothing else ends | [`trap::trapped`], [`resort::with_last_resort`] |
 //! | roulette | noise and cost of schedules, the best of them | [`roulette::pilot`], [`roulette::optimal`] |
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 
@@ -24,16 +26,20 @@ pub mod coplanar;
 pub mod discrete;
 pub mod equilibrium;
 pub mod falling;
+pub mod growth;
 pub mod guided;
+pub mod length;
 pub mod pyramid;
 pub mod radius;
 pub mod realisation;
 pub mod refine;
+pub mod resort;
 pub mod roulette;
 pub mod sampled;
 pub mod split;
 pub mod stages;
 pub mod surface;
+pub mod trap;
 pub mod unseen;
 pub mod walk;
 pub mod zero_variance;

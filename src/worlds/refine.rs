@@ -94,7 +94,10 @@ impl Quantity {
         let slots = s.replicates.mean.len();
         match self {
             Self::Term(k) => s.replicates.estimate(k..k + 1),
-            Self::Indirect => s.replicates.estimate(2.min(slots)..slots),
+            Self::Indirect => {
+                let e = s.replicates.estimate(2.min(slots)..slots);
+                Estimate { std_error: s.series.variance.instead().map_or(e.std_error, DVec3::splat), ..e }
+            }
         }
     }
 }

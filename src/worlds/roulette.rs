@@ -4,9 +4,11 @@
 //! pilot: paths without roulette up to vertex K  →  M_ab, m_ab, c_v  →  V and rays of every schedule  →  the best one
 //! ```
 //!
-//! Beyond vertex K the pilot goes on with constant q = 1 − max albedo ([`beyond`]), and so does every schedule that is compared
-//! with it: with survival s = max albedo no weight grows, `ρ²/s ≤ ρ` and `ρ⁴/s³ ≤ ρ`, so that the tail has finite moments of
-//! second and of fourth order whatever stands in the table before.
+//! Beyond vertex K the pilot goes on with constant q ≤ 1 − max albedo ([`beyond`]), and so does every schedule that is compared
+//! with it: with survival s ≥ max albedo no weight grows, `ρ²/s ≤ ρ` and `ρ⁴/s³ ≤ ρ`, so that the tail has finite moments of
+//! second and of fourth order whatever stands in the table before. Where the albedo is 1, or is only known to be at most 1, the
+//! growth R of second moments without roulette is [measured](super::growth), and q = (1 − R)/4: then R/(1 − q) < 1 and, since the moments
+//! of fourth order grow no faster, R/(1 − q)³ < 1.
 //!
 //! | what | finite where | place |
 //! |---|---|---|
@@ -16,6 +18,7 @@
 //! Without a matrix the largest albedo stands for F: then a radius below 1 proves that the moment is finite, and one above 1
 //! proves nothing. Both speak of directions drawn like the reflectance, whose weights are albedos.
 
+use super::growth::{CLEAR, FromLight, growth};
 use super::{Advance, Observer, Settings};
 use crate::estimator::record::record;
 use crate::estimator::render::{Amount, Unwatched, render};
@@ -26,6 +29,7 @@ use crate::scene::Scene;
 use crate::solver::Radiosity;
 use crate::stats::optimal::{optimal_reach, schedule};
 use crate::stats::schedule::{Noise, Part, Separable, gain};
+use crate::terms::Variance;
 use crate::terms::cross_moments::{Recorded, Value};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -34,16 +38,33 @@ use std::time::Instant;
 const PILOT: u64 = 1 << 18;
 /// Vertices a pilot looks at: at least, and at most.
 const DEPTH: [usize; 2] = [16, 64];
-/// The least q beyond K, where a scene may keep all its light.
-const LEAST: f64 = 1.0 / 64.0;
+/// The least q beyond K: paths of a million vertices. It is only reached where the variance is not known to be finite.
+const LEAST: f64 = 1e-6;
 /// Replicates behind the errors.
 const REPLICATES: u32 = 64;
 
-/// q from vertex K on: 1 − the largest albedo of the scene, at least 1/64.
+/// q from vertex K on: at most 1 − the largest albedo of the scene, or a quarter of what second moments lose at a vertex.
 pub fn beyond(scene: &Scene) -> f64 {
-    // as the estimators will read it, rounded up to two digits so that it can be typed
-    let q = 1.0 - f64::from(scene.max_albedo().max_element());
-    ((q * 100.0).ceil() / 100.0).clamp(LEAST, 0.99)
+    let rho = f64::from((scene.max_albedo() * scene.lit()).max_element());
+    let loss = if rho < 1.0 {
+        1.0 - rho
+    } else {
+        let t = SceneTransport::new(scene);
+        let g = growth(&FromLight { t: &t, roulette: &Roulette::Never }, 0, 2, 0);
+        0.25 * (1.0 - g.rate - CLEAR * g.std_error)
+    };
+    two_digits(loss).clamp(LEAST, 0.99)
+}
+
+/// Rounded down to two digits, so that it can be typed.
+pub(super) fn two_digits(q: f64) -> f64 {
+    if q <= 0.0 {
+        return 0.0;
+    }
+    let digits = 1 - q.log10().floor() as i32;
+    let unit = 10f64.powi(digits);
+    // what is 0.3 but for rounding is 0.3
+    ((q * unit * (1.0 + 1e-6)).floor() / unit).min(1.0)
 }
 
 fn amount(spp: u32, settings: &Settings, stream: &str) -> Amount {
@@ -171,6 +192,15 @@ impl Radii {
                 let rho = f64::from(scene.max_albedo().max_element());
                 Self { second: rho * rho / s, fourth: rho.powi(4) / s.powi(3), bounds: true }
             }
+        }
+    }
+
+    /// Whether the variance is finite, as far as this tells: bounds prove that it is, or nothing.
+    pub fn variance(&self) -> Option<Variance> {
+        match (self.second < 1.0, self.bounds) {
+            (true, true) => Some(Variance::Finite),
+            (false, false) => Some(Variance::Infinite),
+            _ => None,
         }
     }
 

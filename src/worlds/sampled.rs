@@ -3,17 +3,20 @@
 use super::{
     Observer, Settings,
     coplanar::undecided,
+    growth::{self, Growth},
     unseen::{by_luck, unseen},
 };
 use crate::estimator::render::{Amount, Watch, render};
-use crate::estimator::{Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, SingleTerm, TermEstimator};
+use crate::estimator::{
+    Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm, TermEstimator,
+};
 use crate::math::Points;
 use crate::operator::{Adjoint, SceneTransport, Sensor, Transport};
 use crate::scene::Scene;
 use crate::terms::functional::{Replicates, functionals, image_replicates};
 use crate::terms::norms::{SquaredNorm, squared_norm};
 use crate::terms::variance::{Snapshot, snapshot};
-use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, World};
+use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, Variance, World};
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -71,6 +74,8 @@ pub struct Sampled {
     pub norms: Vec<Option<SquaredNorm>>,
     /// Least samples per pixel: fewer than asked for when interrupted.
     pub spp: u32,
+    /// Why the tail and the whole have no error bar, where their variance is not known to be finite.
+    pub doubt: Option<Growth>,
 }
 
 /// Every term by its own estimator.
@@ -89,7 +94,51 @@ pub fn terms(
     let technique = if estimator == Estimator::Light { String::new() } else { format!(", {}", settings.technique) };
     let label = format!("{estimator}{technique}{}", spread(settings.points));
     let result = run.finish(&film, World::Terms, label);
-    annotated(result, scene, Some(estimator), settings)
+    let doubt = doubt(&t, Some(estimator), settings);
+    annotated(result, scene, Some(estimator), settings).judged(doubt)
+}
+
+/// Why an estimator (`None` for the path tracer) has no error bar beyond its terms, if it has none.
+pub(crate) fn doubt(t: &SceneTransport<'_>, estimator: Option<Estimator>, settings: &Settings) -> Option<Growth> {
+    let roulette = settings.roulette_of(estimator);
+    if growth::proved(t.scene, t.sampling, roulette) {
+        return None;
+    }
+    match estimator {
+        Some(Estimator::Light) => {
+            let found = growth::growth(&growth::FromLight { t, roulette }, roulette.settled(), 2, settings.seed);
+            (found.variance() != Variance::Finite).then_some(found)
+        }
+        _ => growth::doubt_from_eye(t, &t.scene.camera, roulette, settings),
+    }
+}
+
+impl Sampled {
+    /// The same without the error bars of the tail and of the whole, where there is a doubt.
+    pub(crate) fn judged(mut self, doubt: Option<Growth>) -> Self {
+        self.doubt = doubt;
+        if let Some(d) = doubt {
+            self.distrust(d.variance());
+        }
+        self
+    }
+
+    /// Takes back the error bars of the tail and of the whole, in numbers and in images.
+    pub fn distrust(&mut self, variance: Variance) {
+        self.series.judge(variance);
+        if let Some(instead) = variance.instead() {
+            for image in [&mut self.tail, &mut self.total] {
+                image.std_error.iter_mut().for_each(|e| *e = [instead as f32; 3]);
+            }
+        }
+    }
+}
+
+impl Settings {
+    /// How the paths of an estimator (`None` for the path tracer) end.
+    pub fn roulette_of(&self, estimator: Option<Estimator>) -> &Roulette {
+        if estimator.is_some() { &self.roulette } else { &self.path_roulette }
+    }
 }
 
 /// A result with what its estimator (`None` for the path tracer) cannot find in the scene, and where its paths are cut.
@@ -102,8 +151,7 @@ pub(super) fn annotated(
     result.series.unseen = unseen(scene, estimator, settings.technique);
     result.series.by_luck = by_luck(scene, estimator);
     result.series.undecided = undecided(scene);
-    let roulette = if estimator.is_some() { &settings.roulette } else { &settings.path_roulette };
-    if !roulette.ends() {
+    if !settings.roulette_of(estimator).ends() {
         cut(&mut result.series, settings);
     }
     result
@@ -135,7 +183,8 @@ pub fn path(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &
     let Settings { technique, path_roulette, points, .. } = settings;
     let label = format!("path tracer, {technique}, roulette {path_roulette}{}", spread(*points));
     let result = sample(&t, &scene.camera, &PathTracer(plan), "path", (World::Path, label), settings, observer, stop);
-    annotated(result, scene, None, settings)
+    let doubt = doubt(&t, None, settings);
+    annotated(result, scene, None, settings).judged(doubt)
 }
 
 /// Replicates of a render of many samples.
@@ -212,7 +261,9 @@ impl<'a> Run<'a> {
                 unseen: vec![],
                 by_luck: vec![],
                 undecided: None,
+                variance: Variance::Finite,
             },
+            doubt: None,
             terms: (0..slots - 1).map(image).collect(),
             tail: if slots > 1 { image(slots - 1) } else { TermImage::default() },
             sum: if slots > 1 { TermImage::of(film, 0..slots - 1) } else { TermImage::default() },

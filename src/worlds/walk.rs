@@ -21,7 +21,7 @@ use crate::operator::MatrixWalk;
 use crate::operator::matrix_walk::Rows;
 use crate::solver::Radiosity;
 use crate::terms::functional::exact_functionals;
-use crate::terms::{Cost, Estimate, Series, World};
+use crate::terms::{Cost, Estimate, Series, Variance, World};
 use glam::DVec3;
 use std::fmt;
 use std::sync::atomic::AtomicBool;
@@ -92,7 +92,7 @@ pub fn walk(
         }
         Walker::Absorption => {
             // a walk scores where it ends, so that it must be able to end anywhere
-            let estimator = Absorption(Plan { roulette: Roulette::Albedo { from: 0 }, ..plan });
+            let estimator = Absorption(Plan { roulette: everywhere(matrix), ..plan });
             (render(&t, &rows, &estimator, amount, &mut run, stop), true)
         }
     };
@@ -106,6 +106,10 @@ pub fn walk(
     if !ends {
         sampled::cut(&mut found.series, settings);
     }
+    let roulette = if walker == Walker::Path { &settings.path_roulette } else { &settings.roulette };
+    if ends && walker != Walker::Absorption {
+        found.distrust(variance(matrix, roulette));
+    }
     let z = z(&found, &exact);
     let functionals = exact_functionals([n as u32, 1], &exact);
     let mut series = Series {
@@ -116,11 +120,35 @@ pub fn walk(
         unseen: vec![],
         by_luck: vec![],
         undecided: None,
+        variance: Default::default(),
     };
     if !ends {
         series.functionals.iter_mut().for_each(|f| f.tail = Estimate::NONE);
     }
     Walked { sampled: found, exact: series, z }
+}
+
+/// Roulette by albedo; where something white emits, and would never be an end, a constant q that keeps the variance finite.
+fn everywhere(matrix: &Matrix<Radiosity>) -> Roulette {
+    let white =
+        |p: &crate::operator::patches::Patch| p.emission.max_element() > 0.0 && p.reflectance.max_element() >= 1.0;
+    if !matrix.radiosity.patches.iter().any(white) {
+        return Roulette::Albedo { from: 0 };
+    }
+    let radius = matrix.radiosity.second_moment_radius(1.0).into_iter().fold(0.0, f64::max);
+    Roulette::Constant { from: 0, q: (0.25 * (1.0 - radius)).max(f64::EPSILON) }
+}
+
+/// Whether the variance of walks is finite under a schedule: known, for the matrix is.
+fn variance(matrix: &Matrix<Radiosity>, roulette: &Roulette) -> Variance {
+    let q = match roulette {
+        Roulette::Constant { q, .. } => *q,
+        Roulette::Table(q) => q.last().copied().unwrap_or(0.0),
+        // by albedo and by throughput weights do not grow
+        _ => return Variance::Finite,
+    };
+    let infinite = matrix.radiosity.second_moment_radius(1.0 - q).into_iter().any(|r| r >= 1.0);
+    if infinite { Variance::Infinite } else { Variance::Finite }
 }
 
 /// The truth slot by slot: the terms and the tail, or the whole alone for the path tracer. The powers are those of the very numbers
@@ -145,7 +173,8 @@ fn z(found: &Sampled, exact: &[Vec<DVec3>]) -> Vec<Vec<f64>> {
     let grey = |v: &[f32; 3]| v.iter().map(|&x| f64::from(x)).sum::<f64>();
     let of = |image: &crate::terms::TermImage, truth: &dyn Fn(usize) -> DVec3| -> Vec<f64> {
         let z = |i: usize| (grey(&image.mean[i]) - truth(i).element_sum()) / grey(&image.std_error[i]);
-        (0..image.mean.len()).filter(|&i| grey(&image.std_error[i]) > 0.0).map(z).collect()
+        let known = |&i: &usize| grey(&image.std_error[i]) > 0.0 && grey(&image.std_error[i]).is_finite();
+        (0..image.mean.len()).filter(known).map(z).collect()
     };
     let slots = found.terms.iter().chain((!found.terms.is_empty()).then_some(&found.tail));
     let mut all: Vec<Vec<f64>> = slots.zip(exact).map(|(image, truth)| of(image, &|i| truth[i])).collect();

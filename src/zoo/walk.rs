@@ -64,14 +64,14 @@ impl Walk<'_> {
         };
 
         score(0, t.emission(&start));
-        let (mut alpha, mut x) = (Rgb::ONE, start);
+        let (mut alpha, mut x) = (t.lit(), start);
         for k in 1.. {
             let (v, slot) = (k - 1, k.min(max_bounces + 1));
             if k > *max_bounces && !roulette.ends() {
                 break;
             }
             // roulette: q is the probability of termination
-            let q = roulette.termination(v, alpha, t.albedo(&x));
+            let q = roulette.q(t, v, alpha, &x, 0.0);
             let dies = || q > 0.0 && numbers(v, Purpose::Roulette).one() < q;
             if mistake.roulette_before_light() && dies() {
                 break;

@@ -265,6 +265,7 @@ fn cut(functionals: Vec<Functional>, gap: Option<&(usize, String)>) -> Vec<Funct
         unseen: vec![],
         by_luck: vec![],
         undecided: None,
+        variance: Default::default(),
     };
     series.before(*from).functionals
 }

@@ -8,6 +8,7 @@ use super::{Ending, Failure};
 use crate::cli::open::{self, Opened};
 use clap::{Args, Subcommand};
 use fredholm::scene::Scene;
+use fredholm::worlds::resort::with_last_resort;
 
 /// Arguments of `check`.
 #[derive(Debug, Args)]
@@ -57,7 +58,7 @@ impl Common {
         let mut opened = open::scene(name, &self.shared.changes, None)?;
         let size = self.size.unwrap_or_else(|| small(opened.description.camera.size, most));
         opened.description.camera.size = size;
-        Ok(Opened { scene: Scene::new(&opened.description), ..opened })
+        Ok(Opened { scene: with_last_resort(Scene::new(&opened.description)), ..opened })
     }
 }
 

@@ -10,6 +10,7 @@ use fredholm::diagnosis::{Region, WIDEST, regions};
 use fredholm::report::{exr, summary};
 use fredholm::scene::load;
 use fredholm::scene::{Description, Scene};
+use fredholm::worlds::resort::with_last_resort;
 use fredholm::worlds::sampled::{self, Estimator};
 use fredholm::worlds::{Settings, Unobserved};
 use std::path::Path;
@@ -168,7 +169,7 @@ impl Source {
         let scene = self.description.as_ref().map(|d| {
             let mut d = d.clone();
             d.camera.size = small;
-            Scene::new(&d)
+            with_last_resort(Scene::new(&d))
         });
         let seen = scene.as_ref().map_or(vec![], regions::seen);
         if let Some((label, pictures, samples)) = &self.run {

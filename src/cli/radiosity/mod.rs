@@ -6,7 +6,7 @@ mod solvers;
 
 use super::args::Run;
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, args::WorldName, guard, output, solve};
+use super::{Ending, Failure, args::WorldName, facts, guard, output, solve};
 use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
 use fredholm::report::summary;
@@ -189,7 +189,12 @@ impl<R> Laboratory<R> {
         let made = make(&opened, &settings, &progress, stop_flag());
         progress.finish();
         match made {
-            Ok((patches, matrix)) => Ok(Some(Self { opened, matrix, patches, folder })),
+            Ok((patches, matrix)) => {
+                if let Some(what) = facts::unlit(&matrix.unlit, &opened.description) {
+                    super::note(&format!("note: {what}"));
+                }
+                Ok(Some(Self { opened, matrix, patches, folder }))
+            }
             Err(e) => {
                 let _ = std::fs::remove_dir(&folder); // only if it is empty
                 if !matches!(e, MatrixError::Stopped) {

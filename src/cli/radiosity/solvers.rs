@@ -40,7 +40,7 @@ pub fn run(args: &Radiosity, name: SolverName) -> Result<Ending, Failure> {
             let (study, Stored { patches, rays }) = (Study::new(args, &lab, name), &lab.matrix.radiosity);
             let operator = rays.operator(patches.iter().map(|p| p.reflectance[study.channel]).collect());
             let direct = (0..rays.n).map(|i| rays.direct(i)[study.channel]).collect();
-            study.run(&System::sampled(&operator, direct).map_err(|_| MatrixError::Singular)?)
+            study.run(&System::sampled(&operator, direct).map_err(|_| MatrixError::Unsettled { residual: 1e-8 })?)
         }
     }
 }

@@ -14,6 +14,7 @@
 //! Two patches of one sphere, seen from inside, need no facets: there the kernel is the constant 1/4πR², so
 //! AᵢFᵢⱼ = Vᵢⱼ AᵢAⱼ/4πR², i = j included.
 
+mod closure;
 mod geometry;
 mod invariants;
 mod shaft;

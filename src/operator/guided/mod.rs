@@ -248,6 +248,14 @@ impl Transport for GuidedTransport<'_> {
         self.scene.albedo(at)
     }
 
+    fn lit(&self) -> Rgb {
+        self.scene.lit()
+    }
+
+    fn last_resort(&self) -> Option<(usize, f32)> {
+        self.scene.last_resort()
+    }
+
     /// What the matrix says of a Lambertian surface; of others it knows nothing.
     fn expected(&self, at: &Vertex) -> Option<Expected> {
         let lambertian = matches!(self.scene.scene.bsdf(at), Bsdf::Diffuse(_));

@@ -194,6 +194,21 @@ impl Patches {
         self.cover.is_covered(self.list[i].primitive, at)
     }
 
+    /// Takes from each patch the reflectance in the channels in which light never reaches it: 0 is reflected there either way, and T
+    /// is then the operator on what light does reach.
+    pub fn darken(&mut self, lit: &[[bool; 3]]) {
+        let mut made: std::collections::HashMap<(*const SurfaceSide, [bool; 3]), Arc<SurfaceSide>> =
+            std::collections::HashMap::new();
+        for (patch, lit) in self.list.iter_mut().zip(lit).filter(|(_, lit)| **lit != [true; 3]) {
+            let old = patch.side.clone();
+            let side = made.entry((Arc::as_ptr(&old), *lit)).or_insert_with(|| {
+                let keep = DVec3::from_array(lit.map(|l| f64::from(u8::from(l))));
+                Arc::new(SurfaceSide { reflectance: old.reflectance * keep, ..(*old).clone() })
+            });
+            patch.side = side.clone();
+        }
+    }
+
     /// A mesh twice as coarse: [`Patches::unions`] of up to four.
     pub fn parents(&self) -> Vec<u32> {
         self.unions(4)

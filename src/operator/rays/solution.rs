@@ -14,9 +14,13 @@
 //! so rounding moves u by 10⁻⁷ of itself.
 
 use super::{Half, Hit, Rays};
+use crate::operator::matrix::reached;
 use crate::operator::patches::Patches;
 use glam::DVec3;
 use rayon::prelude::*;
+
+/// Terms of the series of the noise.
+const NOISE_STEPS: usize = 100;
 
 /// Three channels of a patch as gathering reads them; the fourth number is 0.
 pub type Record = [f32; 4];
@@ -64,6 +68,22 @@ impl<'a> Light<'a> {
     /// D.
     pub fn direct(&self) -> Vec<DVec3> {
         (0..self.rays.n).map(|i| self.rays.direct(i)).collect()
+    }
+
+    /// Whether light reaches each patch, per channel, as far as the stored rays can tell.
+    pub fn reached(&self) -> Vec<[bool; 3]> {
+        let channel = |c: usize| {
+            let starts = |i: usize| self.patches[i].emission[c] > 0.0 || self.rays.direct(i)[c] > 0.0;
+            let sees = |i: usize, sends: &[bool]| {
+                self.rays
+                    .row(i)
+                    .iter()
+                    .any(|run| run.iter().take_while(|h| **h != Hit::NOTHING).any(|h| sends[h.patch()]))
+            };
+            reached(self.rays.n, starts, |i| self.patches[i].reflectance[c] > 0.0, sees)
+        };
+        let [r, g, b] = [0, 1, 2].map(channel);
+        r.into_iter().zip(g).zip(b).map(|((r, g), b)| [r, g, b]).collect()
     }
 
     /// T x by the chosen rays.
@@ -146,8 +166,15 @@ impl<'a> Light<'a> {
             0.5 * (direct + self.patches[i].reflectance * apart)
         });
         drop(u);
-        // noise of neighbours cancels in T, so few terms do
-        self.sum(difference, 1e-2, 50).0
+        // noise of neighbours cancels in T, so few terms do; what is left after them is the top mode, a geometric series
+        let (mut sum, last, steps) = self.sum(difference, 1e-2, NOISE_STEPS);
+        if steps == NOISE_STEPS {
+            let next = self.mapped(&last, |i| self.patches[i].reflectance);
+            let rate = self.length(&next, |x| channels(*x)) / self.length(&last, |x| channels(*x));
+            let rest = DVec3::select(rate.cmplt(DVec3::ONE), rate / (1.0 - rate), DVec3::ZERO);
+            sum.iter_mut().zip(&last).for_each(|(s, t)| *s += rest * channels(*t));
+        }
+        sum
     }
 
     /// Root of Σ Aᵢ xᵢ², per channel.

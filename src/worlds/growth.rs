@@ -1,0 +1,265 @@
+//! Whether the variance of long paths is finite: how fast the second moment of their weight grows, measured.
+//!
+//! ```text
+//! M = E[ w²/s · … ]: second moments from vertex to vertex        Var[Σ_k α_k E(x_k)] < ∞  if  r(M) < 1, or if α stays bounded and r(T) < 1
+//!
+//! n walkers with throughputs α:   one step each, factor (α'/α)²·s   →   g = mean factor   →   drawn anew in proportion to it
+//! r(M) ≈ exp(mean of ln g over the last steps)
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | w | weight of a step, whatever the material, the guide and the way directions are drawn | |
+//! | s | survival of roulette, more than 1 where paths split | [`Roulette::q`] |
+//! | r(M) | with its standard error from independent populations | [`Growth::rate`] |
+//! | max α | the largest throughput that any walker had | [`Growth::largest`] |
+//!
+//! Drawing the walkers anew keeps their number while M acts on them: they come to stand where second moments are large, as a power
+//! iteration would. What none of them ever finds is not measured. Where nothing has to be measured, because surfaces are Lambertian,
+//! [`proved`] says so: with s = ρ M is T itself, and with constant s it is bounded by max ρ²/s.
+//!
+//! Reference: the same is done to find the largest eigenvalue of transfer operators, with walkers that multiply and die; Grassberger,
+//! *Go with the winners* (2002).
+
+use super::Settings;
+use crate::estimator::Roulette;
+use crate::math::{Key, Purpose, Rgb, Rng};
+use crate::operator::{Adjoint, Role, Sensor, Transport};
+use crate::scene::bsdf::{Bsdf, Sampling};
+use crate::scene::{Scene, Vertex};
+use crate::terms::Variance;
+use rayon::prelude::*;
+
+/// Independent populations, their size, steps of each, and the first that count.
+const POPULATIONS: u32 = 8;
+const WALKERS: usize = 256;
+const STEPS: usize = 96;
+const SETTLED: usize = 40;
+/// Standard errors that a rate must be away from 1; with seven degrees of freedom it is wrong once in 200 times.
+pub(super) const CLEAR: f64 = 4.0;
+/// Throughputs above this have grown, and not by rounding.
+const GROWN: f32 = 1.001;
+
+/// How fast a moment of the weight grows in one channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Growth {
+    /// Its factor per vertex.
+    pub rate: f64,
+    /// Standard error.
+    pub std_error: f64,
+    /// The largest throughput seen.
+    pub largest: f32,
+}
+
+impl Growth {
+    /// What that says of the variance.
+    pub fn variance(&self) -> Variance {
+        let off = CLEAR * self.std_error;
+        if self.largest <= GROWN || self.rate + off < 1.0 {
+            Variance::Finite
+        } else if self.rate - off > 1.0 {
+            Variance::Infinite
+        } else {
+            Variance::Unknown
+        }
+    }
+
+    /// In words, after the name of what is estimated; none where the variance is finite.
+    pub fn doubt(&self) -> Option<String> {
+        let Self { rate, std_error, .. } = self;
+        let what = match self.variance() {
+            Variance::Finite => return None,
+            Variance::Infinite => "has infinite variance",
+            Variance::Unknown => "may have infinite variance",
+        };
+        Some(format!("{what}:\nthe second moment of a path's weight grows by {rate:.4} ± {std_error:.4} per vertex"))
+    }
+}
+
+/// A walk that can be followed step by step.
+pub trait Walk: Sync {
+    /// Where it stands.
+    type State: Copy + Send;
+    /// Where walker `i` of so many starts, and what is expected of it there.
+    fn start(&self, i: usize, rng: &mut Rng) -> Option<(Self::State, f32)>;
+    /// One step and its weight.
+    fn step(&self, at: &Self::State, rng: &mut Rng) -> Option<(Self::State, Rgb)>;
+    /// q at vertex v with this throughput.
+    fn q(&self, v: usize, throughput: Rgb, at: &Self::State, start: f32) -> f32;
+    /// What it carries at the start.
+    fn lit(&self) -> Rgb;
+}
+
+/// Walks from a sensor under a schedule.
+pub struct FromEye<'a, T, S> {
+    /// The transport.
+    pub t: &'a T,
+    /// Where paths start.
+    pub sensor: &'a S,
+    /// How they end.
+    pub roulette: &'a Roulette,
+}
+
+impl<T: Transport, S: Sensor<T>> Walk for FromEye<'_, T, S>
+where
+    T::State: Send,
+{
+    type State = T::State;
+    fn start(&self, i: usize, rng: &mut Rng) -> Option<(T::State, f32)> {
+        let [w, h] = self.sensor.size().map(u64::from);
+        let pixel = (i as u64 * w * h / WALKERS as u64) as u32;
+        let x = self.sensor.start(self.t, pixel, rng)?;
+        Some((x, self.t.expected(&x).unwrap_or_default().all))
+    }
+    fn step(&self, at: &T::State, rng: &mut Rng) -> Option<(T::State, Rgb)> {
+        self.t.scatter(at, rng).map(|s| (s.state, s.weight))
+    }
+    fn q(&self, v: usize, throughput: Rgb, at: &T::State, start: f32) -> f32 {
+        self.roulette.q(self.t, v, throughput, at, start)
+    }
+    fn lit(&self) -> Rgb {
+        self.t.lit()
+    }
+}
+
+/// Walks from the light under a schedule.
+pub struct FromLight<'a, T> {
+    /// The transport.
+    pub t: &'a T,
+    /// How they end.
+    pub roulette: &'a Roulette,
+}
+
+impl<T: Adjoint> Walk for FromLight<'_, T>
+where
+    T::State: Send,
+{
+    type State = T::State;
+    fn start(&self, _: usize, rng: &mut Rng) -> Option<(T::State, f32)> {
+        let (light, _) = self.t.emit(rng)?;
+        Some((self.t.walk(&light, Role::Emission, rng)?.state, 0.0))
+    }
+    fn step(&self, at: &T::State, rng: &mut Rng) -> Option<(T::State, Rgb)> {
+        self.t.walk(at, Role::Flux, rng).map(|s| (s.state, s.weight))
+    }
+    fn q(&self, v: usize, throughput: Rgb, at: &T::State, _: f32) -> f32 {
+        self.roulette.termination(v, throughput, self.t.albedo(at))
+    }
+    fn lit(&self) -> Rgb {
+        self.t.lit()
+    }
+}
+
+/// How fast the moment of that order (2 for the variance) grows from vertex `from` on: in the channel where it grows fastest.
+pub fn growth(walk: &impl Walk, from: usize, order: i32, seed: u64) -> Growth {
+    let channels = (0..3).filter(|&c| walk.lit()[c] > 0.0);
+    let all = channels.map(|c| in_channel(walk, from, order, c, Key::new(seed, "growth of moments")));
+    let nothing = Growth { rate: 0.0, std_error: 0.0, largest: 0.0 };
+    all.reduce(|a, b| {
+        let worst = if b.rate > a.rate { b } else { a };
+        Growth { largest: a.largest.max(b.largest), ..worst }
+    })
+    .unwrap_or(nothing)
+}
+
+fn in_channel(walk: &impl Walk, from: usize, order: i32, channel: usize, key: Key) -> Growth {
+    let runs: Vec<(f64, f32)> =
+        (0..POPULATIONS).into_par_iter().map(|p| population(walk, from, order, channel, key.branch(p))).collect();
+    let largest = runs.iter().fold(0.0, |a: f32, r| a.max(r.1));
+    // a population that has died out grows by 0
+    if runs.iter().all(|r| r.0 == f64::NEG_INFINITY) {
+        return Growth { rate: 0.0, std_error: 0.0, largest };
+    }
+    let logs: Vec<f64> = runs.iter().map(|r| r.0.max(-1e3)).collect();
+    let n = logs.len() as f64;
+    let mean = logs.iter().sum::<f64>() / n;
+    let variance = logs.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    let rate = mean.exp();
+    Growth { rate, std_error: rate * (variance / n).sqrt(), largest }
+}
+
+struct Walker<S> {
+    x: S,
+    alpha: Rgb,
+    start: f32,
+}
+
+/// The mean of ln g, and the largest throughput.
+fn population<W: Walk>(walk: &W, from: usize, order: i32, channel: usize, key: Key) -> (f64, f32) {
+    let rng = |i: usize, step: usize, purpose: Purpose| Rng::at(key, i as u32, 0, step, purpose);
+    let begin = |i: usize| {
+        let (x, start) = walk.start(i, &mut rng(i, 0, Purpose::Start))?;
+        Some(Walker { x, alpha: walk.lit(), start })
+    };
+    let mut walkers: Vec<Walker<W::State>> = (0..WALKERS).filter_map(begin).collect();
+    let (mut sum, mut largest) = (0.0, 0.0f32);
+    for step in 0..STEPS {
+        let mut factors = Vec::with_capacity(walkers.len());
+        for (i, w) in walkers.iter_mut().enumerate() {
+            let (q, before) = (walk.q(from + step, w.alpha, &w.x, w.start), w.alpha[channel]);
+            let next = if q < 1.0 { walk.step(&w.x, &mut rng(i, step, Purpose::Scatter)) } else { None };
+            let Some((x, weight)) = next.filter(|_| before > 0.0) else {
+                factors.push(0.0);
+                continue;
+            };
+            (w.x, w.alpha) = (x, w.alpha * weight * (1.0 / (1.0 - q)));
+            largest = largest.max(w.alpha[channel]);
+            let ratio = f64::from(w.alpha[channel] / before);
+            factors.push(ratio.powi(order) * f64::from(1.0 - q));
+        }
+        let total: f64 = factors.iter().sum();
+        if total == 0.0 {
+            return (f64::NEG_INFINITY, largest);
+        }
+        if step >= SETTLED {
+            sum += (total / factors.len() as f64).ln();
+        }
+        // as many walkers as before, evenly spaced over the sums of the factors
+        let each = total / WALKERS as f64;
+        let mut at = each * f64::from(rng(0, step, Purpose::Roulette).one());
+        let (mut up_to, mut next) = (0.0, Vec::with_capacity(WALKERS));
+        for (w, f) in walkers.iter().zip(&factors) {
+            up_to += f;
+            while at < up_to && next.len() < WALKERS {
+                next.push(Walker { x: w.x, alpha: w.alpha, start: w.start });
+                at += each;
+            }
+        }
+        walkers = next;
+    }
+    (sum / (STEPS - SETTLED) as f64, largest)
+}
+
+/// Whether it is proved that the variance is finite: Lambertian surfaces whose directions are drawn by the cosine, without a guide.
+pub fn proved(scene: &Scene, sampling: Sampling, roulette: &Roulette) -> bool {
+    let lambertian =
+        |side: u32| matches!(scene.bsdf(&Vertex { side, ..Vertex::default() }), Bsdf::Diffuse(_) | Bsdf::Black);
+    let plain = || sampling != Sampling::Uniform && (0..scene.sides()).all(lambertian);
+    let bounded = |q: f64| {
+        let rho = f64::from((scene.max_albedo() * scene.lit()).max_element());
+        rho * rho < 1.0 - q
+    };
+    match roulette {
+        // paths are cut at K
+        Roulette::Never => true,
+        Roulette::Constant { q, .. } => *q == 0.0 || bounded(*q) && plain(),
+        Roulette::Table(q) => q.last().is_none_or(|&q| q == 0.0 || bounded(q)) && plain(),
+        Roulette::Albedo { .. } | Roulette::Throughput { .. } => plain(),
+        // without a guide as by albedo
+        Roulette::Contribution { .. } | Roulette::Window { .. } => plain(),
+    }
+}
+
+/// Walks from the eye under a schedule: nothing where their variance is finite.
+pub(super) fn doubt_from_eye<T: Transport>(
+    t: &T,
+    sensor: &(impl Sensor<T> + Sync),
+    roulette: &Roulette,
+    settings: &Settings,
+) -> Option<Growth>
+where
+    T::State: Send,
+{
+    let found = growth(&FromEye { t, sensor, roulette }, roulette.settled(), 2, settings.seed);
+    (found.variance() != Variance::Finite).then_some(found)
+}
