@@ -4,7 +4,7 @@
 //! [`shape`](super::shape) and give ties to the lower number, so they give the same bits (tested). The loops over lanes are
 //! plain Rust that the compiler vectorises; `pulp` compiles them for several instruction sets and chooses at run time.
 
-use super::shape::Shape;
+use super::shape::{Flat, Shape};
 use super::vertex::Rays;
 use crate::math::{Columns, Points, Streams};
 use glam::Vec3;
@@ -46,6 +46,30 @@ fn nearest(
     }
 }
 
+/// The same for a parallelogram: lanes that pass next to an edge are rare, and looked at one by one.
+#[inline(always)]
+fn nearest_flat(s: &Flat, id: u32, o: &[Lane; 3], d: &[Lane; 3], t: &mut Lane, prim: &mut [u32; LANES]) {
+    let at = |i: usize| (Vec3::new(o[0][i], o[1][i], o[2][i]), Vec3::new(d[0][i], d[1][i], d[2][i]));
+    let mut any = 0;
+    for i in 0..LANES {
+        let (o, d) = at(i);
+        let (r, met, unsure) = s.look(o, d);
+        let nearer = met & (r < t[i]);
+        t[i] = if nearer { r } else { t[i] };
+        prim[i] = if nearer { id } else { prim[i] };
+        any |= u32::from(unsure);
+    }
+    if any != 0 {
+        for i in 0..LANES {
+            let (o, d) = at(i);
+            let (r, _, unsure) = s.look(o, d);
+            if unsure && r < t[i] && s.edges(o, d) {
+                (t[i], prim[i]) = (r, id);
+            }
+        }
+    }
+}
+
 /// The nearest hits of the first `n` rays, `prim = u32::MAX` where there is none. Reads and writes whole packets.
 #[pulp::with_simd(closest = Arch::new())]
 #[inline(always)]
@@ -56,7 +80,7 @@ pub(crate) fn closest_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], rays
         let (mut t, mut prim) = ([f32::INFINITY; LANES], [u32::MAX; LANES]);
         for (id, shape) in shapes.iter().enumerate() {
             match shape {
-                Shape::Flat(s) => nearest(|o, d| s.meet(o, d), id as u32, &o, &d, &mut t, &mut prim),
+                Shape::Flat(s) => nearest_flat(s, id as u32, &o, &d, &mut t, &mut prim),
                 Shape::Triangle(s) => nearest(|o, d| s.meet(o, d), id as u32, &o, &d, &mut t, &mut prim),
                 Shape::Ball(_) | Shape::Disc(_) => {}
             }
@@ -71,6 +95,26 @@ fn block(meet: impl Fn(Vec3, Vec3) -> (f32, bool), r: &[Lane; 6], blocked: &mut 
     for i in 0..LANES {
         let (s, met) = meet(Vec3::new(r[0][i], r[1][i], r[2][i]), Vec3::new(r[3][i], r[4][i], r[5][i]));
         blocked[i] |= u32::from(met & (s < 1.0));
+    }
+}
+
+/// The same for a parallelogram.
+#[inline(always)]
+fn block_flat(s: &Flat, r: &[Lane; 6], blocked: &mut [u32; LANES]) {
+    let at = |i: usize| (Vec3::new(r[0][i], r[1][i], r[2][i]), Vec3::new(r[3][i], r[4][i], r[5][i]));
+    let mut any = 0;
+    for i in 0..LANES {
+        let (o, d) = at(i);
+        let (t, met, unsure) = s.look(o, d);
+        blocked[i] |= u32::from(met & (t < 1.0));
+        any |= u32::from(unsure);
+    }
+    if any != 0 {
+        for i in 0..LANES {
+            let (o, d) = at(i);
+            let (t, _, unsure) = s.look(o, d);
+            blocked[i] |= u32::from(unsure && t < 1.0 && s.edges(o, d));
+        }
     }
 }
 
@@ -90,7 +134,7 @@ pub(crate) fn occluded_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], ray
         let mut blocked = [0; LANES];
         for shape in shapes {
             match shape {
-                Shape::Flat(s) => block(|o, d| s.meet(o, d), &r, &mut blocked),
+                Shape::Flat(s) => block_flat(s, &r, &mut blocked),
                 Shape::Triangle(s) => block(|o, d| s.meet(o, d), &r, &mut blocked),
                 Shape::Ball(_) | Shape::Disc(_) => {}
             }

@@ -30,13 +30,14 @@ use glam::{DVec3, Vec3};
 pub(crate) const EPSILON: f64 = 1.0 / 16_777_216.0;
 /// e in units of ε Σ|nᵢ xᵢ|.
 const OFF: f32 = 16.0 * EPSILON as f32;
-/// R in units of ε Σ|âᵢ| max|xᵢ|: two hits with an error of at most 8 each cannot pass between two neighbours.
-pub(crate) const REACH: f64 = 8.0;
+/// R in units of ε Σ|âᵢ| max|xᵢ|. A ray that is nearly parallel to one wall may miss it by an error along itself; the next wall must then
+/// catch it, which may be off by 8 itself.
+pub(crate) const REACH: f64 = 16.0;
 /// M in the same units, four times that of e: a ray that starts e off one wall is still before the next one where they meet at
 /// 15° or more.
 pub(crate) const KEEP: f64 = 64.0;
-/// R is at most this part of half the width, so that no area is wrong by more than 4·10⁻⁶.
-pub(crate) const MOST_REACH: f64 = 1.0 / 524_288.0;
+/// R is at most this part of half the width, so that no area is wrong by more than 8·10⁻⁶.
+pub(crate) const MOST_REACH: f64 = 1.0 / 262_144.0;
 /// M is at most this part of half the width.
 pub(crate) const MOST_KEEP: f64 = 1.0 / 1024.0;
 

@@ -4,14 +4,15 @@
 //!
 //! | kind | test | reference |
 //! |---|---|---|
-//! | [`Flat`] | plane, then |u|, |v| ≤ 1 in coordinates centred on the parallelogram | – |
+//! | [`Flat`] | plane, then |u|, |v| ≤ 1 in coordinates centred on the parallelogram; next to an edge, where these are rounded, the test of a triangle | – |
 //! | [`Triangle`] | signs of edge·direction volumes; the sign of a shared edge is the same from both sides, so meshes have no cracks | Plücker test in the robust form of Embree (Wald et al. 2014); Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection* (2013) |
 //! | [`Ball`] | quadratic, in `f64` | – |
 //! | [`Disc`] | plane, then distance from the centre | – |
 //!
 //! A hit is projected onto its surface, which moves it by no more than rounding ([`rounding`](super::rounding)), and kept a few units in
 //! the last place inside the edges of its primitive, so that the next ray starts inside a closed room and cannot slip out through a
-//! corner. Parallelograms reach a few such units over their edges, for the same reason; triangles need not.
+//! corner. Parallelograms reach a few such units over their edges, for those that only touch; where they share corners, the test by
+//! edges closes the seam, however narrow they are.
 
 use super::primitive::Primitive;
 use super::rounding::{KEEP, MOST_KEEP, MOST_REACH, REACH, across, onto};
@@ -38,6 +39,12 @@ pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
     Vec3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 }
 
+/// Volume between a ray and an edge, its ends given from the start of the ray: exactly opposite for the edge taken backwards.
+#[inline(always)]
+fn edge(a: Vec3, b: Vec3, d: Vec3) -> f32 {
+    dot(cross(a - b, a + b), d)
+}
+
 /// A parallelogram, ready for rays: plane `n·p = h`; `a·p + a0` and `b·p + b0` run from −1 to 1 across it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flat {
@@ -48,7 +55,10 @@ pub(crate) struct Flat {
     pub(crate) b: Vec3,
     pub(crate) b0: f32,
     /// 1 + R, in these coordinates
-    pub(crate) reach: [f32; 2],
+    reach: [f32; 2],
+    /// Up to here rounding may be to blame that the test by coordinates fails.
+    band: [f32; 2],
+    corners: [Vec3; 4],
     center: Vec3,
     half_u: Vec3,
     half_v: Vec3,
@@ -76,6 +86,8 @@ impl Flat {
             b: f(b),
             b0: (-1.0 - b.dot(origin)) as f32,
             reach: part(REACH, MOST_REACH).map(|r| 1.0 + r),
+            band: part(KEEP, 0.5).map(|r| 1.0 + r),
+            corners: [0, 1, 3, 2].map(|i| f(corners[i])),
             center: f(origin + 0.5 * (u + v)),
             half_u: f(0.5 * u),
             half_v: f(0.5 * v),
@@ -83,13 +95,29 @@ impl Flat {
         }
     }
 
-    /// Distance, and whether the ray meets the parallelogram there. Also used lane by lane in packets.
+    /// Distance, whether the ray meets the parallelogram there, and whether the [edges](Self::edges) must say so. Also used lane by
+    /// lane in packets.
     #[inline(always)]
-    pub(crate) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
+    pub(crate) fn look(&self, o: Vec3, d: Vec3) -> (f32, bool, bool) {
         let t = (self.h - dot(self.n, o)) / dot(self.n, d);
         let p = Vec3::new(d.x * t + o.x, d.y * t + o.y, d.z * t + o.z);
-        let (u, v) = (dot(self.a, p) + self.a0, dot(self.b, p) + self.b0);
-        (t, (u.abs() <= self.reach[0]) & (v.abs() <= self.reach[1]) & (t > 0.0))
+        let (u, v) = ((dot(self.a, p) + self.a0).abs(), (dot(self.b, p) + self.b0).abs());
+        let met = (u <= self.reach[0]) & (v <= self.reach[1]) & (t > 0.0);
+        (t, met, !met & (u <= self.band[0]) & (v <= self.band[1]) & (t > 0.0))
+    }
+
+    /// Whether the ray's line passes between the edges, each with the same sign as in the primitive beyond it.
+    #[cold]
+    pub(crate) fn edges(&self, o: Vec3, d: Vec3) -> bool {
+        let v = self.corners.map(|p| p - o);
+        let w = [0, 1, 2, 3].map(|i| edge(v[(i + 1) % 4], v[i], d));
+        (w.iter().all(|w| *w >= 0.0) || w.iter().all(|w| *w <= 0.0)) && w.iter().any(|w| *w != 0.0)
+    }
+
+    #[inline(always)]
+    fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
+        let (t, met, unsure) = self.look(o, d);
+        (t, met || unsure && self.edges(o, d))
     }
 
     /// The point of the plane nearest to `p`, kept inside the edges.
@@ -133,8 +161,7 @@ impl Triangle {
     #[inline(always)]
     pub(crate) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
         let v = self.p.map(|p| p - o);
-        let edge = |a: Vec3, b: Vec3| dot(cross(a - b, a + b), d);
-        let w = Vec3::new(edge(v[2], v[1]), edge(v[0], v[2]), edge(v[1], v[0]));
+        let w = Vec3::new(edge(v[2], v[1], d), edge(v[0], v[2], d), edge(v[1], v[0], d));
         let same = ((w.x >= 0.0) & (w.y >= 0.0) & (w.z >= 0.0)) | ((w.x <= 0.0) & (w.y <= 0.0) & (w.z <= 0.0));
         // a triangle that rounding has made a line or a point has no inside
         let some = (w.x != 0.0) | (w.y != 0.0) | (w.z != 0.0);
