@@ -5,14 +5,16 @@
 mod common;
 
 use common::scenes::quad;
+use fredholm::estimator::Technique;
 use fredholm::scene::coplanar::{Kind, Overlap, Surfaces};
 use fredholm::scene::description::{CameraDescription, Description, Geometry, Material, Shape, Sides};
 use fredholm::scene::{Primitive, Scene, builtin, load};
+use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, Outcome, compare};
 use fredholm::terms::{Estimate, Series};
+use fredholm::worlds::discrete::Matrix;
 use fredholm::worlds::sampled::{self, Estimator};
 use fredholm::worlds::{Settings, Unobserved, coplanar, discrete};
-use fredholm::{estimator::Technique, worlds::discrete::Discrete};
 use glam::{DQuat, DVec3};
 use std::sync::atomic::AtomicBool;
 
@@ -161,7 +163,8 @@ fn lamps_come_to_lie_in_front() {
                 assert_eq!([o.nearer(true), o.nearer(false)], [Some(1), Some(0)]);
             }
             assert_eq!(s.overlaps.len(), lamps.len());
-            assert!(s.moved < 1e-5, "{}", s.moved);
+            // Σ |nᵢ| Rᵢ is 3 at most in a room of this size
+            assert!(s.moved < 1.01 * 3.0 * 64.0 / 2f64.powi(24), "{}", s.moved);
         }
     }
 }
@@ -377,26 +380,37 @@ fn settings(technique: Technique, spp: u32, seed: u64) -> Settings {
     Settings { spp, seed, technique, max_bounces: 3, ..Settings::default() }
 }
 
-/// Terms by every way of sampling, and by the matrix.
-fn ways(d: &Description, spp: u32, seed: u64) -> Vec<Series> {
-    let scene = Scene::new(d);
-    let run = |e, t, spp| sampled::terms(&scene, e, &settings(t, spp, seed), &Unobserved, &NEVER).series;
-    let mut all: Vec<Series> =
-        [Technique::Scatter, Technique::Connect, Technique::Mis].map(|t| run(Estimator::Prefix, t, spp)).to_vec();
-    all.push(run(Estimator::Light, Technique::Mis, spp));
-    all.push(run(Estimator::Bidirectional, Technique::Mis, spp / 4));
-    all
-}
-
-fn matrix(d: &Description, patches: usize, seed: u64) -> Discrete {
-    let settings = Settings { patches, ..settings(Technique::Mis, 256, seed) };
-    discrete::radiosity(d, &Scene::new(d), &settings, &Unobserved, &NEVER).unwrap()
-}
-
 /// T⁰, T¹, T², and the whole.
-fn values(s: &Series) -> [Estimate; 4] {
-    let f = s.image();
-    [f.terms[0], f.terms[1], f.terms[2], f.total]
+type Values = [Estimate; 4];
+
+/// What one way of sampling finds, from four runs, so that there are 60 degrees of freedom.
+fn values(scene: &Scene, estimator: Estimator, technique: Technique, spp: u32, seed: u64) -> Values {
+    let runs: Vec<Values> = (0..4)
+        .map(|i| {
+            let settings = settings(technique, spp / 4, seed ^ (i << 60));
+            let s = sampled::terms(scene, estimator, &settings, &Unobserved, &NEVER).series;
+            let f = s.image();
+            [f.terms[0], f.terms[1], f.terms[2], f.total]
+        })
+        .collect();
+    [0, 1, 2, 3].map(|k| Estimate {
+        mean: runs.iter().map(|r| r[k].mean).sum::<DVec3>() / 4.0,
+        std_error: runs.iter().map(|r| r[k].std_error.powf(2.0)).sum::<DVec3>().map(f64::sqrt) / 4.0,
+        replicates: 61,
+    })
+}
+
+/// Every way of sampling, with the values that it knows well enough to be judged.
+const WAYS: [(&str, Estimator, Technique, u32, &[usize]); 5] = [
+    ("scatter", Estimator::Prefix, Technique::Scatter, 4096, &[0, 3]),
+    ("connect", Estimator::Prefix, Technique::Connect, 4096, &[0, 1, 2, 3]),
+    ("mis", Estimator::Prefix, Technique::Mis, 4096, &[0, 1, 2, 3]),
+    ("light", Estimator::Light, Technique::Mis, 4096, &[0, 1, 2, 3]),
+    ("bidirectional", Estimator::Bidirectional, Technique::Mis, 512, &[0, 1, 2, 3]),
+];
+
+fn matrix(d: &Description, patches: usize) -> Matrix<Radiosity> {
+    discrete::dense_matrix(d, &Scene::new(d), patches, 1.0, 3, &Unobserved, &NEVER).unwrap()
 }
 
 fn apart(a: &Estimate, b: &Estimate) -> Estimate {
@@ -427,7 +441,7 @@ fn rays_meet_the_lamp_and_not_the_wall() {
                 let to = turn * DVec3::new(x, 1.0, z);
                 let d = (to - from).normalize();
                 let hit = scene.trace(from.as_vec3(), d.as_vec3()).unwrap();
-                assert!(hit.side / 2 >= 6 && hit.side % 2 == 0, "{from} {to}: side {}", hit.side);
+                assert!(hit.side / 2 >= 6 && hit.side.is_multiple_of(2), "{from} {to}: side {}", hit.side);
                 let eye = from.as_vec3();
                 assert!(!scene.blocked(hit.p, down.as_vec3(), eye, glam::Vec3::ZERO), "{from} {to}");
             }
@@ -478,28 +492,52 @@ fn lamps_in_a_plane_are_worth_their_light() {
     ];
     for (what, flush, hole) in cases {
         assert!(flush.surfaces().moved > 0.0 && hole.surfaces().moved == 0.0, "{what}");
-        let reference = values(&ways(&hole, 1024, seed ^ 1)[2]);
-        let whole = reference[3].mean;
-        for s in ways(&flush, 1024, seed) {
-            for (k, (a, b)) in values(&s).iter().zip(&reference).enumerate() {
-                let delta = 0.03 * b.mean + 0.005 * whole;
-                account.assert_equivalent(&format!("{what}, {}, {k}", s.label), &apart(a, b), DVec3::ZERO, delta);
+        let reference = values(&Scene::new(&hole), Estimator::Prefix, Technique::Mis, 4096, seed ^ 1);
+        let scene = Scene::new(&flush);
+        for (way, estimator, technique, spp, judged) in WAYS {
+            // the first case by every way, the others by two
+            if what != "the fault" && !["mis", "light"].contains(&way) {
+                continue;
+            }
+            let found = values(&scene, estimator, technique, spp, seed);
+            for &k in judged {
+                let delta = [0.06, 0.03, 0.03, 0.05][k] * reference[k].mean;
+                let d = apart(&found[k], &reference[k]);
+                account.assert_equivalent(&format!("{what}, {way}, {k}"), &d, DVec3::ZERO, delta);
             }
         }
-        // the matrices of both, on patches that differ only by what the cuts do
-        let (a, b) = (matrix(&flush, 600, seed), matrix(&hole, 600, seed));
-        let patches = a.matrix.radiosity.patches();
-        let covered = patches.covered_area() / patches.surface_area();
-        assert!(covered > 0.01, "{what}: {covered}");
-        for (k, (a, b)) in values(&a.fine.series).iter().zip(&reference).enumerate() {
-            let delta = 0.03 * b.mean + 0.005 * whole;
-            account.assert_equivalent(&format!("{what}, matrix, {k}"), &apart(a, b), DVec3::ZERO, delta);
+        // the matrices of both, on patches that differ only by what the cuts do: power that leaves all surfaces
+        let (a, b) = (matrix(&flush, 600), matrix(&hole, 600));
+        let patches = &a.radiosity.patches;
+        assert!(patches.covered_area() > 0.35, "{what}: {}", patches.covered_area());
+        for k in 0..4 {
+            let power = |m: &Matrix<Radiosity>| m.surface[k].x * m.radiosity.patches.surface_area();
+            let (x, y) = (power(&a), power(&b));
+            assert!((x - y).abs() < 3e-3 * y, "{what}, k = {k}: {x} {y}");
         }
-        let [x, y] = [&a, &b].map(|d| d.matrix.spectral[0].radius);
-        assert!((x - y).abs() < 2e-3, "{what}: {x} {y}");
-        let f = &a.matrix.invariants;
-        assert!(f.row_sum_max < 1.0 + 1e-3 && f.row_sum_min > 1.0 - 1e-3, "{what}: {f:?}");
+        let [x, y] = [&a, &b].map(|m| m.spectral[0].radius);
+        assert!((x - y).abs() < 1e-3, "{what}: {x} {y}");
+        // in a closed room every row of F adds up to 1, and to 0 on the outside of a surface of two sides
+        let f = &a.radiosity.factors;
+        for i in 0..f.n {
+            let sum: f64 = f.row(i).iter().map(|x| f64::from(*x)).sum();
+            assert!(sum.abs().min((sum - 1.0).abs()) < 1e-3, "{what}: row {i} adds up to {sum}");
+        }
     }
+}
+
+/// In packets and one by one, the same bits.
+#[test]
+fn both_engines_see_the_same_lamp() {
+    let square = lamp(below([-0.3, -0.3], [0.3, 0.3], 1.0));
+    let d = in_plane(vec![square], Sides::Front);
+    let run = |scene: &Scene| {
+        let settings = settings(Technique::Mis, 64, 5);
+        sampled::terms(scene, Estimator::Prefix, &settings, &Unobserved, &NEVER).series.functionals
+    };
+    let packets = run(&Scene::new(&d));
+    assert_eq!(packets, run(&Scene::new(&d).one_by_one()));
+    assert!(packets[0].terms[0].mean.x > 0.5);
 }
 
 /// The fault, far from the origin.
@@ -512,11 +550,13 @@ fn lamps_in_a_plane_far_away() {
     let (flush, hole) =
         (in_plane(vec![square()], Sides::Front), with_hole([-0.3, -0.3, 0.3, 0.3], square(), Sides::Front));
     let far = mapped(&flush, 1.0, |x| x + DVec3::new(1e6, 3e6, -2e6));
-    let reference = values(&ways(&hole, 512, seed ^ 1)[2]);
-    for s in ways(&far, 512, seed) {
-        for (k, (a, b)) in values(&s).iter().zip(&reference).enumerate() {
-            let delta = 0.05 * b.mean + 0.01 * reference[3].mean;
-            account.assert_equivalent(&format!("{}, {k}", s.label), &apart(a, b), DVec3::ZERO, delta);
+    let reference = values(&Scene::new(&hole), Estimator::Prefix, Technique::Mis, 4096, seed ^ 1);
+    let scene = Scene::new(&far);
+    for (way, estimator, technique, spp, judged) in WAYS {
+        let found = values(&scene, estimator, technique, spp, seed);
+        for &k in judged {
+            let delta = [0.06, 0.03, 0.03, 0.05][k] * reference[k].mean;
+            account.assert_equivalent(&format!("{way}, {k}"), &apart(&found[k], &reference[k]), DVec3::ZERO, delta);
         }
     }
 }

@@ -8,8 +8,8 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | R | half the extents of the scene's box | [`Scale`] |
-//! | γ | planes nearer to each other than this are one plane | [`Scale::gap`] |
+//! | R | half the extents of the scene's box | `Scale` |
+//! | γ | planes nearer to each other than this are one plane | `Scale::gap` |
 //! | h | height of the first of a pair over the second, along the front normal of the first: lowest and highest | [`Overlap::height`] |
 //! | s | how far an emitter is moved | `shifts` |
 //!
