@@ -356,7 +356,8 @@ fn compare_paths(d: &Description, seed: u64, samples: u32, seen: &mut Compared) 
     const LAST: usize = 5;
     let scene = Scene::new(d);
     let t = SceneTransport::new(&scene);
-    let reference = Reference::new(&scene, d);
+    let centred = d.centred().scene;
+    let reference = Reference::new(&scene, &centred);
     let (key, pixels) = (Key::new(seed, "paths"), scene.camera.size[0] * scene.camera.size[1]);
     let bidirectional = Bidirectional(plan(LAST, Technique::Mis, &Roulette::Never));
     for (pixel, sample) in (0..pixels).flat_map(|p| (0..samples).map(move |s| (p, s))) {
