@@ -121,8 +121,8 @@ fn what_keeps_the_light_it_gets_is_refused() {
     assert_eq!(trapped(&Scene::new(&closed(0.999))), None);
     // one lamp among many that is in a trap is found
     let far = |i: usize| {
-        let at = DVec3::new(10.0 + 3.0 * i as f64, 0.0, 0.0);
-        (sphere(at, 1.0, false), DVec3::splat(0.5), DVec3::ONE)
+        let at = DVec3::new(1.2 + 0.25 * (i % 8) as f64, 0.25 * (i / 8) as f64, 0.0);
+        (sphere(at, 0.1, false), DVec3::splat(0.5), DVec3::ONE)
     };
     let mut many: Vec<Surface> = (0..40).map(far).collect();
     many.extend([

@@ -226,7 +226,7 @@ pub fn light_is_lost(scene: &Scene, settings: &Settings, worlds: &[WorldName]) -
         (has(WorldName::Path) && settings.path_roulette.ends(), &settings.path_roulette),
     ];
     let walked: Vec<&Roulette> = walked.into_iter().filter(|w| w.0).map(|w| w.1).collect();
-    if !(has(WorldName::Radiosity) || !walked.is_empty()) {
+    if !has(WorldName::Radiosity) && walked.is_empty() {
         return Ok(());
     }
     if trapped(scene).is_some() {

@@ -226,14 +226,9 @@ fn closed(patches: &Patches, scene: &Scene, inside: &[bool], stop: &AtomicBool) 
 
 /// Refuses what keeps all its light, or seems to.
 fn loses(patches: &Patches, spectral: &[Spectral; 3]) -> Result<(), MatrixError> {
-    for (c, s) in spectral.iter().enumerate().filter(|(_, s)| s.radius >= KEEPS_ALL) {
-        let albedo = patches.iter().map(|p| p.reflectance[c]).fold(0.0, f64::max);
-        return Err(match albedo < KEEPS_ALL {
-            true => MatrixError::Coarse { radius: s.radius, albedo },
-            false => MatrixError::Singular,
-        });
-    }
-    Ok(())
+    let Some((c, s)) = spectral.iter().enumerate().find(|(_, s)| s.radius >= KEEPS_ALL) else { return Ok(()) };
+    let albedo = patches.iter().map(|p| p.reflectance[c]).fold(0.0, f64::max);
+    Err(if albedo < KEEPS_ALL { MatrixError::Coarse { radius: s.radius, albedo } } else { MatrixError::Singular })
 }
 
 fn trace(

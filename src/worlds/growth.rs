@@ -253,7 +253,7 @@ pub fn proved(scene: &Scene, sampling: Sampling, roulette: &Roulette) -> bool {
 /// Walks from the eye under a schedule: nothing where their variance is finite.
 pub(super) fn doubt_from_eye<T: Transport>(
     t: &T,
-    sensor: &(impl Sensor<T> + Sync),
+    sensor: &impl Sensor<T>,
     roulette: &Roulette,
     settings: &Settings,
 ) -> Option<Growth>

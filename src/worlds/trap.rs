@@ -4,7 +4,7 @@
 //! light starts → … → x_v, albedo 1 in a channel at every vertex so far        never out: r(T) = 1 where light is
 //! ```
 //!
-//! Walks start where light does, one at least from every lamp: what light never gets into need not let it out. A closed white block
+//! Walks start where light does, two at least from every lamp: what light never gets into need not let it out. A closed white block
 //! in a room is no obstacle, nor are the directions inside of glass that are reflected for ever and that no light from outside takes.
 //! The three channels are three problems: a lamp without blue lights nothing in blue.
 
@@ -12,7 +12,7 @@ use crate::math::{Key, Purpose, Rgb, Rng};
 use crate::operator::{Adjoint, Role, SceneTransport, Transport};
 use crate::scene::Scene;
 
-/// Walks: at least, and at most; one for each lamp between.
+/// Walks: at least, and at most; two for each lamp between.
 const WALKS: [usize; 2] = [16, 4096];
 /// Bounces of a walk that is still inside with all its light: an opening of 10⁻⁵ of the surface lets one of 20 000 walks pass for
 /// closed. Only what is closed, or nearly so, costs so much.
@@ -23,7 +23,7 @@ pub fn trapped(scene: &Scene) -> Option<[bool; 3]> {
     if (scene.max_albedo() * scene.lit()).max_element() < 1.0 {
         return None;
     }
-    let walks = scene.lights.len().clamp(WALKS[0], WALKS[1]);
+    let walks = (2 * scene.lights.len()).clamp(WALKS[0], WALKS[1]);
     (0..walks).find_map(|i| kept(scene, i, walks))
 }
 
