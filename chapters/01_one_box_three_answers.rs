@@ -98,8 +98,11 @@ fn claims(scene: &Scene, a: &Answers, [(_, path), (_, matrix)]: &[(&str, Compari
 /// The mean of an image over the pixels in which nothing but the ceiling is seen.
 fn on_ceiling(scene: &Scene, image: &TermImage) -> f64 {
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
-    let ceiling = |p: Vec3| p.y > 0.999; // the lamp hangs a centimetre lower
-    let seen = |pixel: u32, u: [f32; 2]| scene.trace(scene.camera.origin, scene.camera.direction(pixel, u));
+    let ceiling = |p: Vec3| scene.origin().y + f64::from(p.y) > 0.999; // the lamp hangs a centimetre lower
+    let seen = |pixel: u32, u: [f32; 2]| {
+        let (start, direction) = scene.camera.ray(pixel, u);
+        scene.trace(start, direction)
+    };
     let inside = |pixel: &usize| corners.iter().all(|&u| seen(*pixel as u32, u).is_some_and(|hit| ceiling(hit.p)));
     let pixels: Vec<[f32; 3]> = (0..image.mean.len()).filter(inside).map(|p| image.mean[p]).collect();
     picture::mean(&pixels)

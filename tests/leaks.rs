@@ -90,6 +90,27 @@ fn mesh_box(turn: DQuat, at: DVec3) -> Geometry {
     inside_of((0..8).map(corner).collect(), &faces)
 }
 
+/// A prism whose walls meet at 20°, as triangles.
+fn wedge(turn: DQuat) -> Geometry {
+    let half = 10f64.to_radians().tan();
+    let corner = |i: usize| {
+        let p = [DVec3::ZERO, DVec3::new(1.0, -half, 0.0), DVec3::new(1.0, half, 0.0)][i % 3];
+        turn * (p + DVec3::Z * if i < 3 { -0.5 } else { 0.5 })
+    };
+    let faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]];
+    inside_of((0..6).map(corner).collect(), &faces)
+}
+
+/// A mesh as one shape per triangle, the corners of each off by the rounding of the file: edges that are shared in name only.
+fn in_pieces(mesh: &Geometry) -> Vec<Geometry> {
+    let Geometry::Mesh { vertices, faces, .. } = mesh else { panic!() };
+    let piece = |(i, f): (usize, &[u32; 3])| {
+        let off = |p: DVec3| p * (1.0 + [0.0, 1.0, -1.0][i % 3] * f64::EPSILON);
+        Geometry::Mesh { vertices: f.map(|v| off(vertices[v as usize])).to_vec(), faces: vec![[0, 1, 2]], uvs: vec![] }
+    };
+    faces.iter().enumerate().map(piece).collect()
+}
+
 /// The rooms, by name.
 fn rooms() -> Vec<(&'static str, Description)> {
     let (far, odd) = (DVec3::new(100.0, -70.0, 130.0), DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 1.1, -0.7));
@@ -122,6 +143,9 @@ fn rooms() -> Vec<(&'static str, Description)> {
         ("mesh box", glowing([mesh_box(DQuat::IDENTITY, DVec3::ZERO)])),
         ("turned mesh box", glowing([mesh_box(odd, DVec3::ZERO)])),
         ("far mesh box", glowing([mesh_box(odd, far)])),
+        ("wedge", glowing([wedge(DQuat::IDENTITY)])),
+        ("turned wedge", glowing([wedge(odd)])),
+        ("ball in pieces", glowing(in_pieces(&ball(2, odd, DVec3::ZERO)))),
         ("box with a ball", glowing([unit(10.0, DVec3::ZERO), sphere(DVec3::new(0.1, -0.2, 0.1), 0.25, false)])),
     ]
 }

@@ -389,7 +389,7 @@ fn slab() -> Vec<Geometry> {
 fn tilted(scene: &Scene, degrees: f64) -> Vertex {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let d = DVec3::new(-sin, 0.0, -cos);
-    scene.trace((-2.0 * d).as_vec3(), d.as_vec3()).unwrap()
+    scene.trace((-2.0 * d - scene.origin()).as_vec3(), d.as_vec3()).unwrap()
 }
 
 /// A slab and a ball of lossless glass: X_k is 1 for one k, of probability T^k, and 0 for the others; under a constant choice

@@ -347,8 +347,8 @@ fn spheres_are_sampled_uniformly_in_solid_angle() {
         let ((radius, center, distance), from) = (case, view(case));
         let mut hits = vec![0; BINS * BINS];
         for _ in 0..1 << 20 {
-            let (p, density) = cone::sample(from, center, radius, pair(&mut noise)).unwrap();
-            assert_eq!(density, cone::pdf(from, center, radius));
+            let (p, density) = cone::sample(from, center.as_dvec3(), f64::from(radius), pair(&mut noise)).unwrap();
+            assert_eq!(density, cone::pdf(from, center.as_dvec3(), f64::from(radius)));
             let n = p.as_dvec3() - center.as_dvec3();
             assert!((n.length() / f64::from(radius) - 1.0).abs() < 3e-6, "{distance}: {p}");
             // on the near side, up to the rounding of the point
@@ -367,7 +367,7 @@ fn spheres_are_sampled_uniformly_in_solid_angle() {
             let trials = 1 << 20;
             let meets = |d: DVec3| d.dot(axis.normalize()) > cos_max;
             let found = (0..trials).filter(|_| meets(towards(&mut noise))).count() as u64;
-            let share = 1.0 / (2.0 * TAU * f64::from(cone::pdf(from, center, radius)));
+            let share = 1.0 / (2.0 * TAU * f64::from(cone::pdf(from, center.as_dvec3(), f64::from(radius))));
             assert_rate(&mut account, "the solid angle", found, trials, share);
         }
     }
@@ -393,7 +393,7 @@ fn a_sphere_above_the_horizon_is_a_point_light() {
         let d = distance * f64::from(radius);
         let center = (DVec3::new((1.0 - cosine * cosine).sqrt(), cosine, 0.0) * d).as_vec3();
         let one = |u| {
-            let (p, density) = cone::sample(Vec3::ZERO, center, radius, u).unwrap();
+            let (p, density) = cone::sample(Vec3::ZERO, center.as_dvec3(), f64::from(radius), u).unwrap();
             DVec3::splat(p.as_dvec3().normalize().y / f64::from(density))
         };
         let sampled = mean_of((0..1 << 20).map(|_| one(pair(&mut noise))));
@@ -402,7 +402,7 @@ fn a_sphere_above_the_horizon_is_a_point_light() {
         if distance == 1.5 {
             // with the density of the disk through the centre, r/d as if it were far
             let disk = (d * d / (PI * f64::from(radius).powi(2))) as f32;
-            let ratio = f64::from(cone::pdf(Vec3::ZERO, center, radius) / disk);
+            let ratio = f64::from(cone::pdf(Vec3::ZERO, center.as_dvec3(), f64::from(radius)) / disk);
             let wrong = mean_of((0..1 << 16).map(|_| one(pair(&mut noise)) * ratio));
             account.assert_differs("the density of a disk", &wrong, truth);
         }
@@ -413,7 +413,7 @@ fn a_sphere_above_the_horizon_is_a_point_light() {
 fn cones_keep_their_digits_far_away_and_close_by() {
     for (radius, center) in [(1e-3f32, Vec3::new(3e3, -4e3, 1e3)), (1.0, Vec3::new(0.0, 0.0, 1e6)), (1e-6, Vec3::X)] {
         let far = center.as_dvec3().length_squared() / (PI * f64::from(radius).powi(2));
-        let pdf = f64::from(cone::pdf(Vec3::ZERO, center, radius));
+        let pdf = f64::from(cone::pdf(Vec3::ZERO, center.as_dvec3(), f64::from(radius)));
         assert!((pdf / far - 1.0).abs() < 1e-6, "{pdf} for {far}");
     }
     // half the sphere of directions at the surface: p → 1/2π, and cos θ_max = √(d² − r²)/d to the last digit on the way
@@ -421,17 +421,17 @@ fn cones_keep_their_digits_far_away_and_close_by() {
         let gap = 0.5f64.powi(k);
         let from = Vec3::new(0.0, 1.0 + gap as f32, 0.0);
         let exact = 1.0 / (TAU * (1.0 - (gap * (2.0 + gap)).sqrt() / (1.0 + gap)));
-        assert!((f64::from(cone::pdf(from, Vec3::ZERO, 1.0)) / exact - 1.0).abs() < 1e-6, "2^-{k}");
+        assert!((f64::from(cone::pdf(from, DVec3::ZERO, 1.0)) / exact - 1.0).abs() < 1e-6, "2^-{k}");
         for u in [[0.0, 0.0], [0.0, 0.9], [1.0 - f32::EPSILON / 2.0, 0.3], [0.5, 0.5]] {
-            let (p, density) = cone::sample(from, Vec3::ZERO, 1.0, u).unwrap();
+            let (p, density) = cone::sample(from, DVec3::ZERO, 1.0, u).unwrap();
             assert!(p.is_finite() && density.is_finite() && (p.length() - 1.0).abs() < 1e-6, "2^-{k}, {u:?}: {p}");
         }
     }
     // u = 0 is the nearest point
-    let (p, _) = cone::sample(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO, 2.0, [0.0, 0.0]).unwrap();
+    let (p, _) = cone::sample(Vec3::new(0.0, 0.0, 5.0), DVec3::ZERO, 2.0, [0.0, 0.0]).unwrap();
     assert!((p - Vec3::new(0.0, 0.0, 2.0)).length() < 1e-6);
     for from in [Vec3::ZERO, Vec3::X, Vec3::new(0.6, 0.0, 0.0)] {
-        assert!(cone::sample(from, Vec3::ZERO, 1.0, [0.5; 2]).is_none(), "{from}");
-        assert_eq!(cone::pdf(from, Vec3::ZERO, 1.0), 0.0);
+        assert!(cone::sample(from, DVec3::ZERO, 1.0, [0.5; 2]).is_none(), "{from}");
+        assert_eq!(cone::pdf(from, DVec3::ZERO, 1.0), 0.0);
     }
 }

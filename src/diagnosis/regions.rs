@@ -71,7 +71,7 @@ pub fn lit(regions: Vec<Region>, reference: &Pictures) -> Vec<Region> {
 pub fn seen(scene: &Scene) -> Vec<Region> {
     let [w, h] = scene.camera.size.map(|s| s as usize);
     let looks: Vec<_> =
-        (0..w * h).map(|p| scene.look(scene.camera.origin, scene.camera.direction(p as u32, [0.5; 2]))).collect();
+        (0..w * h).map(|p| scene.camera.ray(p as u32, [0.5; 2])).map(|(o, d)| scene.look(o, d)).collect();
     let surface = |p: usize| looks[p].filter(|v| v.on_surface());
     let lamp = |p: usize| surface(p).is_some_and(|v| scene.emission(v.side) != Rgb::ZERO);
     let reach = (w / 8).max(1) as isize;

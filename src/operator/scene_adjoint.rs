@@ -15,8 +15,8 @@ use super::transport::Seen;
 use crate::math::direction::{about, cos_sin_turn, cosine_hemisphere, uniform_sphere};
 use crate::math::{Rgb, Rng};
 use crate::scene::bsdf::{Bsdf, Carried};
-use crate::scene::{Camera, ESCAPED, Vertex, emitter::Light};
-use glam::Vec3;
+use crate::scene::{Camera, ESCAPED, Vertex, emitter::Light, lift};
+use glam::{DVec3, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
 impl Role {
@@ -74,14 +74,15 @@ impl Adjoint for SceneTransport<'_> {
             return self.shine(at, u);
         }
         let d = self.depart(at, role.carried(), u)?;
-        let o = self.scene.lift(at.p, d.normal);
+        let o = lift(at.p, d.normal);
         let seen =
             if role == Role::Radiance { self.scene.look(o, d.direction) } else { self.scene.trace(o, d.direction) };
         let state = seen?;
         let delta = d.delta.then_some(d.pdf);
         let density = match delta {
             Some(choice) => self.delta_density(at, &state, choice),
-            None => d.pdf * self.angle(at, &state, d.direction),
+            // of the pair of points, as every other strategy takes it
+            None => self.toward(at, &state, role).density,
         };
         Some(Walk { state, weight: d.weight, density, delta })
     }
@@ -157,7 +158,7 @@ impl SceneTransport<'_> {
         let (o, d, weight) = match self.scene.light_of(at) {
             None if at.on_surface() => {
                 let (d, _) = cosine_hemisphere(at.n, [u[0], u[1]]);
-                (self.scene.lift(at.p, at.n), d, light * PI)
+                (lift(at.p, at.n), d, light * PI)
             }
             Some(Light::Point { .. }) => (at.p, uniform_sphere([u[0], u[1]]), light * (4.0 * PI)),
             _ => {
@@ -174,38 +175,56 @@ impl SceneTransport<'_> {
 }
 
 impl Camera {
+    /// From the pinhole to a state, in `f64`: of the sky a direction.
+    fn toward(&self, t: &SceneTransport, at: &Vertex) -> DVec3 {
+        if t.parallel(at) { -at.omega.as_dvec3() } else { at.p.as_dvec3() - self.origin }
+    }
+
     /// The pixel that sees a state, before anybody looks whether something hides it.
     pub(crate) fn see(&self, t: &SceneTransport, at: &Vertex) -> Option<Seen<Vertex>> {
-        let eye = self.eye();
         // a point or a direction is never seen
         if !at.on_surface() && at.side != ESCAPED {
             return None;
         }
-        let d = t.direction(&eye, at);
+        let d = self.toward(t, at);
         let (pixel, per_angle) = self.pixel(d)?;
         let pixel = pixel?;
-        let r2 = if at.on_surface() { (at.p - self.origin).length_squared() } else { 1.0 };
-        Some(Seen { pixel, eye, importance: per_angle / r2, density: per_angle * t.angle(&eye, at, d) })
+        let r2 = if at.on_surface() { d.length_squared() as f32 } else { 1.0 };
+        Some(Seen { pixel, eye: self.eye(), importance: per_angle / r2, density: per_angle * angle(at, d) })
     }
 
     fn eye(&self) -> Vertex {
-        Vertex { p: self.origin, n: Vec3::ZERO, ..Vertex::default() }
+        Vertex { p: self.origin.as_vec3(), n: Vec3::ZERO, ..Vertex::default() }
     }
 
     /// Density with which a path starts at a state that some pixel sees, also where rounding puts it outside the picture.
     pub(crate) fn start_density(&self, t: &SceneTransport, at: &Vertex) -> f32 {
-        let d = t.direction(&self.eye(), at);
-        self.pixel(d).map_or(0.0, |(_, per_angle)| per_angle * t.angle(&self.eye(), at, d))
+        let d = self.toward(t, at);
+        self.pixel(d).map_or(0.0, |(_, per_angle)| per_angle * angle(at, d))
     }
 
     /// Whether nothing stands between the eye and what it would see.
     pub(crate) fn unhidden(&self, t: &SceneTransport, at: &Vertex) -> bool {
+        let d = self.toward(t, at).normalize();
+        let start = self.enter(d);
         let (p, n) = if at.on_surface() {
-            let toward_eye = if at.n.dot(self.origin - at.p) < 0.0 { -at.n } else { at.n };
+            let toward_eye = if at.n.dot(start - at.p) < 0.0 { -at.n } else { at.n };
             (at.p, toward_eye)
         } else {
-            (t.scene.beyond(self.origin, -at.omega), Vec3::ZERO)
+            (t.scene.beyond(start, -at.omega), Vec3::ZERO)
         };
-        !t.scene.blocked(p, n, self.origin, Vec3::ZERO)
+        !t.scene.blocked(p, n, start, Vec3::ZERO)
+    }
+}
+
+/// Solid angle at the eye per unit of the measure of what lies in direction `d` from it; 0 for what no ray hits.
+fn angle(at: &Vertex, d: DVec3) -> f32 {
+    match at.side {
+        ESCAPED => 1.0,
+        _ if at.on_surface() => {
+            let r2 = d.length_squared();
+            (at.n.as_dvec3().dot(d).abs() / (r2 * r2.sqrt())) as f32
+        }
+        _ => 0.0,
     }
 }

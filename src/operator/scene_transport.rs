@@ -20,7 +20,7 @@ use crate::math::direction::Frame;
 use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::scene::bsdf::{Bsdf, Carried, Sampling, diffuse, diffuse::Diffuse};
 use crate::scene::{Camera, Rays, Scene, SurfaceSensor, Vertex, VertexWave, cosine_directions, numbers};
-use crate::scene::{connection, solid_angle};
+use crate::scene::{connection, lift, segment, solid_angle};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
@@ -108,10 +108,27 @@ impl SceneTransport<'_> {
         }
     }
 
-    /// The step that a ray from `from` makes when it arrives at `state`.
+    /// The densities of scattering and of next-event estimation for what a ray from `at` has found, `drawn` having been the density of
+    /// its direction. Where both can find it, both are those of the pair of points, as a connection takes them: the ray started a
+    /// little off the surface, and weights of two points that differ by that would not add up to one.
     #[inline(always)]
-    pub(super) fn step(&self, from: Vec3, state: Vertex, weight: Rgb, pdf: f32, delta: bool) -> Step<Vertex> {
-        let other_pdf = if delta { 0.0 } else { self.scene.light_pdf(from, &state) };
+    pub(crate) fn densities(&self, at: &Vertex, found: &Vertex, drawn: f32) -> (f32, f32) {
+        let light = self.scene.light_pdf(at.p, found);
+        if light == 0.0 || !found.on_surface() {
+            return (drawn, light);
+        }
+        let (to, ..) = connection(at.p, Vec3::ZERO, found.p, Vec3::ZERO);
+        let scatter = match self.scene.bsdf(at) {
+            Bsdf::Diffuse(_) => Some(to.dot(at.n)).filter(|cos| *cos > 0.0).map(|cos| self.sampling.pdf(cos)),
+            _ => self.towards(at, to, Carried::Radiance).map(|(_, pdf, _)| pdf),
+        };
+        (scatter.unwrap_or(drawn), light)
+    }
+
+    /// The step that a ray makes when it arrives at `state`.
+    #[inline(always)]
+    pub(super) fn step(&self, at: &Vertex, state: Vertex, weight: Rgb, pdf: f32, delta: bool) -> Step<Vertex> {
+        let (pdf, other_pdf) = if delta { (pdf, 0.0) } else { self.densities(at, &state, pdf) };
         Step { state, weight, pdf, other_pdf }
     }
 
@@ -147,7 +164,6 @@ fn connections_with_simd<'a, S: pulp::Simd>(
     _simd: S,
     p: &'a Columns,
     normal: &'a Columns,
-    offset: f32,
     rays: &'a mut Rays,
     out: &'a mut Samples,
     n: usize,
@@ -161,8 +177,7 @@ fn connections_with_simd<'a, S: pulp::Simd>(
         let (x, n) = (Vec3::new(px[i], py[i], pz[i]), Vec3::new(nx[i], ny[i], nz[i]));
         let (y, m) = (Vec3::new(ox[i], oy[i], oz[i]), Vec3::new(dx[i], dy[i], dz[i]));
         let c = connect_to(x, n, y, m, t[i]);
-        let o = x + n * offset;
-        let d = y + m * offset - o;
+        let (o, d) = segment(x, n, y, m);
         (ox[i], oy[i], oz[i]) = (o.x, o.y, o.z);
         (dx[i], dy[i], dz[i]) = (d.x, d.y, d.z);
         (t[i], cosine[i], pdf[i]) = (c.factor, c.cos_x, c.pdf);
@@ -181,8 +196,8 @@ impl Transport for SceneTransport<'_> {
     #[inline(always)]
     fn scatter(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
         let d = self.depart(at, Carried::Radiance, rng.four())?;
-        let state = self.scene.look(self.scene.lift(at.p, d.normal), d.direction)?;
-        Some(self.step(at.p, state, d.weight, d.pdf, d.delta))
+        let state = self.scene.look(lift(at.p, d.normal), d.direction)?;
+        Some(self.step(at, state, d.weight, d.pdf, d.delta))
     }
 
     #[inline(always)]
@@ -237,7 +252,7 @@ impl SceneTransport<'_> {
     /// scattering.
     #[inline(always)]
     pub(super) fn connect_packets(&self, wave: &mut VertexWave, n: usize, out: &mut Samples, share: f32) {
-        connections(&wave.p, &wave.n, self.scene.offset(), &mut wave.rays, out, n);
+        connections(&wave.p, &wave.n, &mut wave.rays, out, n);
         let mut shadow = 0;
         for i in 0..n {
             let albedo = self.scene.albedo(wave.side[i]);
@@ -274,19 +289,20 @@ impl SceneTransport<'_> {
         let VertexWave { p, n: normals, omega, side, rays } = wave;
         cosine_directions(normals, &rays.u, &mut rays.d, &mut rays.cosine, n);
         for i in 0..n {
-            rays.o.set(i, self.scene.lift(p.get(i), normals.get(i)));
+            rays.o.set(i, lift(p.get(i), normals.get(i)));
         }
         let cosine = std::mem::take(&mut rays.cosine);
         self.scene.trace_packets(rays, n, |i, state| {
             let albedo = self.scene.albedo(side[i]);
             if albedo != Rgb::ZERO {
                 let weight = albedo * (1.0 / ratio(out, i));
-                let s = self.step(p.get(i), state, weight, self.sampling.pdf(cosine[i]) * share, false);
+                let at = Vertex { p: p.get(i), n: normals.get(i), omega: omega.get(i), side: side[i] };
+                let s = self.step(&at, state, weight, self.sampling.pdf(cosine[i]), false);
                 p.set(i, state.p);
                 normals.set(i, state.n);
                 omega.set(i, state.omega);
                 side[i] = state.side;
-                out.set(i, s.weight, s.pdf, s.other_pdf);
+                out.set(i, s.weight, s.pdf * share, s.other_pdf);
                 alive.push(i as u32);
             }
         });
@@ -326,7 +342,8 @@ impl Sensor<SceneTransport<'_>> for Camera {
     #[inline(always)]
     fn start(&self, t: &SceneTransport, pixel: u32, rng: &mut Rng) -> Option<Vertex> {
         let u = rng.four();
-        t.scene.look(self.origin, self.direction(pixel, [u[0], u[1]]))
+        let (o, d) = self.ray(pixel, [u[0], u[1]]);
+        t.scene.look(o, d)
     }
     fn project(&self, t: &SceneTransport, at: &Vertex) -> Option<Seen<Vertex>> {
         self.see(t, at)
@@ -344,8 +361,9 @@ impl Sensor<SceneTransport<'_>> for Camera {
         numbers(streams, &mut wave.rays.u);
         let VertexWave { p, n, omega, side, rays } = wave;
         for i in 0..streams.len() {
-            rays.o.set(i, self.origin);
-            rays.d.set(i, self.direction(streams.pixel[i], [rays.u[0][i], rays.u[1][i]]));
+            let (o, d) = self.ray(streams.pixel[i], [rays.u[0][i], rays.u[1][i]]);
+            rays.o.set(i, o);
+            rays.d.set(i, d);
         }
         t.scene.trace_packets(rays, streams.len(), |i, state| {
             p.set(i, state.p);

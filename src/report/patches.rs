@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `mesh.csv` | a line per patch, in the order of rows and columns of F; lengths in m, areas in m², radiance in W sr⁻¹ m⁻² |
+//! | `mesh.csv` | a line per patch, in the order of rows and columns of F, in the coordinates of the scene file; lengths in m, areas in m², radiance in W sr⁻¹ m⁻² |
 //! | `mesh-terms.csv` | (T_h^k E)ᵢ per patch and k, three channels, W sr⁻¹ m⁻² |
 //! | `norms.csv` | ‖T_h^k E‖ over the patches: Σ A\|x\|, √Σ A x², √Σ A x²/ρ (patches with ρ > 0), three channels each |
 //! | `F.npy` | Fᵢⱼ, n × n, little-endian float32, rows first (NumPy's format 1.0) |
@@ -28,12 +28,14 @@ pub fn mesh(patches: &Patches, radiance: &[DVec3]) -> String {
     let mut out =
         String::from("patch,primitive,front,x,y,z,area,nx,ny,nz,rho_r,rho_g,rho_b,E_r,E_g,E_b,L_r,L_g,L_b,corners\n");
     for (i, (p, l)) in patches.iter().zip(radiance).enumerate() {
-        let corners: Vec<String> = p.polygon.iter().map(|c| format!("{} {} {}", c.x, c.y, c.z)).collect();
+        let file = |x: DVec3| x + patches.origin();
+        let corners: Vec<String> =
+            p.polygon.iter().map(|c| file(*c)).map(|c| format!("{} {} {}", c.x, c.y, c.z)).collect();
         out += &format!(
             "{i},{},{},{},{},{},{},{},{},{}\n",
             p.primitive,
             u8::from(p.front),
-            triple(p.centre),
+            triple(file(p.centre)),
             p.area,
             triple(p.normal),
             triple(p.reflectance),

@@ -4,8 +4,9 @@
 //! meshes but loses hits on axis-aligned boxes, so it is not used. Ties go to the primitive with the lower number, whatever
 //! the order of traversal.
 
+use super::rounding::{EPSILON, MOST_REACH};
 use super::shape::{Hit, Shape};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2, ray::Ray};
 
 pub(crate) struct Accel {
@@ -13,8 +14,17 @@ pub(crate) struct Accel {
     bvh: Bvh2,
 }
 
+/// The box around a primitive, so wide that the rounding of its own test never loses a hit: 4 ε of every coordinate that a ray may
+/// start from, and what hits may reach over the edges of the primitive. `farthest` is the largest coordinate of the scene.
+pub(crate) fn widened([low, high]: [DVec3; 2], farthest: f64, touch: f64) -> [Vec3; 2] {
+    let most = low.abs().max(high.abs());
+    // rays start at most three scenes away
+    let by = 32.0 * EPSILON * most + 16.0 * EPSILON * farthest + touch + 2.0 * MOST_REACH * (high - low);
+    [(low - by).as_vec3(), (high + by).as_vec3()]
+}
+
 impl Accel {
-    /// `bounds` are those of the shapes, already widened by the margin that hits may reach over.
+    /// `bounds` are those of the shapes, [`widened`].
     pub(crate) fn new(shapes: Vec<Shape>, bounds: &[[Vec3; 2]]) -> Self {
         let boxes: Vec<Aabb> = bounds.iter().map(|b| Aabb::new(b[0].into(), b[1].into())).collect();
         let bvh = obvhs::bvh2::builder::build_bvh2(

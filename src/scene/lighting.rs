@@ -66,7 +66,7 @@ impl Scene {
             }
             Light::Ball { prim, center, radius } => match cone::sample(x, center, radius, [u[2], u[3]]) {
                 Some((p, pdf)) => {
-                    let n = (p - center) * (1.0 / radius);
+                    let n = self.accel.shapes[prim as usize].normal(p);
                     let (to, r2, ..) = connection(x, Vec3::ZERO, p, n);
                     let state = Vertex { p, n, omega: -to, side: 2 * prim };
                     // seen from its own surface, rounding may choose x itself: there is no direction to it

@@ -13,6 +13,7 @@
 mod accel;
 pub mod bsdf;
 pub mod builtin;
+pub mod centre;
 pub mod coplanar;
 pub mod description;
 pub mod emitter;
@@ -22,6 +23,7 @@ pub mod load;
 mod packets;
 pub mod primitive;
 pub mod raster;
+mod rounding;
 pub mod sensor;
 mod shape;
 mod stand_in;
@@ -44,6 +46,7 @@ use description::{BsdfDescription, LightDescription, Sides};
 pub use emitter::Selection;
 use emitter::{Light, Lights};
 use glam::{DVec3, Vec3};
+pub(crate) use rounding::{error, lift, segment};
 use shape::Shape;
 use textures::Textures;
 pub(crate) use vertex::Rays;
@@ -81,12 +84,12 @@ pub struct Scene {
     takes_part: Vec<bool>,
     area: Vec<f64>,
     textures: Option<Textures>,
-    /// How far the next ray starts off the surface, metres.
-    offset: f32,
+    /// Where its coordinates begin, in those of the file, m.
+    origin: DVec3,
     /// A sphere around the shapes.
     center: Vec3,
     radius: f32,
-    /// A distance that leaves the scene from everywhere in it, camera and point lights included.
+    /// A distance that leaves the scene from everywhere in it, point lights included.
     beyond: f32,
     /// Whether some surface has a delta part.
     any_delta: bool,
@@ -94,26 +97,21 @@ pub struct Scene {
     conflicts: Vec<Relation>,
 }
 
-/// Offset of ray origins and margin at edges, as fractions of half the diagonal of the scene.
-const OFFSET: f64 = 1.0 / 65_536.0;
-const MARGIN: f64 = 1.0 / 131_072.0;
-/// A scene this many times its half diagonal away from the origin or farther gets wider ones: there it is the rounding of
-/// coordinates that they must exceed, by a factor of 16 and 8.
-const FAR: f64 = 16.0;
-
 impl Scene {
-    /// Builds what rays need. The description must have passed the checks of the loader: finite, no empty shapes.
+    /// Builds what rays need, in coordinates about the middle of the scene ([`Description::centred`]). The description must have
+    /// passed the checks of the loader: finite, no empty shapes, none that single precision rounds away.
     pub fn new(description: &Description) -> Self {
+        let centre::Centred { scene, origin, touch } = description.centred();
+        let description = &scene;
         let surfaces = description.surfaces();
         let prims = surfaces.list.as_slice();
         let bounds: Vec<[DVec3; 2]> = prims.iter().map(|(_, p)| p.bounds()).collect();
         let all = bounds.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let radius = 0.5 * (all[1] - all[0]).length();
+        let center = 0.5 * (all[0] + all[1]);
+        let shapes: Vec<Shape> = prims.iter().map(|(_, p)| Shape::new(p, touch)).collect();
         let farthest = all[0].abs().max(all[1].abs()).max_element();
-        let extent = (0.5 * (all[1] - all[0]).length()).max(farthest / FAR);
-        let margin = MARGIN * extent;
-        let shapes: Vec<Shape> = prims.iter().map(|(_, p)| Shape::new(p, margin)).collect();
-        let widened: Vec<[Vec3; 2]> =
-            bounds.iter().map(|b| [(b[0] - 2.0 * margin).as_vec3(), (b[1] + 2.0 * margin).as_vec3()]).collect();
+        let widened: Vec<[Vec3; 2]> = bounds.iter().map(|b| accel::widened(*b, farthest, touch)).collect();
         let (mut bsdf, mut emission, mut takes_part) = (vec![], vec![], vec![]);
         for &(shape, _) in prims {
             let shape = &description.shapes[shape];
@@ -131,18 +129,15 @@ impl Scene {
             Some(t) => t.brightest(side / 2).map_or(*b, |rho| b.with_reflectance(rho)).max_albedo(),
             None => b.max_albedo(),
         });
-        // lights without area shine on the shapes; what is beyond lies beyond the camera, too
-        let radius = 0.5 * (all[1] - all[0]).length();
-        let center = 0.5 * (all[0] + all[1]);
-        let mut outside = vec![description.camera.origin];
-        outside.extend(description.lights.iter().filter_map(|l| match l {
+        // lights without area shine on the shapes; what is beyond lies beyond point lights, too
+        let outside = description.lights.iter().filter_map(|l| match l {
             LightDescription::Point { position, .. } => Some(*position),
             _ => None,
-        }));
-        let reach = outside.iter().map(|p| (*p - center).length()).fold(radius, f64::max);
+        });
+        let reach = outside.map(|p| (p - center).length()).fold(radius, f64::max);
         Self {
             packets: plain && packets::suit(&shapes),
-            camera: Camera::new(&description.camera),
+            camera: Camera::new(&description.camera, center, radius),
             lights: Lights::new(description, prims, radius),
             accel: Accel::new(shapes, &widened),
             albedo: albedo.collect(),
@@ -155,9 +150,14 @@ impl Scene {
             emission,
             takes_part,
             area: prims.iter().map(|(_, p)| p.area()).collect(),
-            offset: (OFFSET * extent) as f32,
+            origin,
             conflicts: surfaces.conflicts(description),
         }
+    }
+
+    /// Where its coordinates begin, in those of the file: positions of vertices and of [`Camera`] are relative to it.
+    pub fn origin(&self) -> DVec3 {
+        self.origin
     }
 
     /// The shapes that coincide and differ, whether anybody sees them or not.
@@ -286,18 +286,6 @@ impl Scene {
         }
     }
 
-    /// How far rays start off their surface, metres.
-    #[inline(always)]
-    pub(crate) fn offset(&self) -> f32 {
-        self.offset
-    }
-
-    /// Where a ray that leaves `p` on the side of `n` starts.
-    #[inline(always)]
-    pub fn lift(&self, p: Vec3, n: Vec3) -> Vec3 {
-        p + n * self.offset
-    }
-
     /// The first surface seen from `o` in unit direction `d`, or nothing.
     #[inline(always)]
     pub fn trace(&self, o: Vec3, d: Vec3) -> Option<Vertex> {
@@ -374,17 +362,16 @@ impl Scene {
         Vertex { p, n: if back { -n } else { n }, omega: -d, side: 2 * hit.prim + u32::from(back) }
     }
 
+    /// Where a ray that leaves `p` on the side of `n` starts: off the surface by the bound on its error.
+    #[inline(always)]
+    pub fn lift(p: Vec3, n: Vec3) -> Vec3 {
+        lift(p, n)
+    }
+
     /// Whether the segment from `p` to `q` is blocked; both ends are lifted off their surfaces.
     #[inline(always)]
     pub fn blocked(&self, p: Vec3, n: Vec3, q: Vec3, m: Vec3) -> bool {
-        let (o, d) = self.segment(p, n, q, m);
+        let (o, d) = segment(p, n, q, m);
         self.accel.occluded(o, d)
-    }
-
-    /// Origin and displacement of the segment from `p` to `q`, both ends lifted off their surfaces.
-    #[inline(always)]
-    pub(crate) fn segment(&self, p: Vec3, n: Vec3, q: Vec3, m: Vec3) -> (Vec3, Vec3) {
-        let o = self.lift(p, n);
-        (o, self.lift(q, m) - o)
     }
 }

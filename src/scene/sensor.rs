@@ -10,39 +10,49 @@ use crate::math::{Rng, direction::cosine_hemisphere};
 use glam::{DVec3, Vec3};
 
 /// A pinhole camera. Pixel (0, 0) is top left; right = forward × up; pixels are square.
+///
+/// Its rays are made in `f64` and start where they enter a sphere around the scene, so that a camera may stand as far away as it
+/// likes and its pixels may be as narrow as `f64` can tell apart.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
-    /// The pinhole.
-    pub origin: Vec3,
+    /// The pinhole, about the middle of the scene.
+    pub origin: DVec3,
     /// Direction to the top left corner of the image, and across one pixel to the right and down.
-    corner: Vec3,
-    across: Vec3,
-    down: Vec3,
+    corner: DVec3,
+    across: DVec3,
+    down: DVec3,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// A sphere around the shapes.
+    center: DVec3,
+    radius: f64,
 }
 
 impl Camera {
-    /// The camera a description asks for.
-    pub fn new(c: &CameraDescription) -> Self {
+    /// The camera a description asks for, before a scene within `radius` of `center`.
+    pub fn new(c: &CameraDescription, center: DVec3, radius: f64) -> Self {
         let forward = (c.target - c.origin).normalize();
         let right = forward.cross(c.up).normalize();
         let up = right.cross(forward);
         let half = (0.5 * c.fov).to_radians().tan();
         let pixel = 2.0 * half / f64::from(c.size[0]);
-        let corner: DVec3 = forward - right * half + up * (0.5 * pixel * f64::from(c.size[1]));
         Self {
-            origin: c.origin.as_vec3(),
-            corner: corner.as_vec3(),
-            across: (right * pixel).as_vec3(),
-            down: (-up * pixel).as_vec3(),
+            origin: c.origin,
+            corner: forward - right * half + up * (0.5 * pixel * f64::from(c.size[1])),
+            across: right * pixel,
+            down: -up * pixel,
             size: c.size,
+            center,
+            // a little more, so that no surface lies before the start of a ray
+            radius: radius * 1.001,
         }
     }
 
-    /// The pixel that a unit direction goes through, if it is in the picture, and the density per solid angle with which its paths take it: the
-    /// inverse of the solid angle of the pixel there, `l³/|pixel|²` with l the length of the direction to the plane at 1.
-    pub(crate) fn pixel(&self, d: Vec3) -> Option<(Option<u32>, f32)> {
+    /// The pixel that sees a point (of the sky: any point in its direction), if it is in the picture, and the density per solid angle
+    /// with which its paths take that direction: the inverse of the solid angle of the pixel there, `l³/|pixel|²` with l the length of
+    /// the direction to the plane at 1.
+    pub(crate) fn pixel(&self, d: DVec3) -> Option<(Option<u32>, f32)> {
+        let d = d.normalize();
         let pixel = self.across.length();
         let (right, down) = (self.across / pixel, self.down / pixel);
         let along = d.dot(right.cross(down));
@@ -51,17 +61,29 @@ impl Camera {
         }
         let q = d / along - self.corner;
         let (x, y) = ((q.dot(right) / pixel).floor(), (q.dot(down) / pixel).floor());
-        let inside = x >= 0.0 && y >= 0.0 && x < self.size[0] as f32 && y < self.size[1] as f32;
+        let inside = x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]);
         let per_angle = 1.0 / (along * along * along * pixel * pixel);
-        Some((inside.then(|| y as u32 * self.size[0] + x as u32), per_angle))
+        Some((inside.then(|| y as u32 * self.size[0] + x as u32), per_angle as f32))
     }
 
-    /// Unit direction through a point of a pixel, `u` in [0, 1)² from its top left corner.
+    /// Start and unit direction of the ray through a point of a pixel, `u` in [0, 1)² from its top left corner.
     #[inline(always)]
-    pub fn direction(&self, pixel: u32, u: [f32; 2]) -> Vec3 {
+    pub fn ray(&self, pixel: u32, u: [f32; 2]) -> (Vec3, Vec3) {
         let (column, row) = (pixel % self.size[0], pixel / self.size[0]);
-        let d = self.corner + self.across * (column as f32 + u[0]) + self.down * (row as f32 + u[1]);
-        d * (1.0 / (d.x * d.x + d.y * d.y + d.z * d.z).sqrt())
+        let (x, y) = (f64::from(column) + f64::from(u[0]), f64::from(row) + f64::from(u[1]));
+        let d = self.corner + self.across * x + self.down * y;
+        let d = d * (1.0 / d.dot(d).sqrt());
+        (self.enter(d), d.as_vec3())
+    }
+
+    /// Where the ray from the pinhole in unit direction `d` comes near the scene: the pinhole itself if it is there already.
+    #[inline(always)]
+    pub(crate) fn enter(&self, d: DVec3) -> Vec3 {
+        let to = self.center - self.origin;
+        let (along, r2) = (to.dot(d), self.radius * self.radius);
+        let before = along - (r2 - (to - d * along).length_squared()).max(0.0).sqrt();
+        // what lies behind the camera is not before it
+        (self.origin + d * before.max(0.0)).as_vec3()
     }
 }
 

@@ -5,16 +5,16 @@
 //! | kind | test | reference |
 //! |---|---|---|
 //! | [`Flat`] | plane, then |u|, |v| ≤ 1 in coordinates centred on the parallelogram | – |
-//! | [`Triangle`] | signs of edge·direction volumes; the sign of a shared edge is the same from both sides, so meshes have no cracks | Plücker test in the robust form of Embree (Wald et al. 2014) |
-//! | [`Ball`] | quadratic with the discriminant from the foot of the perpendicular | Hearn and Baker; Haines et al., *Ray Tracing Gems* ch. 7 (2019) |
+//! | [`Triangle`] | signs of edge·direction volumes; the sign of a shared edge is the same from both sides, so meshes have no cracks | Plücker test in the robust form of Embree (Wald et al. 2014); Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection* (2013) |
+//! | [`Ball`] | quadratic, in `f64` | – |
 //! | [`Disc`] | plane, then distance from the centre | – |
 //!
-//! A hit point is computed anew on the surface and kept a hair (`margin`) inside the edge of its primitive, so that the
-//! next ray starts inside a closed room and cannot slip out through a corner. Parallelograms reach the same hair over their
-//! edges, for the same reason. `margin` and the offset of the next ray are fractions of the scene's size: a scene scaled
-//! by a power of two gives the same bits.
+//! A hit is projected onto its surface, which moves it by no more than rounding ([`rounding`](super::rounding)), and kept a few units in
+//! the last place inside the edges of its primitive, so that the next ray starts inside a closed room and cannot slip out through a
+//! corner. Parallelograms reach a few such units over their edges, for the same reason; triangles need not.
 
 use super::primitive::Primitive;
+use super::rounding::{KEEP, MOST_KEEP, MOST_REACH, REACH, across, onto};
 use glam::{DVec3, Vec3};
 
 /// A hit: distance in units of the direction's length, and the two surface coordinates where the kind needs them.
@@ -47,21 +47,26 @@ pub(crate) struct Flat {
     pub(crate) a0: f32,
     pub(crate) b: Vec3,
     pub(crate) b0: f32,
-    /// 1 + margin, in these coordinates
+    /// 1 + R, in these coordinates
     pub(crate) reach: [f32; 2],
     center: Vec3,
     half_u: Vec3,
     half_v: Vec3,
-    /// 1 − margin
+    /// 1 − M
     keep: [f32; 2],
 }
 
 impl Flat {
-    fn new(origin: DVec3, u: DVec3, v: DVec3, margin: f64) -> Self {
+    /// `touch`: by how much two corners that are meant to be one may differ, m.
+    fn new(origin: DVec3, u: DVec3, v: DVec3, touch: f64) -> Self {
         let g = u.cross(v);
         let (gg, n) = (g.length_squared(), g.normalize());
         let (a, b) = (2.0 * v.cross(g) / gg, 2.0 * g.cross(u) / gg);
-        let over = [2.0 * margin / u.length(), 2.0 * margin / v.length()].map(|m| m.min(0.25) as f32);
+        // 1/|a| is half the width between the edges along v
+        let corners = [origin, origin + u, origin + v, origin + u + v];
+        let round = [a, b].map(|a| across(a, &corners));
+        let touch = [a, b].map(|a| touch * a.length());
+        let part = |k: f64, most: f64| [0, 1].map(|i| (k * round[i] + touch[i]).min(most) as f32);
         let f = |v: DVec3| v.as_vec3();
         Self {
             n: f(n),
@@ -70,11 +75,11 @@ impl Flat {
             a0: (-1.0 - a.dot(origin)) as f32,
             b: f(b),
             b0: (-1.0 - b.dot(origin)) as f32,
-            reach: over.map(|m| 1.0 + m),
+            reach: part(REACH, MOST_REACH).map(|r| 1.0 + r),
             center: f(origin + 0.5 * (u + v)),
             half_u: f(0.5 * u),
             half_v: f(0.5 * v),
-            keep: over.map(|m| 1.0 - m),
+            keep: part(KEEP, MOST_KEEP).map(|m| 1.0 - m),
         }
     }
 
@@ -87,138 +92,147 @@ impl Flat {
         (t, (u.abs() <= self.reach[0]) & (v.abs() <= self.reach[1]) & (t > 0.0))
     }
 
-    /// The point of the surface nearest to `p`, a margin inside the edges.
+    /// The point of the plane nearest to `p`, kept inside the edges.
     #[inline(always)]
     pub(crate) fn settle(&self, p: Vec3) -> Vec3 {
-        let clamp = |x: f32, m: f32| {
-            if x > m {
-                m
-            } else if x < -m {
-                -m
-            } else {
-                x
-            }
-        };
-        let u = clamp(dot(self.a, p) + self.a0, self.keep[0]);
-        let v = clamp(dot(self.b, p) + self.b0, self.keep[1]);
-        self.center + self.half_u * u + self.half_v * v
+        let p = onto(p, self.n, self.h);
+        let (u, v) = (dot(self.a, p) + self.a0, dot(self.b, p) + self.b0);
+        let [ku, kv] = self.keep;
+        if u.abs() <= ku && v.abs() <= kv {
+            return p;
+        }
+        let back = |x: f32, k: f32| if x.abs() <= k { 0.0 } else { k.copysign(x) - x };
+        p + self.half_u * back(u, ku) + self.half_v * back(v, kv)
     }
 }
 
-/// A triangle by its corners.
+/// A triangle by its corners, with its plane `n·p = h`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle {
     p: [Vec3; 3],
     n: Vec3,
-    /// Least barycentric coordinate of a settled point.
-    keep: f32,
+    h: f32,
+    /// M for the edge opposite to each corner, m.
+    keep: [f32; 3],
 }
 
 impl Triangle {
-    fn new(p: [DVec3; 3], margin: f64) -> Self {
-        let n = (p[1] - p[0]).cross(p[2] - p[0]);
-        let longest = (p[1] - p[0]).length().max((p[2] - p[1]).length()).max((p[0] - p[2]).length());
-        let height = n.length() / longest;
-        Self { p: p.map(|p| p.as_vec3()), n: n.normalize().as_vec3(), keep: (margin / height).min(0.1) as f32 }
-    }
-
-    #[inline(always)]
-    fn volumes(&self, o: Vec3, d: Vec3) -> (Vec3, [Vec3; 3]) {
-        let v = self.p.map(|p| p - o);
-        let edge = |a: Vec3, b: Vec3| dot(cross(a - b, a + b), d);
-        (Vec3::new(edge(v[2], v[1]), edge(v[0], v[2]), edge(v[1], v[0])), v)
+    fn new(p: [DVec3; 3]) -> Self {
+        let twice = (p[1] - p[0]).cross(p[2] - p[0]);
+        let n = twice.normalize();
+        let keep = [0, 1, 2].map(|i| {
+            let edge = p[(i + 2) % 3] - p[(i + 1) % 3];
+            let height = twice.length() / edge.length();
+            (KEEP * across(n.cross(edge).normalize(), &p)).min(0.5 * MOST_KEEP * height) as f32
+        });
+        // the plane passes through the middle: no corner is preferred
+        let h = n.dot((p[0] + p[1] + p[2]) / 3.0);
+        Self { p: p.map(|p| p.as_vec3()), n: n.as_vec3(), h: h as f32, keep }
     }
 
     #[inline(always)]
     pub(crate) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
-        let (w, v) = self.volumes(o, d);
+        let v = self.p.map(|p| p - o);
+        let edge = |a: Vec3, b: Vec3| dot(cross(a - b, a + b), d);
+        let w = Vec3::new(edge(v[2], v[1]), edge(v[0], v[2]), edge(v[1], v[0]));
         let same = ((w.x >= 0.0) & (w.y >= 0.0) & (w.z >= 0.0)) | ((w.x <= 0.0) & (w.y <= 0.0) & (w.z <= 0.0));
-        let t = dot(v[0], self.n) / dot(self.n, d);
-        (t, same & (t > 0.0) & (t < f32::INFINITY))
+        // a triangle that rounding has made a line or a point has no inside
+        let some = (w.x != 0.0) | (w.y != 0.0) | (w.z != 0.0);
+        let t = (self.h - dot(self.n, o)) / dot(self.n, d);
+        (t, same & some & (t > 0.0) & (t < f32::INFINITY))
     }
 
-    /// Barycentric coordinates by areas about the normal, not yet divided by their sum.
+    /// Twice the areas about the normal between a point and the edges opposite to the corners.
     #[inline(always)]
     fn parts(&self, p: Vec3) -> [f32; 3] {
         let area = |a: Vec3, b: Vec3| dot(cross(a - p, b - p), self.n);
         [area(self.p[1], self.p[2]), area(self.p[2], self.p[0]), area(self.p[0], self.p[1])]
     }
 
+    /// The point of the plane nearest to `p`, kept inside the edges.
     #[inline(always)]
     pub(crate) fn settle(&self, p: Vec3) -> Vec3 {
-        // lifted to at least `keep`
-        let w = self.parts(p);
-        let total = w[0] + w[1] + w[2];
-        let lift = |x: f32| if x / total > self.keep { x / total } else { self.keep };
-        let w = w.map(lift);
-        let sum = w[0] + w[1] + w[2];
-        (self.p[0] * w[0] + self.p[1] * w[1] + self.p[2] * w[2]) * (1.0 / sum)
+        let mut p = onto(p, self.n, self.h);
+        for i in 0..3 {
+            let (a, b) = (self.p[(i + 1) % 3], self.p[(i + 2) % 3]);
+            let e = b - a;
+            let (part, length2) = (dot(cross(e, p - a), self.n), dot(e, e));
+            // part/length is the distance from the edge
+            if part < 0.0 || part * part < self.keep[i] * self.keep[i] * length2 {
+                let length = length2.sqrt();
+                p += cross(self.n, e) * ((self.keep[i] - part / length) / length);
+            }
+        }
+        p
     }
 }
 
-/// A band of a sphere.
+/// A band of a sphere. Its radius may be far larger than the distances that matter on it, so it is met in `f64`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ball {
-    center: Vec3,
-    radius: f32,
-    z: [f32; 2],
+    center: DVec3,
+    radius: f64,
+    z: [f64; 2],
     /// +1 outwards, −1 inwards
-    sign: f32,
+    sign: f64,
 }
+
+/// 32 units of rounding of `f64`.
+const SELF: f64 = 1.0 / 281_474_976_710_656.0;
 
 impl Ball {
     #[inline(always)]
     pub(crate) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
-        let f = o - self.center;
-        let a = dot(d, d);
-        let b = -dot(f, d);
+        let (f, d) = (o.as_dvec3() - self.center, d.as_dvec3());
+        let a = d.dot(d);
+        let b = -f.dot(d);
         let foot = f + d * (b / a);
-        let disc = self.radius * self.radius - dot(foot, foot);
+        let disc = self.radius * self.radius - foot.dot(foot);
         if disc < 0.0 {
             return (f32::INFINITY, false);
         }
-        let c = dot(f, f) - self.radius * self.radius;
+        // |f|² − r² as a product: exact to rounding also next to the surface
+        let length = f.length();
+        let c = (length - self.radius) * (length + self.radius);
         let q = b + (a * disc).sqrt().copysign(b);
         let (t0, t1) = (c / q, q / a);
         let (near, far) = if t0 < t1 { (t0, t1) } else { (t1, t0) };
-        let on_band = |t: f32| {
+        // a root nearer than the rounding of this is the surface that the ray leaves
+        let least = self.radius * SELF / a.sqrt();
+        let on_band = |t: f64| {
             let z = (f.z + d.z * t) / self.radius;
-            t > 0.0 && z >= self.z[0] && z <= self.z[1]
+            t > least && z >= self.z[0] && z <= self.z[1]
         };
-        if on_band(near) { (near, true) } else { (far, on_band(far)) }
+        if on_band(near) { (near as f32, true) } else { (far as f32, on_band(far)) }
     }
 
     #[inline(always)]
     fn settle(&self, p: Vec3) -> Vec3 {
-        let f = p - self.center;
-        self.center + f * (self.radius / dot(f, f).sqrt())
+        let f = p.as_dvec3() - self.center;
+        (self.center + f * (self.radius / f.length())).as_vec3()
     }
 
     #[inline(always)]
     fn normal(&self, p: Vec3) -> Vec3 {
-        (p - self.center) * (self.sign / self.radius)
+        ((p.as_dvec3() - self.center) * (self.sign / self.radius)).as_vec3()
     }
 }
 
-/// A flat disk.
+/// A flat disk with its plane `n·p = h`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Disc {
     center: Vec3,
     n: Vec3,
+    h: f32,
     radius: f32,
 }
 
 impl Disc {
     #[inline(always)]
     fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
-        let t = dot(self.n, self.center - o) / dot(self.n, d);
+        let t = (self.h - dot(self.n, o)) / dot(self.n, d);
         let f = o + d * t - self.center;
         (t, (t > 0.0) & (dot(f, f) <= self.radius * self.radius))
-    }
-
-    #[inline(always)]
-    fn settle(&self, p: Vec3) -> Vec3 {
-        p - self.n * dot(self.n, p - self.center)
     }
 }
 
@@ -232,22 +246,24 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
-    pub(crate) fn new(p: &Primitive, margin: f64) -> Self {
+    /// `touch`: by how much two corners that are meant to be one may differ, m.
+    pub(crate) fn new(p: &Primitive, touch: f64) -> Self {
         match *p {
-            Primitive::Parallelogram { origin, edge_u, edge_v } => {
-                Self::Flat(Flat::new(origin, edge_u, edge_v, margin))
-            }
-            Primitive::Triangle(p) => Self::Triangle(Triangle::new(p, margin)),
+            Primitive::Parallelogram { origin, edge_u, edge_v } => Self::Flat(Flat::new(origin, edge_u, edge_v, touch)),
+            Primitive::Triangle(p) => Self::Triangle(Triangle::new(p)),
             Primitive::Sphere { center, radius, z, inward } => Self::Ball(Ball {
-                center: center.as_vec3(),
-                radius: radius as f32,
+                center,
+                radius,
                 // the poles are kept whatever the rounding
-                z: [if z[0] <= -1.0 { -2.0 } else { z[0] as f32 }, if z[1] >= 1.0 { 2.0 } else { z[1] as f32 }],
+                z: [if z[0] <= -1.0 { -2.0 } else { z[0] }, if z[1] >= 1.0 { 2.0 } else { z[1] }],
                 sign: if inward { -1.0 } else { 1.0 },
             }),
-            Primitive::Disk { center, normal, radius } => {
-                Self::Disc(Disc { center: center.as_vec3(), n: normal.as_vec3(), radius: radius as f32 })
-            }
+            Primitive::Disk { center, normal, radius } => Self::Disc(Disc {
+                center: center.as_vec3(),
+                n: normal.as_vec3(),
+                h: normal.dot(center) as f32,
+                radius: radius as f32,
+            }),
         }
     }
 
@@ -261,14 +277,14 @@ impl Shape {
         }
     }
 
-    /// The point of the surface nearest to a computed hit, a margin inside the edges.
+    /// The point of the surface nearest to a computed hit, kept inside the edges.
     #[inline(always)]
     pub(crate) fn settle(&self, p: Vec3) -> Vec3 {
         match self {
             Self::Flat(s) => s.settle(p),
             Self::Triangle(s) => s.settle(p),
             Self::Ball(s) => s.settle(p),
-            Self::Disc(s) => s.settle(p),
+            Self::Disc(s) => onto(p, s.n, s.h),
         }
     }
 
@@ -299,22 +315,26 @@ impl Shape {
     #[inline(always)]
     pub(crate) fn point(&self, u: [f32; 2]) -> Vec3 {
         match self {
-            Self::Flat(s) => s.center + s.half_u * (2.0 * u[0] - 1.0) + s.half_v * (2.0 * u[1] - 1.0),
+            Self::Flat(s) => {
+                let p = s.center + s.half_u * (2.0 * u[0] - 1.0) + s.half_v * (2.0 * u[1] - 1.0);
+                onto(p, s.n, s.h)
+            }
             Self::Triangle(s) => {
                 let r = u[0].sqrt();
-                s.p[0] * (1.0 - r) + s.p[1] * (r * (1.0 - u[1])) + s.p[2] * (r * u[1])
+                let p = s.p[0] * (1.0 - r) + s.p[1] * (r * (1.0 - u[1])) + s.p[2] * (r * u[1]);
+                onto(p, s.n, s.h)
             }
             Self::Ball(s) => {
                 let (lo, hi) = (s.z[0].max(-1.0), s.z[1].min(1.0));
-                let z = lo + (hi - lo) * u[0];
+                let z = lo + (hi - lo) * f64::from(u[0]);
                 let r = (1.0 - z * z).max(0.0).sqrt();
                 let (c, sn) = crate::math::direction::cos_sin_turn(u[1]);
-                s.center + Vec3::new(r * c, r * sn, z) * s.radius
+                (s.center + s.radius * DVec3::new(r * f64::from(c), r * f64::from(sn), z)).as_vec3()
             }
             Self::Disc(s) => {
                 let r = s.radius * u[0].sqrt();
                 let (c, sn) = crate::math::direction::cos_sin_turn(u[1]);
-                s.center + crate::math::direction::about(s.n, r * c, r * sn, 0.0)
+                onto(s.center + crate::math::direction::about(s.n, r * c, r * sn, 0.0), s.n, s.h)
             }
         }
     }

@@ -19,7 +19,7 @@ use crate::math::direction::Frame;
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};
 use crate::scene::bsdf::{Bsdf, Carried, diffuse::Diffuse};
-use crate::scene::{LightSample, Vertex, VertexWave, connection};
+use crate::scene::{LightSample, Vertex, VertexWave, connection, lift};
 use glam::Vec3;
 
 /// The walk with a mistake in it.
@@ -97,11 +97,11 @@ impl Walk<'_> {
             // the next vertex, whose emission counts if hits do
             rays[slot] += 1;
             let Some(s) = self.scatter(t, &x, numbers(v, Purpose::Scatter).four()) else { break };
-            let Some(next) = t.scene.look(t.scene.lift(x.p, s.normal), s.to) else { break };
+            let Some(next) = t.scene.look(lift(x.p, s.normal), s.to) else { break };
             alpha *= s.value;
             if hits {
-                let other = if s.delta { 0.0 } else { t.scene.light_pdf(x.p, &next) };
-                score(k, alpha * mistake.hit_share(*technique, s.pdf, other) * t.emission(&next));
+                let (pdf, other) = if s.delta { (s.pdf, 0.0) } else { t.densities(&x, &next, s.pdf) };
+                score(k, alpha * mistake.hit_share(*technique, pdf, other) * t.emission(&next));
             }
             x = next;
         }

@@ -136,8 +136,11 @@ impl Sensor<SceneTransport<'_>> for Starts {
 /// The surface point at `p`, seen from the side its normal `n` points to.
 #[track_caller]
 pub fn point(scene: &Scene, p: DVec3, n: DVec3) -> Vertex {
-    let from: Vec3 = (p + 0.125 * n).as_vec3();
+    let from: Vec3 = (p - scene.origin() + 0.125 * n).as_vec3();
     let v = scene.trace(from, -n.as_vec3()).unwrap();
-    assert!((v.p.as_dvec3() - p).length() < 1e-3 && v.n.as_dvec3().dot(n) > 0.999, "{p} is not on a surface: {v:?}");
+    assert!(
+        (v.p.as_dvec3() + scene.origin() - p).length() < 1e-3 && v.n.as_dvec3().dot(n) > 0.999,
+        "{p} is not on a surface: {v:?}"
+    );
     v
 }

@@ -53,6 +53,7 @@ pub struct Patches {
     surface_area: f64,
     covered_area: f64,
     cover: CoverTest,
+    origin: DVec3,
 }
 
 /// No patch: the cell is covered there, or the side does not reflect.
@@ -66,7 +67,8 @@ struct Index {
 }
 
 impl Patches {
-    /// About `n` patches of nearly equal area; at least one per uncovered side, six per disk, eighteen per sphere.
+    /// About `n` patches of nearly equal area; at least one per uncovered side, six per disk, eighteen per sphere. Their points are
+    /// about the middle of the scene, as those of [`Scene`](crate::scene::Scene) are ([`Patches::origin`]).
     ///
     /// ```
     /// use fredholm::{operator::patches::Patches, scene::description::*};
@@ -102,6 +104,8 @@ impl Patches {
         if n == 0 {
             return Err(SceneError::new("a mesh of 0 patches cannot hold anything").help("ask for at least one patch"));
         }
+        let crate::scene::centre::Centred { scene, origin, .. } = scene.centred();
+        let scene = &scene;
         let surfaces = scene.surfaces();
         let listed = &surfaces.list;
         if listed.is_empty() {
@@ -141,6 +145,7 @@ impl Patches {
             surface_area: primitives.iter().map(|(p, s)| p.area() * sides_of(*s).count() as f64).sum(),
             covered_area: 0.0,
             cover,
+            origin,
         };
         for (number, region) in regions.into_iter().enumerate() {
             let (s, p) = listed[number];
@@ -211,6 +216,11 @@ impl Patches {
             }
         }
         parent
+    }
+
+    /// Where their coordinates begin, in those of the file, m.
+    pub fn origin(&self) -> DVec3 {
+        self.origin
     }
 
     /// How many patches there are.

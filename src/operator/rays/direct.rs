@@ -17,6 +17,7 @@ use super::{Caster, Scratch};
 use crate::math::Purpose;
 use crate::operator::patches::{Patches, polygon::radius_about};
 use crate::operator::rays::{lattice::Lattice, origin::Origins};
+use crate::scene::segment;
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -139,7 +140,7 @@ impl Caster<'_> {
             if cosines[0] > 0.0 && cosines[1] > 0.0 {
                 let square = r.length_squared();
                 *unblocked = lamp.emission * (cosines[0] * cosines[1] / (PI * square * square * lamp.density));
-                let (o, d) = self.scene.segment(x.position.as_vec3(), x.normal.as_vec3(), y, m);
+                let (o, d) = segment(x.position.as_vec3(), x.normal.as_vec3(), y, m);
                 rays.o.set(s, o);
                 rays.d.set(s, d);
                 rays.list[facing] = s as u32;

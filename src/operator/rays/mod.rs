@@ -43,9 +43,9 @@ use super::form_factor::{Stopped, Watch};
 use super::patches::{Lookup, Patches};
 use crate::math::direction::cosine_hemisphere;
 use crate::math::{Key, Purpose};
-use crate::scene::{Scene, Vertex, VertexWave};
+use crate::scene::{Scene, Vertex, VertexWave, error, lift};
 use direct::Lamps;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use lattice::Lattice;
 use origin::Origins;
 use rayon::prelude::*;
@@ -175,7 +175,7 @@ impl Caster<'_> {
         for k in 0..row.len() {
             let (at, [u, v, ..]) = origins.next(|s| points.at(s));
             let normal = at.normal.as_vec3();
-            rays.o.set(k, self.scene.lift(at.position.as_vec3(), normal));
+            rays.o.set(k, lift(at.position.as_vec3(), normal));
             rays.d.set(k, cosine_hemisphere(normal, [u, v]).0);
         }
         met.clear();
@@ -199,7 +199,7 @@ impl Caster<'_> {
 
     /// Rounding may put a hit under the foot of whatever stands there: a little back along the ray it is free.
     fn nearby(&self, v: &Vertex) -> Option<u32> {
-        let offset = self.scene.offset();
+        let offset = error(v.p, Vec3::ONE);
         let find = |back: f32| {
             let p = (v.p + back * v.omega).as_dvec3();
             self.patches.locate((v.side / 2) as usize, v.side & 1 == 0, p).map(|j| j as u32)

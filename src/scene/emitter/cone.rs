@@ -19,19 +19,19 @@
 //! ```
 //!
 //! so no digits are lost, neither far away (m → 0) nor at the surface (m → 1, where d² − r² = (d − r)(d + r)). Computed
-//! in `f64` from the `f32` positions, whose difference is exact there.
+//! in `f64`, as rays meet the sphere.
 //!
 //! References: Changyaw Wang, *Physically correct direct lighting for distribution ray tracing*, Graphics Gems III
 //! (1992); Matt Pharr, Wenzel Jakob and Greg Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 6.2.4.
 
 use crate::math::direction::{about, cos_sin_turn};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::f64::consts::TAU;
 
 /// Unit vector from the centre to the point, and m; nothing from inside the sphere or on it.
-fn cone(from: Vec3, center: Vec3, radius: f32) -> Option<(Vec3, f64)> {
-    let away = from.as_dvec3() - center.as_dvec3();
-    let (d, r) = (away.length(), f64::from(radius));
+fn cone(from: Vec3, center: DVec3, r: f64) -> Option<(Vec3, f64)> {
+    let away = from.as_dvec3() - center;
+    let d = away.length();
     if d <= r || r <= 0.0 {
         return None;
     }
@@ -41,7 +41,7 @@ fn cone(from: Vec3, center: Vec3, radius: f32) -> Option<(Vec3, f64)> {
 
 /// A point on the near side of the sphere, its direction uniform in solid angle, and the density in sr⁻¹; nothing from
 /// inside the sphere or on it.
-pub fn sample(from: Vec3, center: Vec3, radius: f32, u: [f32; 2]) -> Option<(Vec3, f32)> {
+pub fn sample(from: Vec3, center: DVec3, radius: f64, u: [f32; 2]) -> Option<(Vec3, f32)> {
     let (axis, m) = cone(from, center, radius)?;
     let v = f64::from(u[0]);
     let (x, rest) = (v * m, 2.0 - m);
@@ -51,11 +51,12 @@ pub fn sample(from: Vec3, center: Vec3, radius: f32, u: [f32; 2]) -> Option<(Vec
     let sin_alpha = sin_beta * cos_theta - cos_beta * sin_theta;
     let (c, s) = cos_sin_turn(u[1]);
     let normal = about(axis, sin_alpha as f32 * c, sin_alpha as f32 * s, cos_alpha as f32);
-    Some((center + radius * normal, density(m)))
+    // back to length 1 in `f64`, so that the point lies on the sphere whatever its size
+    Some(((center + radius * normal.as_dvec3().normalize()).as_vec3(), density(m)))
 }
 
 /// Density in sr⁻¹ with which [`sample`] chooses any direction that meets the sphere; 0 from inside it or on it.
-pub fn pdf(from: Vec3, center: Vec3, radius: f32) -> f32 {
+pub fn pdf(from: Vec3, center: DVec3, radius: f64) -> f32 {
     cone(from, center, radius).map_or(0.0, |(_, m)| density(m))
 }
 

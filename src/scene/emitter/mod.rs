@@ -20,7 +20,7 @@ use super::description::{Description, LightDescription};
 use super::primitive::Primitive;
 use crate::math::{Rgb, luminance};
 use environment::Environment;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
 /// How a light is selected.
@@ -45,7 +45,7 @@ pub(crate) enum Light {
     /// Primitives with cumulative shares of the area, ending in 1.
     Surface { prims: Vec<u32>, cdf: Vec<f32> },
     /// A whole sphere that emits outwards.
-    Ball { prim: u32, center: Vec3, radius: f32 },
+    Ball { prim: u32, center: DVec3, radius: f64 },
     /// From a point; W/sr.
     Point { position: Vec3, intensity: Rgb },
     /// Along a unit direction; W/m².
@@ -91,7 +91,7 @@ impl Lights {
             });
             let light = match mine.first().map(|&i| (i, prims[i as usize].1)) {
                 Some((prim, Primitive::Sphere { center, radius, z: [-1.0, 1.0], inward: false })) => {
-                    Light::Ball { prim, center: center.as_vec3(), radius: radius as f32 }
+                    Light::Ball { prim, center, radius }
                 }
                 _ => Light::Surface { cdf: cdf.collect(), prims: mine },
             };
@@ -202,7 +202,7 @@ impl Lights {
 
     /// The sphere light that a primitive is.
     #[inline(always)]
-    pub(crate) fn ball(&self, prim: u32) -> Option<(Vec3, f32, f32)> {
+    pub(crate) fn ball(&self, prim: u32) -> Option<(DVec3, f64, f32)> {
         let light = self.of_prim[prim as usize];
         match self.lights.get(light as usize) {
             Some(&Light::Ball { center, radius, .. }) => Some((center, radius, self.probability(light))),

@@ -13,6 +13,8 @@ use glam::DVec3;
 /// Horizontal field of view of a bare OBJ, degrees: that of the Cornell box's camera, 25 mm of film behind a 35 mm lens.
 pub(super) const FRAMED_FOV: f64 = 39.3077;
 const FILLED: f64 = 0.9;
+/// Width of a pixel at distance 1: a thousand times the rounding of a direction in `f64`.
+const NARROWEST: f64 = 2.5e-13;
 pub(super) const KEYS: [&str; 5] = ["origin", "target", "up", "fov", "size"];
 
 /// Reads `[camera]`. With `bounds` a missing origin, target or up is chosen to frame them.
@@ -24,6 +26,15 @@ pub(super) fn read(c: &Cursor, bounds: Option<[DVec3; 2]>) -> Result<CameraDescr
         return Err(at.error(format!("fov {fov} is outside (0, 180)")).help("it is the horizontal angle in degrees"));
     }
     let size = c.require("size", "width and height in pixels: size = [256, 256]")?.size()?;
+    let pixel = 2.0 * (0.5 * fov).to_radians().tan() / f64::from(size[0]);
+    if pixel < NARROWEST {
+        let e = at.error(format!("fov {fov:e} makes pixels {pixel:.1e} wide: their directions are equal to rounding"));
+        return Err(e.help(format!(
+            "{:.0e} degrees is the least for {} pixels",
+            NARROWEST.to_degrees() * f64::from(size[0]),
+            size[0]
+        )));
+    }
     let framed = bounds.map(|b| frame(b, fov, size));
     let vector = |key: &str, example: &str, default: Option<DVec3>| match (c.get(key), default) {
         (None, Some(v)) => Ok(v),
@@ -34,7 +45,8 @@ pub(super) fn read(c: &Cursor, bounds: Option<[DVec3; 2]>) -> Result<CameraDescr
     let up = vector("up", "the direction that is up in the image: up = [0, 1, 0]", framed.map(|_| DVec3::Y))?;
     let forward = target - origin;
     let place = |key: &str| c.get(key).unwrap_or(c.clone());
-    if forward.length() <= 1e-9 * (origin.length() + target.length()) {
+    // a thousand times the rounding of the coordinates
+    if forward.length() <= 2e-13 * (origin.length() + target.length()) {
         let e = place("target").error("camera origin and target are the same point");
         return Err(e.help("move the target to what the camera should look at"));
     }

@@ -42,11 +42,13 @@ pub(super) struct Read {
     pub(super) materials: Vec<Material>,
     pub(super) warnings: Vec<String>,
     pub(super) hints: Vec<String>,
+    /// Where each shape stands, for errors that only the whole scene shows.
+    pub(super) places: Vec<SceneError>,
 }
 
 /// Reads every shape; OBJ files add their own materials behind those of the file.
 pub(super) fn read(list: &Cursor, materials: Vec<Material>) -> Result<Read, SceneError> {
-    let mut out = Read { shapes: Vec::new(), materials, warnings: Vec::new(), hints: Vec::new() };
+    let mut out = Read { shapes: Vec::new(), materials, warnings: Vec::new(), hints: Vec::new(), places: Vec::new() };
     let named = out.materials.len();
     for c in list.items("an array of tables, [[shapes]]")? {
         let at = c.require("type", "type = \"quad\"; types: mesh, obj, quad, box, sphere, disk")?;
@@ -56,6 +58,7 @@ pub(super) fn read(list: &Cursor, materials: Vec<Material>) -> Result<Read, Scen
         if kind == "obj" {
             let material = c.get("material").map(|m| material(&m, &out.materials[..named])).transpose()?;
             append_obj(&c, material, &mut out)?;
+            out.places.resize(out.shapes.len(), c.error(""));
             continue;
         }
         let at = c.require("material", "material = \"…\", a name from [materials]")?;
@@ -64,6 +67,7 @@ pub(super) fn read(list: &Cursor, materials: Vec<Material>) -> Result<Read, Scen
         placed(&at, &out.materials[material], &geometry, kind)?;
         let emission = emission(&c, area(&geometry))?.unwrap_or(DVec3::ZERO);
         out.shapes.push(Shape { name: c.key.clone(), geometry, material, emission });
+        out.places.push(c.error(""));
     }
     Ok(out)
 }

@@ -1,6 +1,7 @@
 //! The scene file as a whole: which tables there are, and the closed forms it claims.
 
 use super::{Draft, camera, cursor::Cursor, lights, materials, shapes, tree::Node};
+use crate::scene::centre::{Centred, TOO_COARSE};
 use crate::scene::{Description, SceneError, description::Expect};
 use glam::DVec3;
 use std::path::Path;
@@ -28,8 +29,24 @@ pub(super) fn read(root: &Node, file: &Path, framed: bool) -> Result<Draft, Scen
     let camera = camera::read(&camera, bounds)?;
     let lights = c.get("lights").map_or(Ok(Vec::new()), |c| lights::read(&c))?;
     let expect = c.get("expect").map(|c| expect(&c)).transpose()?;
-    let shapes::Read { shapes, materials, warnings, hints } = read;
-    Ok(Draft { description: Description { name, camera, materials, shapes, lights, expect }, warnings, hints })
+    let shapes::Read { shapes, materials, warnings, hints, places } = read;
+    let description = Description { name, camera, materials, shapes, lights, expect };
+    precise(&description, &places)?;
+    Ok(Draft { description, warnings, hints })
+}
+
+/// Refuses a scene with a shape that single precision would deform.
+fn precise(scene: &Description, places: &[SceneError]) -> Result<(), SceneError> {
+    let Centred { scene: centred, .. } = scene.centred();
+    let Some(worst) = centred.coarsest(DVec3::ZERO).filter(|w| w.share() > TOO_COARSE) else { return Ok(()) };
+    let name = &scene.shapes[worst.shape].name;
+    let what = format!(
+        "{name} is too small for where it stands: single precision moves its points by {:.1e} m, and its least height is {:.1e} m",
+        worst.moved, worst.height
+    );
+    let help =
+        "bring the scene's parts nearer together, or make this one larger: a ten-thousandth of its height is the limit";
+    Err(SceneError { what, ..places[worst.shape].clone() }.help(help))
 }
 
 /// The name is also a folder: no separators, not `.` or `..`. Without one, the file is its name.
