@@ -142,7 +142,7 @@ fn people(d: &Description, scene: &Scene) -> String {
 
 /// Pairs of shapes that lie in one surface and overlap, the most troublesome first, and what that means.
 fn coincident(d: &Description, scene: &Scene) -> Vec<(Relation, &'static str)> {
-    let mut all = d.surfaces().relations(d);
+    let mut all = d.centred().scene.surfaces().relations(d);
     all.sort_by_key(|r| std::cmp::Reverse(r.kind));
     let seen: Vec<[usize; 2]> = coplanar::seen(scene).iter().map(|r| r.shapes).collect();
     let meaning = |r: &Relation| match r.kind {

@@ -131,7 +131,7 @@ fn connects(scene: &Scene, c: &Relation, scatters: &[Vertex], points: usize, key
 }
 
 fn by_camera(scene: &Scene, x: Vec3, n: Vec3) -> bool {
-    let d = x.as_dvec3() - scene.camera.origin;
+    let d = (x.as_dvec3() - scene.camera.origin).normalize();
     let inside = scene.camera.pixel(d).is_some_and(|(pixel, _)| pixel.is_some());
-    inside && d.dot(n.as_dvec3()) < 0.0 && !scene.blocked(x, n, scene.camera.enter(d.normalize()), Vec3::ZERO)
+    inside && d.as_vec3().dot(n) < 0.0 && !scene.blocked(x, n, scene.camera.enter(d), Vec3::ZERO)
 }

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 /// Cosine from which on two normals are compared at all.
 const PARALLEL: f64 = 0.99;
 
-/// A primitive relative to the centre of the scene.
+/// A primitive, ready to be compared.
 enum Sheet {
     /// Corners counter-clockwise seen from the front; three of four are used of a triangle.
     Polygon {
@@ -41,12 +41,12 @@ enum Sheet {
 
 /// All pairs that coincide, in ascending order.
 pub(super) fn overlaps(list: &[(usize, Primitive)], scale: &Scale) -> Vec<Overlap> {
-    let sheets: Vec<Sheet> = list.iter().map(|(_, p)| Sheet::new(p, scale.center)).collect();
+    let sheets: Vec<Sheet> = list.iter().map(|(_, p)| Sheet::new(p)).collect();
     let margin = DVec3::splat(2.0 * scale.largest_gap());
     let boxes: Vec<Aabb> = list
         .iter()
         .map(|(_, p)| {
-            let [lo, hi] = p.bounds().map(|x| x - scale.center);
+            let [lo, hi] = p.bounds();
             Aabb::new((lo - margin).as_vec3().into(), (hi + margin).as_vec3().into())
         })
         .collect();
@@ -130,20 +130,17 @@ fn apart(a: &Sheet, b: &Sheet, least: f64) -> bool {
 }
 
 impl Sheet {
-    fn new(p: &Primitive, origin: DVec3) -> Self {
+    fn new(p: &Primitive) -> Self {
         match *p {
             Primitive::Triangle(p) => {
-                let [a, b, c] = p.map(|p| p - origin);
+                let [a, b, c] = p;
                 Self::Polygon { n: (b - a).cross(c - a).normalize(), corners: [a, b, c, c], count: 3 }
             }
             Primitive::Parallelogram { origin: o, edge_u: u, edge_v: v } => {
-                let o = o - origin;
                 Self::Polygon { n: u.cross(v).normalize(), corners: [o, o + u, o + u + v, o + v], count: 4 }
             }
-            Primitive::Disk { center, normal, radius } => Self::Disk { n: normal, center: center - origin, radius },
-            Primitive::Sphere { center, radius, z, inward } => {
-                Self::Sphere { center: center - origin, radius, z, inward }
-            }
+            Primitive::Disk { center, normal, radius } => Self::Disk { n: normal, center, radius },
+            Primitive::Sphere { center, radius, z, inward } => Self::Sphere { center, radius, z, inward },
         }
     }
 
@@ -203,7 +200,7 @@ const FACETS: usize = 32;
 
 /// Outline and unit normal of a flat primitive; of a disk, an inscribed polygon.
 pub(super) fn outline(p: &Primitive) -> Option<(Vec<DVec3>, DVec3)> {
-    match (*p, Sheet::new(p, DVec3::ZERO)) {
+    match (*p, Sheet::new(p)) {
         (Primitive::Disk { center, normal, radius }, _) => {
             let (u, v) = normal.any_orthonormal_pair();
             let corner = |i: usize| {

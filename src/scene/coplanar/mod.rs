@@ -8,7 +8,7 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | R | half the extents of the scene's box | `Scale` |
+//! | R | largest coordinates of the scene about its middle ([`Description::centred`]) | `Scale` |
 //! | γ | planes nearer to each other than this are one plane | `Scale::gap` |
 //! | h | height of the first of a pair over the second, along the front normal of the first: lowest and highest | [`Overlap::height`] |
 //! | s | how far an emitter is moved | `shifts` |
@@ -20,7 +20,7 @@
 //! stays where it is.
 //!
 //! γ is a bound for the whole plane and not for one point, so that all triangles of a lamp move alike. All lengths are
-//! shares of the scene's size: scaling by a power of two changes no bit. Extents below 1/64 of the largest count as that:
+//! shares of the scene's size: scaling by a power of two changes no bit. Coordinates below 1/64 of the largest count as that:
 //! in a scene that lies in one plane, γ must not vanish.
 
 mod find;
@@ -75,9 +75,8 @@ pub struct Surfaces {
 /// The size of a scene, as rounding sees it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale {
-    pub(crate) center: DVec3,
     /// R.
-    half: DVec3,
+    reach: DVec3,
 }
 
 /// γ in units of the last place of the coordinates.
@@ -87,23 +86,24 @@ impl Scale {
     pub(crate) fn new(list: &[(usize, Primitive)]) -> Self {
         let bounds = list.iter().map(|(_, p)| p.bounds());
         let [lo, hi] = bounds.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or_default();
-        let half = 0.5 * (hi - lo);
-        Self { center: 0.5 * (lo + hi), half: half.max(DVec3::splat(half.max_element() / 64.0)) }
+        let reach = lo.abs().max(hi.abs());
+        Self { reach: reach.max(DVec3::splat(reach.max_element() / 64.0)) }
     }
 
     /// γ of a plane with this unit normal.
     pub(crate) fn gap(&self, n: DVec3) -> f64 {
-        UNITS * n.abs().dot(self.half)
+        UNITS * n.abs().dot(self.reach)
     }
 
     /// The largest γ of any plane.
     pub(crate) fn largest_gap(&self) -> f64 {
-        UNITS * self.half.length()
+        UNITS * self.reach.length()
     }
 }
 
 impl Description {
-    /// The primitives with every emitting one in front of what it touches, and all that coincides.
+    /// The primitives with every emitting one in front of what it touches, and all that coincides. The scene must be about its
+    /// middle ([`Description::centred`]): planes count as one by how rays see them there.
     pub fn surfaces(&self) -> Surfaces {
         let mut list = self.primitives();
         let mut overlaps = find::overlaps(&list, &Scale::new(&list));
