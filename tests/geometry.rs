@@ -215,10 +215,10 @@ fn a_room_far_away_is_the_room_at_the_origin() {
 fn a_camera_may_stand_far_away() {
     let mut account = open("a_camera_may_stand_far_away");
     for distance in [3.0f64, 1e3, 1e6, 3e7, 1e9] {
-        // seen along −z: a square of 1 m before a square of 4 m that glows, the picture 2 m wide at the small one
+        // seen along −z: a square of 1 m before a brighter one that fills the rest of the picture, 2 m wide
         let black = |g, e| (g, DVec3::ZERO, DVec3::splat(e));
         let face = |z: f64, half: f64| quad(DVec3::new(-half, -half, z), 2.0 * half * DVec3::X, 2.0 * half * DVec3::Y);
-        let mut d = description(&[black(face(0.0, 0.5), 1.0), black(face(-1e-3, 4.0), 3.0)]);
+        let mut d = description(&[black(face(0.0, 0.5), 1.0), black(face(-1e-3, 1.05), 3.0)]);
         let fov = 2.0 * (1.0 / distance).atan().to_degrees();
         d.camera = camera(DVec3::new(0.0, 0.0, distance), DVec3::ZERO, DVec3::Y, fov, 16);
         let scene = Scene::new(&d);
@@ -314,7 +314,7 @@ fn both_techniques_state_the_densities_of_the_pair() {
                 );
             }
         }
-        let least = if name == "tiny" { [0, 1000] } else { [300, 300] };
+        let least = if name == "tiny" { [0, 1000] } else { [50, 300] };
         assert!(counted[0] >= least[0] && counted[1] >= least[1], "{name}: {counted:?} pairs");
     }
 }
@@ -349,14 +349,14 @@ fn a_glowing_sphere_is_seen_from_inside_and_from_beside() {
         for technique in TECHNIQUES {
             let name = format!("{gap} above, {technique}");
             let plan = plan(1, technique, &Roulette::Never);
-            let found = film(&t, &scene.camera, Kind::Prefix, &plan, 8192, Key::new(account.seed(), &name));
-            account.assert_equivalent(&name, &image(&found, 1), truth, 0.01 * truth);
+            let found = film(&t, &scene.camera, Kind::Prefix, &plan, 16_384, Key::new(account.seed(), &name));
+            account.assert_equivalent(&name, &image(&found, 1), truth, 0.02 * truth);
         }
         let (stop, name) = (AtomicBool::new(false), format!("{gap} above, both ends"));
         let amount = Amount { spp: 16_384, replicates: 256, key: Key::new(account.seed(), &name) };
         let both = Bidirectional(plan(1, Technique::Mis, &Roulette::Never));
         let found = render(&t, &scene.camera, &both, amount, &mut Unwatched, &stop);
-        account.assert_equivalent(&name, &image(&found, 1), truth, 0.01 * truth);
+        account.assert_equivalent(&name, &image(&found, 1), truth, 0.02 * truth);
     }
 }
 
