@@ -131,7 +131,7 @@ fn patches_of_a_cube_give_the_galerkin_solution() {
         let corner = |face: usize| {
             let mut p = DVec3::splat(0.01);
             p[face / 2] = (face % 2) as f64;
-            b[r.patches.locate(face, true, p).unwrap()]
+            b[r.patches.locate(face, true, p - r.patches.origin()).unwrap()]
         };
         close(
             id,

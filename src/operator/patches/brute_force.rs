@@ -47,8 +47,10 @@ pub struct BruteForce {
 }
 
 impl BruteForce {
-    /// The primitives of `scene` ([`Description::surfaces`]). Rays start 10⁻⁷ of the scene's size off the surface.
+    /// The primitives of `scene` about its middle, as [`Patches`](super::Patches) have them. Rays start 10⁻⁷ of the scene's size off the
+    /// surface.
     pub fn new(scene: &Description) -> Self {
+        let scene = scene.centred().scene;
         let sides = |shape: usize| scene.materials.get(scene.shapes[shape].material).map_or(Sides::Both, |m| m.sides);
         Self::of(scene.surfaces().list.into_iter().map(|(s, p)| (p, sides(s))))
     }

@@ -87,7 +87,7 @@ mod tests {
         let geometry = Geometry::Sphere { center, radius, z: [-0.6, 0.9], inward: false };
         scene.shapes.push(Shape { name: "ball".into(), geometry, material: 0, emission: DVec3::ZERO });
         let (all, patches) = (BruteForce::new(&scene), Patches::new(&scene, 400).unwrap());
-        let near = Near::new(scene.primitives().iter().map(|p| &p.1));
+        let near = Near::new(scene.centred().scene.primitives().iter().map(|p| &p.1));
         let mut met = 0;
         for p in patches.iter() {
             let (u, v) = p.normal.any_orthonormal_pair();
