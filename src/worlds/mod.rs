@@ -20,6 +20,7 @@
 
 pub mod batches;
 pub mod discrete;
+pub mod doubts;
 pub mod equilibrium;
 pub mod falling;
 pub mod guided;

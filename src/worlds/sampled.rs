@@ -1,15 +1,13 @@
 //! The continuous world: terms and path tracer, from rays to series and images.
 
-use super::{
-    Observer, Settings,
-    unseen::{by_luck, unseen},
-};
+use super::{Observer, Settings, doubts::doubts, unseen::unseen};
 use crate::estimator::render::{Amount, Watch, render};
 use crate::estimator::{Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, SingleTerm, TermEstimator};
 use crate::math::Points;
 use crate::operator::{Adjoint, SceneTransport, Sensor, Transport};
 use crate::scene::Scene;
 use crate::terms::functional::{Replicates, functionals, image_replicates};
+use crate::terms::image::events_of_pixels;
 use crate::terms::norms::{SquaredNorm, squared_norm};
 use crate::terms::variance::{Snapshot, snapshot};
 use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, World};
@@ -64,6 +62,8 @@ pub struct Sampled {
     pub replicates: Replicates,
     /// Rays asked for, by slot.
     pub rays: Vec<u64>,
+    /// Events of the pixel in the middle: of every slot, of the sum over k ≤ K, of the whole.
+    pub pixel_events: Vec<f64>,
     /// Variances at 1, 2, 4, … samples per replicate.
     pub snapshots: Vec<Snapshot>,
     /// Squared L2 norms of the term images; none with fewer than three replicates.
@@ -99,7 +99,7 @@ pub(super) fn annotated(
     settings: &Settings,
 ) -> Sampled {
     result.series.unseen = unseen(scene, estimator, settings.technique);
-    result.series.by_luck = by_luck(scene, estimator);
+    result.series = result.series.doubted(doubts(scene, estimator, settings));
     let roulette = if estimator.is_some() { &settings.roulette } else { &settings.path_roulette };
     if !roulette.ends() {
         cut(&mut result.series, settings);
@@ -201,14 +201,16 @@ impl<'a> Run<'a> {
             seconds: self.started.elapsed().as_secs_f64(),
         };
         let image = |s: usize| TermImage::of(film, s..s + 1);
+        let parts = (0..slots).map(|s| s..s + 1).chain([0..slots - 1, 0..slots]);
         Sampled {
-            series: Series { world, label, functionals: functionals(film), cost, unseen: vec![], by_luck: vec![] },
+            series: Series { world, label, functionals: functionals(film), cost, unseen: vec![], doubts: vec![] },
             terms: (0..slots - 1).map(image).collect(),
             tail: if slots > 1 { image(slots - 1) } else { TermImage::default() },
             sum: if slots > 1 { TermImage::of(film, 0..slots - 1) } else { TermImage::default() },
             total: TermImage::of(film, 0..slots),
             replicates: image_replicates(film),
             rays: film.rays.clone(),
+            pixel_events: parts.map(|p| events_of_pixels(film, p)).collect(),
             snapshots: self.snapshots,
             norms: (0..slots - 1).map(|s| squared_norm(film, s)).collect(),
             spp: film.least_samples(),

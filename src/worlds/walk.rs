@@ -114,7 +114,7 @@ pub fn walk(
         functionals,
         cost: Cost::default(),
         unseen: vec![],
-        by_luck: vec![],
+        doubts: vec![],
     };
     if !ends {
         series.functionals.iter_mut().for_each(|f| f.tail = Estimate::NONE);
