@@ -206,7 +206,7 @@ pub fn doubts<'a>(results: impl Iterator<Item = &'a Series>) -> Vec<String> {
         let worst = thin.min_by(|a, b| a.1.total_cmp(&b.1))?;
         let (what, from) = (&worst.0.what, worst.0.from);
         Some(format!(
-            "{}: {what} are met only by chance;\n\
+            "{}: met only by chance: {what};\n\
              {:.1} such events are to be expected: no verdict below {JUDGED}, no ± below {SHOWN}, from k = {from} on",
             s.label, worst.1
         ))
