@@ -17,7 +17,7 @@
 //! | that is not finite | never | never | |
 //!
 //! **What it knows.** The replicates' means with their scatter; the film's Σ x, Σ x² and its largest contributions; and of what
-//! has not happened yet, how often it is to be expected ([`Doubt`](crate::terms::Doubt), from the scene and the way of sampling).
+//! has not happened yet, how often it is to be expected ([`Doubt`], from the scene and the way of sampling).
 //!
 //! **What it cannot know.** Something rare that has not happened, that no doubt names, and that is no tail of what has happened:
 //! light through a keyhole, say. Then the samples look like those of a scene without the keyhole.

@@ -7,7 +7,7 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | x | r + g + b of one contribution | [`Largest::push`] |
+//! | x | r + g + b of one contribution | [`Largest`] |
 //! | M | how many are kept | [`KEPT`] |
 //! | k̂ | tail index: P(x > t) falls like t^(−1/k), so that the variance is finite for k < 1/2, the mean for k < 1 | [`Largest::tail`] |
 //! | n₄ | so many equal events would carry the variance as well as these do; here a lower bound | [`Largest::spread`] |
