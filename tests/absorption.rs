@@ -158,7 +158,7 @@ fn absorption_and_collision_agree_in_any_scene() {
         for k in 0..K + 2 {
             let (a, c) = (absorbed.estimate(k..k + 1), collided.estimate(k..k + 1));
             let std_error = (a.std_error * a.std_error + c.std_error * c.std_error).map(f64::sqrt);
-            let difference = Estimate { mean: a.mean - c.mean, std_error, replicates: 256 };
+            let difference = Estimate { mean: a.mean - c.mean, std_error, replicates: 256, events: None };
             let delta = 0.03 * c.mean + 0.02 * whole;
             jury.judge(&format!("scene {i}, slot {k}"), &difference, DVec3::ZERO, delta, 0.5 * c.mean + 0.05 * whole);
         }

@@ -221,7 +221,7 @@ fn weights(account: &mut common::Account, n: u64) {
                 let what = format!("{sampling:?}, {carried:?}, {wo}, {surface:?}");
                 let limit = if sampling == Sampling::Bsdf { 0.02 } else { 0.25 };
                 assert!(std_error.max_element() < limit * truth.max_element(), "{what}: {std_error} of {truth}");
-                account.assert_consistent(&what, &Estimate { mean, std_error, replicates: n }, truth);
+                account.assert_consistent(&what, &Estimate { mean, std_error, replicates: n, events: None }, truth);
             }
         }
     }

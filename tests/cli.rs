@@ -109,7 +109,17 @@ fn a_series_leaves_every_file_and_layer() {
     assert_eq!((image.width, image.height), (16, 16));
     assert_eq!(image.layer(""), image.layer("path"), "viewers open the path tracer's image");
     let keys: Vec<&str> = image.attributes.iter().map(|a| a.0.as_str()).filter(|k| k.starts_with("fredholm")).collect();
-    assert_eq!(keys, ["command", "scene_hash", "seed", "spp", "version"].map(|k| format!("fredholm.{k}")));
+    // how it was made, and of every layer of errors whether it can be trusted
+    let own = ["command", "scene_hash", "seed", "spp", "version"].map(String::from).into_iter();
+    let flags = layers.iter().filter(|l| l.ends_with("_se")).cloned();
+    let mut expected: Vec<String> = own.chain(flags).map(|k| format!("fredholm.{k}")).collect();
+    expected.sort();
+    assert_eq!(keys, expected);
+    let said = |layer: &str| image.attributes.iter().find(|a| a.0 == format!("fredholm.{layer}_se")).unwrap().1.clone();
+    let record = summary::read(&desk.path("a/summary.json")).unwrap();
+    assert!(
+        record.pixel_errors.len() == layers.len() / 2 && record.pixel_errors.iter().all(|e| said(&e.layer) == e.why)
+    );
     // Σ_{k≤K} + tail is the whole, pixel by pixel
     let layer = |name: &str| image.layer(name).unwrap();
     for i in 0..256 {

@@ -403,6 +403,7 @@ fn values(scene: &Scene, estimator: Estimator, technique: Technique, spp: u32, s
         mean: runs.iter().map(|r| r[k].mean).sum::<DVec3>() / 4.0,
         std_error: runs.iter().map(|r| r[k].std_error.powf(2.0)).sum::<DVec3>().map(f64::sqrt) / 4.0,
         replicates: 61,
+        events: None,
     })
 }
 
@@ -422,7 +423,7 @@ fn matrix(d: &Description, patches: usize) -> Matrix<Radiosity> {
 fn apart(a: &Estimate, b: &Estimate) -> Estimate {
     let std_error = (a.std_error * a.std_error + b.std_error * b.std_error).map(f64::sqrt);
     let replicates = [a.replicates, b.replicates].into_iter().filter(|r| *r > 0).min().unwrap_or(0);
-    Estimate { mean: a.mean - b.mean, std_error, replicates }
+    Estimate { mean: a.mean - b.mean, std_error, replicates, events: None }
 }
 
 /// From anywhere in a room that is turned by any angle, a ray to a lamp in the plane of a wall meets the front of the lamp, and

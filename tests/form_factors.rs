@@ -91,8 +91,9 @@ fn a_point_sees_polygons_disks_and_spheres() {
         let scene = scene(vec![(geometry, DVec3::splat(0.5), DVec3::ZERO)]);
         let error = |n: usize| {
             let patches = Patches::new(&scene, n).unwrap();
-            let front = patches.iter().filter(|p| p.normal.dot(p.centre) < 0.0);
-            front.map(|p| p.stretch * point_to_polygon(DVec3::ZERO, normal, &p.polygon)).sum::<f64>() - expected
+            let here = -patches.origin();
+            let front = patches.iter().filter(|p| p.normal.dot(p.centre - here) < 0.0);
+            front.map(|p| p.stretch * point_to_polygon(here, normal, &p.polygon)).sum::<f64>() - expected
         };
         let (coarse, fine) = (error(400), error(25600));
         assert!(fine.abs() < 1e-4 && fine.abs() <= 0.05 * coarse.abs() + 1e-12, "{id}: {coarse:e} {fine:e}");
@@ -266,6 +267,7 @@ fn every_point_finds_its_patch() {
 fn points_just_outside_a_face_still_find_a_patch() {
     let patches = Patches::new(&room(DVec3::ONE, [0.5; 6], [0.0; 6]), 96).unwrap();
     for (face, p) in [(0, v(0., -1e-9, 1. + 1e-9)), (5, v(1. + 1e-9, 1. + 1e-9, 1.)), (2, v(-1e-9, 0., -1e-9))] {
+        let p = p - patches.origin();
         let i = patches.locate(face, true, p).unwrap();
         assert_eq!(patches[i].primitive, face);
         assert!(patches[i].polygon.iter().any(|q| q.distance(p) < 1e-8));
@@ -289,7 +291,7 @@ fn two_sided_blocks_on_a_two_sided_floor_count_every_side_once() {
     let found = f.invariants();
     assert!(found.row_sum_max < 1.0 + 1e-6, "{found:?}");
     // the inside of the block is a closed room
-    let inside = patches.locate(0, false, v(0.5, 0.5, 0.0)).unwrap();
+    let inside = patches.locate(0, false, v(0.5, 0.5, 0.0) - patches.origin()).unwrap();
     close("inside", f.row(inside).iter().map(|f| f64::from(*f)).sum(), 1.0, 1e-6);
 }
 

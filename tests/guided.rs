@@ -274,6 +274,7 @@ fn less(a: &Estimate, b: &Estimate) -> Estimate {
         mean: a.mean - b.mean,
         std_error: (a.std_error.powf(2.0) + b.std_error.powf(2.0)).map(f64::sqrt),
         replicates: a.replicates.min(b.replicates),
+        events: None,
     }
 }
 

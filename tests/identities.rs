@@ -179,7 +179,7 @@ fn a_scene_scaled_by_a_power_of_two_is_the_same_bits() {
 
 fn minus(a: &Estimate, b: &Estimate) -> Estimate {
     let std_error = (a.std_error * a.std_error + b.std_error * b.std_error).map(f64::sqrt);
-    Estimate { mean: a.mean - b.mean, std_error, replicates: a.replicates }
+    Estimate { mean: a.mean - b.mean, std_error, replicates: a.replicates, events: None }
 }
 
 #[test]

@@ -657,7 +657,7 @@ fn transformed(d: &Description, turn: DQuat, s: f64, whole: bool) -> Description
 
 fn difference(a: &Estimate, b: &Estimate) -> Estimate {
     let std_error = (a.std_error * a.std_error + b.std_error * b.std_error).map(f64::sqrt);
-    Estimate { mean: a.mean - b.mean, std_error, replicates: a.replicates }
+    Estimate { mean: a.mean - b.mean, std_error, replicates: a.replicates, events: None }
 }
 
 /// Judges the slots of two images of what should be one.

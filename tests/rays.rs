@@ -347,7 +347,8 @@ fn a_mesh_of_many_triangles_loses_no_rays() {
     let checks = Light { patches: &patches, rays: &rays }.checks();
     assert!(checks.lost < 1e-5, "{}", checks.lost);
     // what starts inside the room stays there; the outside of its walls sees nothing
-    let inside = |i: usize| (patches[i].centre + 1e-4 * patches[i].normal - 0.5).abs().max_element() < 0.5;
+    let inside =
+        |i: usize| (patches.origin() + patches[i].centre + 1e-4 * patches[i].normal - 0.5).abs().max_element() < 0.5;
     let met = |i: usize| rays.row(i).into_iter().flatten().filter(|h| **h != Hit::NOTHING).count();
     let [mut within, mut out] = [0; 2];
     for i in 0..rays.n {

@@ -323,7 +323,7 @@ fn figures_are_reproducible_and_drawn_at_twice_the_size() {
 
 fn estimate(v: f64, replicates: u64) -> Estimate {
     let std_error = if replicates == 1 { DVec3::NAN } else { DVec3::splat(0.01 * v) };
-    Estimate { mean: DVec3::new(v, v / 3.0, v / 7.0), std_error, replicates }
+    Estimate { mean: DVec3::new(v, v / 3.0, v / 7.0), std_error, replicates, events: None }
 }
 
 fn full_summary() -> Summary {
@@ -334,7 +334,6 @@ fn full_summary() -> Summary {
         tail: estimate(0.1, 1),
         sum: estimate(1.7, 16),
         total: estimate(1.8, 16),
-        events: vec![1e4; 6],
     };
     let cost = Cost { paths: 10, rays: u64::MAX, non_finite: 0, seconds: 0.1 + 0.2 };
     let series = Series {
@@ -343,7 +342,7 @@ fn full_summary() -> Summary {
         functionals: vec![functional],
         cost,
         unseen: vec![],
-        by_luck: vec![],
+        doubts: vec![],
         undecided: None,
         variance: Default::default(),
     };

@@ -167,7 +167,7 @@ proptest! {
 
 fn minus(a: &Estimate, b: &Estimate) -> Estimate {
     let std_error = (a.std_error * a.std_error + b.std_error * b.std_error).map(f64::sqrt);
-    Estimate { mean: a.mean - b.mean, std_error, replicates: a.replicates }
+    Estimate { mean: a.mean - b.mean, std_error, replicates: a.replicates, events: None }
 }
 
 /// The means of the terms of one scene with and without roulette, from different streams.

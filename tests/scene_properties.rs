@@ -40,6 +40,7 @@ fn gain(r: &Replicates, k: usize, rho: DVec3) -> Estimate {
         mean: r.mean[k + 1] - rho * r.mean[k],
         std_error: (squares * (n / (n - 1.0))).map(f64::sqrt),
         replicates: r.deviation.len() as u64,
+        events: None,
     }
 }
 
@@ -170,7 +171,7 @@ fn terms_do_not_depend_on_the_axes() {
         for k in 0..=K {
             let (a, b) = (a.estimate(k..k + 1), b.estimate(k..k + 1));
             let std_error = (a.std_error * a.std_error + b.std_error * b.std_error).map(f64::sqrt);
-            let difference = Estimate { mean: a.mean - b.mean, std_error, replicates: 256 };
+            let difference = Estimate { mean: a.mean - b.mean, std_error, replicates: 256, events: None };
             let (what, delta) = (format!("scene {i}, T{k}"), 0.02 * a.mean + 0.005 * whole);
             let judged = jury.judge(&what, &difference, DVec3::ZERO, delta, 0.3 * a.mean + 0.03 * whole);
             assert_ne!(judged, Judged::TooNoisy, "{what}: {a:?} {b:?}");

@@ -178,6 +178,7 @@ fn recorded_moments_are_those_of_the_matrix() {
                     mean: DVec3::from_array(v.map(|v| v.value)),
                     std_error: DVec3::from_array(v.map(|v| v.std_error)),
                     replicates: r.replicates(),
+                    events: None,
                 }
             };
             let second = DVec3::from_array(std::array::from_fn(|c| {
@@ -239,6 +240,7 @@ fn equal(what: &str, predicted: &[Value; 3], measured: &[Value; 3], replicates: 
         mean: of(&|i| measured[i].value - predicted[i].value),
         std_error: of(&|i| measured[i].std_error.hypot(predicted[i].std_error)),
         replicates,
+        events: None,
     };
     account.assert_consistent(what, &difference, DVec3::ZERO);
 }

@@ -31,7 +31,7 @@ fn simulated(rng: &mut Noise, design: Design, truth: impl Fn(usize, usize) -> f6
         if cv == 0.0 {
             return Estimate::exact(DVec3::splat(mean));
         }
-        let mut e = Estimate { mean: DVec3::ZERO, std_error: DVec3::ZERO, replicates };
+        let mut e = Estimate { mean: DVec3::ZERO, std_error: DVec3::ZERO, replicates, events: None };
         for c in 0..3 {
             let chi: f64 = (1..replicates).map(|_| rng.normal().powi(2)).sum();
             e.mean[c] = mean * (1.0 + cv * (shared + (1.0 - correlation).sqrt() * rng.normal()));
@@ -46,7 +46,6 @@ fn simulated(rng: &mut Noise, design: Design, truth: impl Fn(usize, usize) -> f6
             tail: measured(0.25),
             sum: measured(1.75),
             total: measured(2.0),
-            events: vec![],
         })
         .collect();
     Series {
@@ -55,7 +54,7 @@ fn simulated(rng: &mut Noise, design: Design, truth: impl Fn(usize, usize) -> f6
         functionals,
         cost: Cost::default(),
         unseen: vec![],
-        by_luck: vec![],
+        doubts: vec![],
         undecided: None,
         variance: Default::default(),
     }

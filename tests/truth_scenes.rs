@@ -443,7 +443,7 @@ fn roulette_in_a_furnace_has_its_variance() {
         let std_error = DVec3::splat(((1.0 - q) / (q * q) / f64::from(n)).sqrt());
         judge(
             "vertices",
-            Estimate { mean: DVec3::splat(vertices), std_error, replicates: 0 },
+            Estimate { mean: DVec3::splat(vertices), std_error, replicates: 0, events: None },
             case.number("mean_vertices"),
         );
     }

@@ -412,6 +412,7 @@ fn members_have_their_signature() {
                 mean: a.mean - r * b.mean,
                 std_error: (a.std_error.powf(2.0) + (r * b.std_error).powf(2.0)).map(f64::sqrt),
                 replicates: 256,
+                events: None,
             };
             let scale = r.max(1.0) * b.mean;
             jury.judge(

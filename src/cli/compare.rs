@@ -101,10 +101,8 @@ pub fn run(args: &Compare) -> Result<Ending, Failure> {
         if let Some((from, why)) = &gap {
             foot += &format!("\nT{from} and everything longer: not supported, {why}");
         }
-        if comparison.outcome == fredholm::stats::Outcome::Differs
-            && let Some(luck) = facts::luck([x, y].into_iter())
-        {
-            foot += &format!("\nwarning: {luck}");
+        for doubt in facts::doubts([x, y].into_iter()) {
+            foot += &format!("\nwarning: {doubt}");
         }
         if let Some((two, three)) = map {
             foot += "\nz map: ";

@@ -4,9 +4,10 @@ use super::solve::Found;
 use fredholm::estimator::Roulette;
 use fredholm::operator::guided::warp::CELLS;
 use fredholm::report::extrapolation::{self, Measured};
-use fredholm::report::{refine::limit_words, summary};
+use fredholm::report::refine::limit_words;
 use fredholm::scene::{Description, bsdf};
-use fredholm::stats::{self, Comparison, TermMeans, observed_rate};
+use fredholm::stats::evidence::{JUDGED, SHOWN};
+use fredholm::stats::{self, Comparison, Evidence, TermMeans, observed_rate};
 use fredholm::terms::Series;
 use fredholm::terms::functional::Replicates;
 use fredholm::worlds::discrete::{Discrete, Unlit};
@@ -29,7 +30,7 @@ pub fn judgement(c: &Comparison) -> String {
         }
         stats::Outcome::Differs => format!("Differs: at least one of {} comparisons is rejected.", c.family),
         stats::Outcome::Inconclusive => {
-            let reason = c.rows.iter().find_map(|r| r.reason);
+            let reason = c.rows.iter().find_map(|r| r.reason.as_deref());
             let factor = c.rows.iter().filter_map(|r| r.needed_factor).fold(0.0, f64::max);
             match reason {
                 Some(reason) => format!("Inconclusive: {reason}."),
@@ -164,6 +165,10 @@ pub fn extrapolated(found: &Found) -> Option<String> {
     if last < 3 || found.surface.is_empty() || doubted || !found.settings.roulette.ends() {
         return None;
     }
+    let rests = |r: &Replicates| (1..=last).find_map(|k| Some((k, Evidence::of(&r.estimate(k..k + 1)).no_error?)));
+    if let Some((k, why)) = found.surface.iter().find_map(|(_, r)| rests(r)) {
+        return Some(format!("no extrapolation from the surface means of the terms: of k = {k}, {why}"));
+    }
     let radii = found.radiosity.as_ref().map(|r| r.matrix.spectral.each_ref().map(|s| s.radius));
     let by = radii.unwrap_or(found.scene.max_albedo().as_dvec3().to_array());
     let slowest = DVec3::from_array(by).max_position();
@@ -209,25 +214,49 @@ pub fn orders(meshes: &[Series]) -> Vec<String> {
     )]
 }
 
-/// What to think of before a difference is believed.
-pub fn luck<'a>(results: impl Iterator<Item = &'a Series>) -> Option<String> {
-    let found: Vec<String> =
-        results.filter(|s| !s.by_luck.is_empty()).map(|s| format!("{}: {}", s.label, s.by_luck.join(", "))).collect();
-    (!found.is_empty()).then(|| {
-        format!(
-            "the difference may be light that one side has not found yet; what is found by luck only:\n{}\n\
-             compare again with more samples",
-            found.join("\n")
-        )
-    })
+/// What the samples of some results cannot know, where too few events are to be expected for a verdict.
+pub fn doubts<'a>(results: impl Iterator<Item = &'a Series>) -> Vec<String> {
+    let of = |s: &'a Series| {
+        let thin = s.doubts.iter().filter(|d| s.expected(d) < JUDGED).map(|d| (d, s.expected(d)));
+        let worst = thin.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let (what, from) = (&worst.0.what, worst.0.from);
+        Some(format!(
+            "{}: met only by chance: {what};\n\
+             {:.1} such events are to be expected: no verdict below {JUDGED}, no ± below {SHOWN}, from k = {from} on",
+            s.label, worst.1
+        ))
+    };
+    results.filter_map(of).collect()
+}
+
+/// Where a whole picture is black: that nothing was found, and what there is to be seen.
+pub fn black(found: &Found) -> Option<String> {
+    let mut all = found.terms.iter().chain(&found.path).peekable();
+    all.peek()?;
+    let paths: u64 = found.terms.iter().chain(&found.path).map(|s| s.series.cost.paths).sum();
+    if !all.all(|s| s.series.image().total.mean == DVec3::ZERO) {
+        return None;
+    }
+    let camera = &found.scene.camera;
+    let pixels = camera.size[0] * camera.size[1];
+    let look = |p: u32| {
+        let (start, direction) = camera.ray(p, [0.5; 2]);
+        found.scene.look(start, direction).filter(|v| v.on_surface())
+    };
+    let far: Vec<f64> = (0..pixels).filter_map(look).map(|v| v.p.as_dvec3().distance(camera.origin)).collect();
+    let (near, far_off) = far.iter().fold((f64::INFINITY, 0.0f64), |a, &d| (a.0.min(d), a.1.max(d)));
+    let seen = match far.len() {
+        0 => "nothing: its rays leave the scene".to_owned(),
+        n => format!("surfaces that send no light, {near:.3} to {far_off:.3} m away, in {n} of {pixels} pixels"),
+    };
+    Some(format!("every pixel is black: none of {paths} paths found any light. The camera sees\n{seen}"))
 }
 
 /// What the reader must know before trusting an error bar.
 pub fn warnings(found: &Found) -> Vec<String> {
     let mut out = vec![];
-    if found.verdicts.iter().any(|v| v.outcome == summary::Outcome::Differs) {
-        out.extend(luck(found.terms.iter().chain(&found.path).map(|s| &s.series)));
-    }
+    out.extend(black(found));
+    out.extend(doubts(found.terms.iter().chain(&found.path).map(|s| &s.series)));
     let all = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
     for s in all.filter(|s| s.series.cost.non_finite > 0) {
         out.push(format!(

@@ -166,6 +166,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     if run.guide != GuideName::Bsdf {
         guard::can_be_guided(&scene, &estimators, &settings, &worlds)?;
     }
+    guard::pixels_have_a_size(&description)?;
     guard::light_is_seen(&scene, &estimators, &settings, &worlds)?;
     guard::fits_in_memory(&settings, description.camera.size)?;
     if worlds.contains(&WorldName::Radiosity) {
@@ -287,7 +288,9 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         return Ok(Ending::Interrupted);
     }
     let differs = found.verdicts.iter().any(|v| v.outcome == summary::Outcome::Differs);
-    Ok(if differs { Ending::Failed } else { Ending::Ok })
+    let worlds = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
+    let broken = worlds.map(|s| s.series.cost.non_finite).sum::<u64>() > 0;
+    Ok(if differs || broken { Ending::Failed } else { Ending::Ok })
 }
 
 /// Interrupted before anything was found.
@@ -450,6 +453,7 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     lines.extend(facts::orders(&found.orders));
     blocks.push(lines.join("\n"));
     blocks.extend(facts::extrapolated(found));
+    blocks.push(fredholm::report::pixel_errors::words(&summary.pixel_errors));
     if !found.verdicts.is_empty() {
         blocks.push(table::verdicts(&found.verdicts));
         let why = found.terms.first().and_then(|t| t.series.undecided.as_deref());

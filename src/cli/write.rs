@@ -46,7 +46,8 @@ pub fn all(found: &Found, export: Option<Export>) -> Result<summary::Summary, Fa
     let caption =
         Caption { command: found.command.clone(), seed: found.settings.seed, scene: found.description.name.clone() };
     let size = found.description.camera.size;
-    pictures::write_exr(found, &mut out, size)?;
+    let trust = pictures::pixel_errors(found);
+    pictures::write_exr(found, &trust, &mut out, size)?;
     pictures::write_pictures(found, &mut out, size, &caption)?;
     if !found.strategies.is_empty() {
         out.names.extend(strategies::FILES.map(str::to_owned));
@@ -58,7 +59,7 @@ pub fn all(found: &Found, export: Option<Export>) -> Result<summary::Summary, Fa
     }
     out.names.push("index.html".into());
     out.names.push("summary.json".into());
-    let summary = summarise(found, &out.names);
+    let summary = summary::Summary { pixel_errors: trust, ..summarise(found, &out.names) };
     page::write_page(found, &out, &summary)?;
     let old = output::left_by_the_last_run(&found.folder);
     summary::write(&out.path("summary.json"), &summary)?;

@@ -21,10 +21,9 @@
 use super::picture::{Code, Layer, Pictures, Slot};
 use super::rare::{Pixel, deficit, excess};
 use super::regions::Region;
+use crate::stats::evidence::JUDGED_PIXELS;
 use crate::stats::{Measured, holm, two_sided_p};
 
-/// Fewer pixels than this carry the noise: no decision.
-pub(super) const FEW: f64 = 10.0;
 /// Side of the blocks in which the noise is measured.
 const BLOCK: usize = 8;
 
@@ -161,7 +160,7 @@ impl Rare<'_> {
     fn steady(&self, region: &Region) -> bool {
         let squares = self.pixels(region, false).into_iter().map(|[.., s]| s * s);
         let (one, two) = squares.fold((0.0, 0.0), |a, v| (a.0 + v, a.1 + v * v));
-        one * one >= FEW * two
+        one * one >= JUDGED_PIXELS * two
     }
 
     /// Variance of the suspect over that of the prediction: the median of the regions.
@@ -220,7 +219,7 @@ pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> 
                 let floor = if r == 0 { 0.0 } else { (kappa * level(r) / size(r)).sqrt() };
                 let std_error = own.max(floor);
                 let equal = difference.abs() <= rounding * predicted.abs();
-                let few = carried < FEW && !equal;
+                let few = carried < JUDGED_PIXELS && !equal;
                 let p =
                     if exact && differs_without_noise(a, b, &region.pixels, channel, rounding) || difference.is_nan() {
                         // what is not a number differs from every number

@@ -35,6 +35,7 @@ pub use picture::{Code, Layer, Pictures, Slot};
 pub use regions::Region;
 pub use rules::{Basis, Suspicion};
 
+use crate::stats::evidence::JUDGED_PIXELS;
 use crate::stats::min_detectable;
 use gap::{compare, difference};
 use pattern::{Constant, Pattern};
@@ -320,7 +321,7 @@ fn visible(case: &Case, image: &Region, comparisons: usize) -> f64 {
         let n = image.pixels.len() as f64;
         let channel = |c: usize| {
             let (m, carried) = difference((l, right, 1.0), case.suspect.size[0], &image.pixels, c, true);
-            if carried < gap::FEW {
+            if carried < JUDGED_PIXELS {
                 return f64::NAN;
             }
             let mean = image.pixels.iter().map(|&p| f64::from(right.mean[p][c])).sum::<f64>() / n;

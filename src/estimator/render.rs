@@ -8,6 +8,7 @@ use super::{Batch, Paths, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Rgb};
 use crate::operator::{Sensor, Transport};
 use crate::terms::film::{BLOCK, FilmBlock, Shape, TermFilm};
+use crate::terms::largest::Largest;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -109,14 +110,17 @@ fn pass<T: Transport>(
     let counts = film.samples.par_chunks_mut(BLOCK);
     // the first pass is always finished, so that every pixel holds something
     let may_stop = samples.start > 0;
+    // what is larger than this is kept; every block that is done raises it for the others
+    let floors = Largest::floors(&film.largest);
     let job = |paths: &mut Paths<T::Wave>, (i, ((sums, squares), counts)): (usize, Part)| {
         if may_stop && stop.load(Ordering::Relaxed) {
-            return (vec![0; shape.slots], 0);
+            return Totals::new(shape.slots);
         }
         let first = (i * BLOCK) as u32;
         let pixels = first..first + counts.len() as u32;
-        let mut block =
-            FilmBlock { shape, first, pixels: pixels.len(), sums, squares, non_finite: 0, rays: vec![0; shape.slots] };
+        let largest = floors.iter().map(Largest::above).collect();
+        let rays = vec![0; shape.slots];
+        let mut block = FilmBlock { shape, first, pixels: pixels.len(), sums, squares, largest, non_finite: 0, rays };
         let at_once = WAVE / BLOCK as u32 * (BLOCK / pixels.len()) as u32;
         for s in samples.clone().step_by(at_once as usize) {
             let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + at_once).min(samples.end) };
@@ -124,18 +128,39 @@ fn pass<T: Transport>(
         }
         counts.iter_mut().for_each(|n| *n += samples.len() as u32);
         watch.paths(samples.len() as u64 * u64::from(pixels.end - pixels.start));
-        (block.rays, block.non_finite)
+        block.largest.iter().zip(&floors).for_each(|(l, floor)| l.tell(floor));
+        Totals { rays: block.rays, non_finite: block.non_finite, largest: block.largest }
     };
     if estimator.splats() {
+        film.shared = true;
         return splat(t, sensor, estimator, key, samples, film, watch, stop);
     }
-    let totals =
-        sums.zip(squares).zip(counts).enumerate().map_init(Paths::default, job).reduce(
-            || (vec![0; shape.slots], 0),
-            |a, b| (a.0.iter().zip(&b.0).map(|(a, b)| a + b).collect(), a.1 + b.1),
-        );
-    film.rays.iter_mut().zip(totals.0).for_each(|(all, more): (&mut u64, u64)| *all += more);
-    film.non_finite += totals.1;
+    let parts = sums.zip(squares).zip(counts).enumerate().map_init(Paths::default, job);
+    let totals = parts.reduce(|| Totals::new(shape.slots), Totals::plus);
+    film.rays.iter_mut().zip(&totals.rays).for_each(|(all, more)| *all += more);
+    film.largest.iter_mut().zip(&totals.largest).for_each(|(all, more)| all.merge(more));
+    film.non_finite += totals.non_finite;
+}
+
+/// What a job counts beside the film that it fills.
+struct Totals {
+    rays: Vec<u64>,
+    non_finite: u64,
+    largest: Vec<Largest>,
+}
+
+impl Totals {
+    fn new(slots: usize) -> Self {
+        Self { rays: vec![0; slots], non_finite: 0, largest: vec![Largest::default(); slots] }
+    }
+
+    /// None of these depends on the order.
+    fn plus(mut self, other: Self) -> Self {
+        self.rays.iter_mut().zip(&other.rays).for_each(|(a, b)| *a += b);
+        self.largest.iter_mut().zip(&other.largest).for_each(|(a, b)| a.merge(b));
+        self.non_finite += other.non_finite;
+        self
+    }
 }
 
 /// What one job adds to the film, wherever.

@@ -81,8 +81,10 @@ impl Adjoint for SceneTransport<'_> {
         let delta = d.delta.then_some(d.pdf);
         let density = match delta {
             Some(choice) => self.delta_density(at, &state, choice),
-            // of the pair of points, as every other strategy takes it
-            None => self.toward(at, &state, role).density,
+            // of the pair of points, as every other strategy takes it; where rounding has turned it away, as it was drawn
+            None => Some(self.toward(at, &state, role).density)
+                .filter(|density| *density > 0.0)
+                .unwrap_or(d.pdf * self.angle(at, &state, d.direction)),
         };
         Some(Walk { state, weight: d.weight, density, delta })
     }

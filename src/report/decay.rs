@@ -49,7 +49,7 @@ pub struct Decay {
 /// ```
 pub fn norms(terms: &TermMeans) -> Vec<Point> {
     let point = |(k, &value): (usize, &f64)| {
-        let std_error = terms.covariance[(k, k)].sqrt();
+        let std_error = if terms.has_error(k) { terms.covariance[(k, k)].sqrt() } else { f64::NAN };
         Point { x: k as f64, value, std_error, replicates: terms.replicates }
     };
     terms.mean.iter().enumerate().map(point).collect()
@@ -59,6 +59,7 @@ pub fn norms(terms: &TermMeans) -> Vec<Point> {
 pub fn ratios(terms: &TermMeans) -> Vec<Point> {
     let point = |k: usize| {
         let (value, std_error) = stats::ratio(terms, k - 1)?;
+        let std_error = if terms.has_error(k - 1) && terms.has_error(k) { std_error } else { f64::NAN };
         Some(Point { x: k as f64, value, std_error, replicates: terms.replicates })
     };
     (1..terms.mean.len()).filter_map(point).collect()

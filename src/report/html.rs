@@ -10,7 +10,7 @@ use super::{
     base64::encode,
     files,
     summary::{Outcome, Verdict},
-    table::{average, known, mark, outcome, p_value, signed, significant},
+    table::{average, error, known, mark, outcome, p_value, signed, significant},
     typeset::escape,
     write_atomically,
 };
@@ -207,13 +207,13 @@ fn series_section(series: &[(String, &Functional)]) -> String {
         );
         let mut row = |name: &str, estimate: &Estimate, ratio: String| {
             let (mean, half) = average(estimate);
-            let share =
-                if total == 0.0 || mean.is_nan() { "–".into() } else { format!("{:.1} %", 100.0 * mean / total) };
+            let share = 100.0 * mean / total;
+            let share = if share.is_finite() { format!("{share:.1} %") } else { "–".into() };
             let _ = writeln!(
                 out,
                 "<tr><th scope=\"row\">{name}</th><td>{}</td><td>{}</td><td>{ratio}</td><td>{share}</td><td>{}</td></tr>",
                 if estimate.is_none() { "not estimated".into() } else { significant(mean, 4) },
-                known(half),
+                error(estimate),
                 dot(mean, half, lo / 1.5, hi * 1.5)
             );
         };

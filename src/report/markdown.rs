@@ -64,7 +64,7 @@ pub fn verdicts(name: &str, comparison: &Comparison) -> String {
     let row = |v: &Verdict| {
         let [effect, low, high, delta] = [v.effect, v.interval.0, v.interval.1, v.delta].map(|x| significant(x, 2));
         let samples = v.needed_factor.map(|f| format!("{} times the samples", significant(f, 2)));
-        let cure = v.reason.and_then(|r| r.rsplit(": ").next()).map(String::from);
+        let cure = v.reason.as_deref().and_then(|r| r.rsplit(": ").next()).map(String::from);
         let judged = format!("{} {}", mark(v.outcome.into()), outcome(v.outcome.into()));
         let interval = format!("{low} to {high}").replace('-', "−").replace("e−", "e-");
         [v.name.clone(), effect, interval, delta, judged, samples.or(cure).unwrap_or_default()]
@@ -86,7 +86,12 @@ mod tests {
 
     #[test]
     fn series_stand_side_by_side_in_one_unit_and_a_path_tracer_has_no_terms() {
-        let of = |m: f64, s: f64| Estimate { mean: DVec3::splat(m), std_error: DVec3::splat(s), replicates: 16 };
+        let of = |m: f64, s: f64| Estimate {
+            mean: DVec3::splat(m),
+            std_error: DVec3::splat(s),
+            replicates: 16,
+            events: None,
+        };
         let exact = |m: f64| Estimate::exact(DVec3::splat(m));
         let name = String::new;
         let a = Functional {
@@ -95,16 +100,8 @@ mod tests {
             tail: of(0.01, 0.002),
             sum: of(0.04, 0.0),
             total: of(0.05, 0.002),
-            events: vec![],
         };
-        let b = Functional {
-            name: name(),
-            terms: vec![],
-            tail: exact(0.0),
-            sum: exact(0.0),
-            total: exact(0.05),
-            events: vec![],
-        };
+        let b = Functional { name: name(), terms: vec![], tail: exact(0.0), sum: exact(0.0), total: exact(0.05) };
         let expected = "| k | share | a | b |\n|:---|---:|---:|---:|\n\
             | 0 | 60 % | 30.0 ± 0.4 |  |\n| 1 | 20 % | 10.00 ± 0.02 |  |\n| &gt; 1 | 20 % | 10 ± 4 |  |\n\
             | all | 100 % | 50 ± 4 | 50.00 |\n";

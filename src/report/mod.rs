@@ -16,6 +16,7 @@
 //! | `roulette.csv`, `roulette.svg`, and its table | [`roulette`] |
 //! | `diagnosis.svg` | [`diagnosis`] |
 //! | `NAME-ratios.svg` of the zoo and its PNG | [`signature`] |
+//! | which `_se` layers can be trusted | [`pixel_errors`] |
 //! | `summary.json` | [`summary`] |
 //! | `modes.svg`, `modes-painted.png` | [`modes`] |
 //! | `eigenvalues.svg`, `eigenvalues.csv` of a sweep over patches | [`drift`] |
@@ -37,13 +38,13 @@ pub mod exr;
 pub mod extrapolation;
 mod files;
 pub mod html;
-mod interval;
 pub mod markdown;
 pub mod modes;
 mod null_as_nan;
 mod panel;
 pub mod patches;
 pub mod picture;
+pub mod pixel_errors;
 pub mod plot;
 pub mod pyramid;
 mod rate;
@@ -63,6 +64,6 @@ pub mod walk;
 pub mod watch;
 pub mod zmap;
 
+pub use crate::stats::half_width_95;
 pub use error::ReportError;
 pub use files::write_atomically;
-pub use interval::half_width_95;

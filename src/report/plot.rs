@@ -26,7 +26,7 @@ pub struct Point {
     pub x: f64,
     /// The value; NaN: no mark.
     pub value: f64,
-    /// Standard error of `value`.
+    /// Standard error of `value`; NaN where it is not known (no bar).
     pub std_error: f64,
     /// Replicates behind it: 0 exact, 1 error unknown (no bar).
     pub replicates: u64,

@@ -6,7 +6,7 @@
 use super::{
     ReportError,
     picture::{Picture, auto_gain, develop, gain_label, shrink},
-    table::{Side, aligned, average, known, significant},
+    table::{Side, aligned, average, error, known, significant},
     typeset::{Caption, LINE, SANS, caption_elements, page, superscript, text_element, text_width},
 };
 
@@ -118,10 +118,11 @@ pub fn table(all: &[Strategy]) -> String {
     let head = ["k", "strategy", "weighted", "± 95 %", "alone", "± 95 %", "variance weighted", "alone"];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     rows.extend(all.iter().map(|s| {
-        let [(mean, error), (alone, alone_error)] = s.means.each_ref().map(average);
+        let [mean, alone] = s.means.each_ref().map(|e| average(e).0);
+        let [weighted_error, alone_error] = s.means.each_ref().map(error);
         let [noise, noise_alone] = s.variances.map(known);
         let number = |x: f64| significant(x, 4);
-        let numbers = [number(mean), known(error), number(alone), known(alone_error), noise, noise_alone];
+        let numbers = [number(mean), weighted_error, number(alone), alone_error, noise, noise_alone];
         [s.k.to_string(), name(s.k, s.s)].into_iter().chain(numbers).collect()
     }));
     let mut sides = vec![Side::Right; head.len()];

@@ -1,7 +1,9 @@
 //! `summary.json`: everything a run found out, in one versioned file that programs can read.
 //!
 //! Radiances are RGB triples in W·sr⁻¹·m⁻² of the image mean, unless said otherwise. An *estimate* is
-//! `{mean: [r,g,b], std_error: [r,g,b], replicates}`; `replicates` 0 means exact, 1 means that the error is not known.
+//! `{mean: [r,g,b], std_error: [r,g,b], replicates, events}`; `replicates` 0 means exact, 1 means that the error is not known. `events`
+//! is what it was added up from: `mean`, `variance` (so many equal events would carry either) and `tail` (k̂), or `null`; where these are
+//! few, `std_error` means nothing ([`crate::stats::evidence`]).
 //! A number that is not finite is written as `null` and read back as NaN.
 //!
 //! | key | meaning |
@@ -19,16 +21,17 @@
 //! | `radiosity` | the matrix world, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solve), `spectral_radius` per channel, `spectral_radius_limit` and its `…_error` (h → 0, from three meshes), `norms` (k, 1-, 2- and 1/ρ-weighted norm of T_h^k E over the patches), `unlit_sides` (never reached by light, left out of T), `discretisation` (abs. difference to half as many patches) |
 //! | `bounds` | `max_albedo` per channel (the guarantee ‖T‖₁ ≤ max albedo), `observed_rate` and `observed_rate_error` (fitted, no guarantee), `tail_bound` (a-posteriori bound of the surface norm beyond K) |
 //! | `cross_moments` | of paths without roulette up to vertex K, or `null` where none were recorded: `max_bounces` (their own K), `paths`, `beyond` (q from vertex K on), `slots` (per slot `vertex`, `kind` `hit`, `connect` or `tail`, and `term`), `second` and `product` (per channel M_ab and m_ab, rows of numbers), `rays` (per path, by slot); see [`crate::stats::schedule`] for what they predict |
+//! | `pixel_errors` | per layer of `terms.exr` with a `_se`: `layer`, `trusted`, `events` (half the pixels rest on fewer), `why` |
 //! | `verdicts` | list of `name`, `effect`, `interval`, `p`, `min_detectable`, `outcome` (`agrees`, `differs`, `inconclusive`) |
 //! | `files` | names of the files of this run, relative to this one |
-//! | `series` | per world: `world`, `label`, `functionals` (`name`, `terms`, `tail`, `sum`, `total` as estimates; the image mean first, then regions and projections), `cost` (`paths`, `rays`, `non_finite`, `seconds`), `variance` of tail and total (`finite`, `infinite`, `unknown`; unless it is finite their `std_error` is `null`) |
+//! | `series` | per world: `world`, `label`, `functionals` (`name`, `terms`, `tail`, `sum`, `total` as estimates; the image mean first, then regions and projections), `cost` (`paths`, `rays`, `non_finite`, `seconds`), `unseen`, `doubts` (`what`, `from`, `per_path`: events to be expected of a path), `variance` of tail and total (`finite`, `infinite`, `unknown`; unless it is finite their `std_error` is `null`) |
 
 use std::path::Path;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{ReportError, files, null_as_nan::NullAsNan, write_atomically};
+use super::{ReportError, files, null_as_nan::NullAsNan, pixel_errors::PixelErrors, write_atomically};
 use crate::estimator::Vertices;
 use crate::operator::patches::{Patch, Patches};
 use crate::stats;
@@ -62,6 +65,8 @@ pub struct Summary {
     pub radiosity: Option<Radiosity>,
     pub bounds: Bounds,
     pub cross_moments: Option<serde_json::Value>,
+    #[serde(default)]
+    pub pixel_errors: Vec<PixelErrors>,
     pub verdicts: Vec<Verdict>,
     pub files: Vec<String>,
     pub series: Vec<Series>,
@@ -89,6 +94,7 @@ impl Default for Summary {
             radiosity: None,
             bounds: Bounds::default(),
             cross_moments: None,
+            pixel_errors: Vec::new(),
             verdicts: Vec::new(),
             files: Vec::new(),
             series: Vec::new(),

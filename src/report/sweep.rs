@@ -20,7 +20,7 @@ mod figure;
 
 pub use figure::draw;
 
-use super::table::{Side, aligned, average, known, significant};
+use super::table::{Side, aligned, average, error, significant};
 use crate::terms::variance::Variance;
 use crate::terms::{Estimate, Functional};
 use crate::worlds::sampled::Sampled;
@@ -115,10 +115,10 @@ pub fn table(sweep: &Sweep) -> String {
     let header = [&sweep.over, "spp", "mean", "± 95 %", "rays/path", "µs/path", "variance V", "1/(V rays)", "1/(V s)"];
     let mut rows = vec![header.map(String::from).to_vec()];
     rows.extend(sweep.rows.iter().map(|r| {
-        let (mean, half) = average(&r.image.total);
+        let mean = average(&r.image.total).0;
         let [per_ray, per_second] = cost(r, r.total.value);
         let time = 1e6 * r.seconds / r.paths as f64;
-        let numbers = [significant(mean, 4), known(half), number(r.rays_per_path()), number(time)];
+        let numbers = [significant(mean, 4), error(&r.image.total), number(r.rays_per_path()), number(time)];
         let cut = if r.image.tail.is_none() { " (cut at K)" } else { "" };
         let head = [format!("{}{cut}", r.value), r.spp.to_string()];
         head.into_iter().chain(numbers).chain([number(r.total.value), per_ray, per_second]).collect()
@@ -130,9 +130,9 @@ pub fn table(sweep: &Sweep) -> String {
     for r in &sweep.rows {
         let parts = r.parts();
         rows.extend(parts[..parts.len() - 1].iter().map(|(k, e, v, rays)| {
-            let (mean, half) = average(e);
+            let mean = average(e).0;
             let [per_ray, per_second] = cost(r, v.value);
-            let numbers = [significant(mean, 4), known(half), number(*rays as f64 / r.paths as f64), number(v.value)];
+            let numbers = [significant(mean, 4), error(e), number(*rays as f64 / r.paths as f64), number(v.value)];
             [r.value.clone(), k.clone()].into_iter().chain(numbers).chain([per_ray, per_second]).collect()
         }));
     }

@@ -2,12 +2,11 @@
 //!
 //! One number per term stands for the colour: the mean of the three channels. Its error is the mean of the three
 //! errors, which bounds the true one whatever the correlation of the channels (triangle inequality of the L2 norm).
-//! A dash means "not known", never zero.
+//! A dash means "not known", never zero; where the [evidence](crate::stats::evidence) is too thin for an error, the column of errors
+//! says what there is: `3 events`, `no event`, `k̂ 0.9`.
 
-use super::{
-    half_width_95,
-    summary::{Outcome, Verdict},
-};
+use super::summary::{Outcome, Verdict};
+use crate::stats::{Evidence, half_width_95};
 use crate::terms::{Estimate, Functional};
 
 /// The series of one world: a row per term, then the tail and the sums.
@@ -19,7 +18,7 @@ use crate::terms::{Estimate, Functional};
 /// use glam::DVec3;
 /// let terms: Vec<_> = [1.0, 0.5, 0.25].map(|v| Estimate::exact(DVec3::splat(v))).into();
 /// let of = |v: f64| Estimate::exact(DVec3::splat(v));
-/// let furnace = Functional { name: "image".into(), terms, tail: of(0.25), sum: of(1.75), total: of(2.0), events: vec![] };
+/// let furnace = Functional { name: "image".into(), terms, tail: of(0.25), sum: of(1.75), total: of(2.0) };
 /// let table = series("furnace", &furnace, &[]);
 /// assert!(table.lines().any(|l| l.split_whitespace().eq(["1", "0.5000", "0", "0.5000", "25.0", "%"])));
 /// ```
@@ -27,10 +26,10 @@ pub fn series(label: &str, functional: &Functional, rays: &[u64]) -> String {
     let total = average(&functional.total).0;
     let mut rows = vec![["k", "mean", "± 95 %", "ratio", "share", "rays"].map(String::from)];
     let mut push = |name: String, estimate: &Estimate, ratio: String, rays: String| {
-        let (mean, half) = average(estimate);
-        let share = if total == 0.0 || mean.is_nan() { dash() } else { format!("{:.1} %", 100.0 * mean / total) };
-        let mean = if estimate.is_none() { dash() } else { significant(mean, 4) };
-        rows.push([name, mean, known(half), ratio, share, rays]);
+        let mean = average(estimate).0;
+        let share = 100.0 * mean / total;
+        let share = if share.is_finite() { format!("{share:.1} %") } else { dash() };
+        rows.push([name, significant(mean, 4), error(estimate), ratio, share, rays]);
     };
     let mut previous: Option<f64> = None;
     for (k, term) in functional.terms.iter().enumerate() {
@@ -87,7 +86,13 @@ pub fn mark(outcome: Outcome) -> char {
 pub fn average(estimate: &Estimate) -> (f64, f64) {
     let mean = estimate.mean.element_sum() / 3.0;
     let std_error = estimate.std_error.element_sum() / 3.0;
-    (mean, half_width_95(std_error, estimate.replicates))
+    let known = Evidence::of(estimate).no_error.is_none();
+    (mean, if known { half_width_95(std_error, estimate.replicates) } else { f64::NAN })
+}
+
+/// What stands in the column of errors: half the 95 % interval, or what there is instead.
+pub fn error(estimate: &Estimate) -> String {
+    Evidence::of(estimate).no_error.map_or_else(|| known(average(estimate).1), |why| why.short())
 }
 
 /// A number with `digits` significant digits; powers of ten outside 10⁻³ … 10⁵.
@@ -98,13 +103,17 @@ pub fn average(estimate: &Estimate) -> (f64, f64) {
 /// assert_eq!(significant(99.996, 4), "100.0");
 /// assert_eq!(significant(1.234e-5, 3), "1.23e-5");
 /// assert_eq!(significant(0.0, 3), "0");
+/// assert_eq!(significant(f64::NAN, 3), "–");
 /// ```
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".into();
     }
-    if !value.is_finite() {
-        return value.to_string();
+    if value.is_nan() {
+        return dash();
+    }
+    if value.is_infinite() {
+        return if value > 0.0 { "∞".into() } else { "−∞".into() };
     }
     // Let the formatter round first, so that 9.9996 counts as 10.00.
     let scientific = format!("{value:.*e}", digits - 1);

@@ -15,7 +15,7 @@ use super::{
     canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
     panel::Panel,
     plot::{Curve, Figure, GREY, Look, Point, figure},
-    table::{Side, aligned, average, known, significant},
+    table::{Side, aligned, average, error, significant},
     typeset::{Caption, superscript},
 };
 use crate::worlds::walk::Walked;
@@ -29,7 +29,7 @@ pub fn table(walked: &Walked) -> String {
     let header = ["k", "walk", "± 95 %", "power of the matrix", "difference", "|z| > 2", "largest |z|"];
     let mut rows = vec![header.map(String::from).to_vec()];
     let mut push = |name: String, a: &crate::terms::Estimate, b: &crate::terms::Estimate, z: &[f64]| {
-        let ((m, half), (truth, _)) = (average(a), average(b));
+        let [m, truth] = [a, b].map(|e| average(e).0);
         let beyond = z.iter().filter(|z| z.abs() > 2.0).count() as f64 / z.len() as f64;
         let largest = z.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
         let shares = if z.is_empty() {
@@ -37,7 +37,7 @@ pub fn table(walked: &Walked) -> String {
         } else {
             [format!("{:.1} %", 100.0 * beyond), format!("{largest:.1}")]
         };
-        let numbers = [significant(m, 5), known(half), significant(truth, 5), significant(m - truth, 2)];
+        let numbers = [significant(m, 5), error(a), significant(truth, 5), significant(m - truth, 2)];
         rows.push([name].into_iter().chain(numbers).chain(shares).collect());
     };
     for (k, (a, b)) in found.terms.iter().zip(&exact.terms).enumerate() {

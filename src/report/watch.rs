@@ -84,7 +84,7 @@ pub fn judgement(verdict: Outcome, findings: &[Finding], alpha: f64, beta: f64) 
             )
         }
         Outcome::Agrees => "No bias: every image mean is bounded within its margin δ.".to_owned(),
-        Outcome::Inconclusive => match findings.iter().find_map(|f| f.reason) {
+        Outcome::Inconclusive => match findings.iter().find_map(|f| f.reason.as_deref()) {
             Some(reason) => format!("No bias found, and not yet excluded: {reason}."),
             None => "No bias found, and not yet excluded.".to_owned(),
         },

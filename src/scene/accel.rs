@@ -4,7 +4,7 @@
 //! meshes but loses hits on axis-aligned boxes, so it is not used. Ties go to the primitive with the lower number, whatever
 //! the order of traversal.
 
-use super::rounding::{EPSILON, MOST_REACH};
+use super::rounding::{EPSILON, WIDER};
 use super::shape::{Hit, Shape};
 use glam::{DVec3, Vec3};
 use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2, ray::Ray};
@@ -19,7 +19,7 @@ pub(crate) struct Accel {
 pub(crate) fn widened([low, high]: [DVec3; 2], farthest: f64, touch: f64) -> [Vec3; 2] {
     let most = low.abs().max(high.abs());
     // rays start at most three scenes away
-    let by = 32.0 * EPSILON * most + 16.0 * EPSILON * farthest + touch + 2.0 * MOST_REACH * (high - low);
+    let by = 32.0 * EPSILON * most + 16.0 * EPSILON * farthest + touch + 2.0 * WIDER * (high - low);
     [(low - by).as_vec3(), (high + by).as_vec3()]
 }
 

@@ -103,17 +103,17 @@ fn block(meet: impl Fn(Vec3, Vec3) -> (f32, bool), r: &[Lane; 6], blocked: &mut 
 fn block_flat(s: &Flat, r: &[Lane; 6], blocked: &mut [u32; LANES]) {
     let at = |i: usize| (Vec3::new(r[0][i], r[1][i], r[2][i]), Vec3::new(r[3][i], r[4][i], r[5][i]));
     let mut any = 0;
-    for i in 0..LANES {
+    for (i, blocked) in blocked.iter_mut().enumerate() {
         let (o, d) = at(i);
         let (t, met, unsure) = s.look(o, d);
-        blocked[i] |= u32::from(met & (t < 1.0));
+        *blocked |= u32::from(met & (t < 1.0));
         any |= u32::from(unsure);
     }
     if any != 0 {
-        for i in 0..LANES {
+        for (i, blocked) in blocked.iter_mut().enumerate() {
             let (o, d) = at(i);
             let (t, _, unsure) = s.look(o, d);
-            blocked[i] |= u32::from(unsure && t < 1.0 && s.edges(o, d));
+            *blocked |= u32::from(unsure && t < 1.0 && s.edges(o, d));
         }
     }
 }

@@ -9,7 +9,7 @@
 //! |---|---|---|
 //! | x, n | a point of a surface and the unit normal there | `Vertex` |
 //! | e(x, n) | bound on the distance of x from the surface along n, and how far a ray starts off it, m | [`error`], [`lift`] |
-//! | R | how far a flat primitive is hit beyond its edge, m | [`REACH`], [`across`] |
+//! | R | how near to an edge the coordinates of a hit no longer tell on which side it is, m | [`REACH`], [`across`] |
 //! | M | how far from an edge the next ray starts at least, m | [`KEEP`], [`across`] |
 //!
 //! **Why 16.** A hit is projected onto the plane n·x = h. The product n·x has an error of at most 3 ε Σ|nᵢ xᵢ|, the difference
@@ -30,14 +30,13 @@ use glam::{DVec3, Vec3};
 pub(crate) const EPSILON: f64 = 1.0 / 16_777_216.0;
 /// e in units of ε Σ|nᵢ xᵢ|.
 const OFF: f32 = 16.0 * EPSILON as f32;
-/// R in units of ε Σ|âᵢ| max|xᵢ|. A ray that is nearly parallel to one wall may miss it by an error along itself; the next wall must then
-/// catch it, which may be off by 8 itself.
+/// R in units of ε Σ|âᵢ| max|xᵢ|: twice the error of a coordinate.
 pub(crate) const REACH: f64 = 16.0;
 /// M in the same units, four times that of e: a ray that starts e off one wall is still before the next one where they meet at
 /// 15° or more.
 pub(crate) const KEEP: f64 = 64.0;
-/// R is at most this part of half the width, so that no area is wrong by more than 8·10⁻⁶.
-pub(crate) const MOST_REACH: f64 = 1.0 / 262_144.0;
+/// Boxes around primitives are this part wider than these.
+pub(crate) const WIDER: f64 = 1.0 / 262_144.0;
 /// M is at most this part of half the width.
 pub(crate) const MOST_KEEP: f64 = 1.0 / 1024.0;
 

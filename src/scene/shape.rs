@@ -11,11 +11,11 @@
 //!
 //! A hit is projected onto its surface, which moves it by no more than rounding ([`rounding`](super::rounding)), and kept a few units in
 //! the last place inside the edges of its primitive, so that the next ray starts inside a closed room and cannot slip out through a
-//! corner. Parallelograms reach a few such units over their edges, for those that only touch; where they share corners, the test by
-//! edges closes the seam, however narrow they are.
+//! corner. Where primitives share corners, the test by edges closes the seam, however narrow they are; and no primitive reaches over
+//! its edges, where it would catch rays that have just left its neighbour.
 
 use super::primitive::Primitive;
-use super::rounding::{KEEP, MOST_KEEP, MOST_REACH, REACH, across, onto};
+use super::rounding::{KEEP, MOST_KEEP, REACH, across, onto};
 use glam::{DVec3, Vec3};
 
 /// A hit: distance in units of the direction's length, and the two surface coordinates where the kind needs them.
@@ -54,9 +54,8 @@ pub(crate) struct Flat {
     pub(crate) a0: f32,
     pub(crate) b: Vec3,
     pub(crate) b0: f32,
-    /// 1 + R, in these coordinates
+    /// Up to here, 1 − R, a hit is certain; up to the next rounding may be to blame for either answer.
     reach: [f32; 2],
-    /// Up to here rounding may be to blame that the test by coordinates fails.
     band: [f32; 2],
     corners: [Vec3; 4],
     center: Vec3,
@@ -85,7 +84,7 @@ impl Flat {
             a0: (-1.0 - a.dot(origin)) as f32,
             b: f(b),
             b0: (-1.0 - b.dot(origin)) as f32,
-            reach: part(REACH, MOST_REACH).map(|r| 1.0 + r),
+            reach: part(REACH, 0.25).map(|r| 1.0 - r),
             band: part(KEEP, 0.5).map(|r| 1.0 + r),
             corners: [0, 1, 3, 2].map(|i| f(corners[i])),
             center: f(origin + 0.5 * (u + v)),

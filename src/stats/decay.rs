@@ -19,7 +19,7 @@
 //! (ν − p + 2)/ν · (ν − p + 1)/(ν − 1) in variance, and the misfit follows Hotelling's law instead of χ². Both are
 //! corrected here. Rao, *Biometrika* 46 (1959); Grizzle and Allen, *Biometrics* 25 (1969).
 
-use super::{Moments, line};
+use super::{Evidence, Moments, line};
 use crate::terms::{Estimate, functional::Replicates};
 use glam::DVec3;
 use nalgebra::DMatrix;
@@ -35,12 +35,19 @@ pub struct TermMeans {
     pub covariance: DMatrix<f64>,
     /// R; 0 if the terms are exact.
     pub replicates: u64,
+    /// What each rests on; empty: not counted.
+    pub evidence: Vec<Evidence>,
 }
 
 impl TermMeans {
     /// TermMeans known without error: the matrix world.
     pub fn exact(mean: &[f64]) -> Self {
-        Self { mean: mean.to_vec(), covariance: DMatrix::zeros(mean.len(), mean.len()), replicates: 0 }
+        Self {
+            mean: mean.to_vec(),
+            covariance: DMatrix::zeros(mean.len(), mean.len()),
+            replicates: 0,
+            evidence: vec![],
+        }
     }
 
     /// TermMeans whose estimators share no paths (`single`): C is diagonal.
@@ -50,6 +57,7 @@ impl TermMeans {
             mean: terms.iter().map(|t| t.mean[channel]).collect(),
             covariance: DMatrix::from_diagonal(&variance.into()),
             replicates: terms.iter().map(|t| t.replicates).min().unwrap_or(0),
+            evidence: terms.iter().map(Evidence::of).collect(),
         }
     }
 }
@@ -66,6 +74,7 @@ impl From<&Replicates> for TermMeans {
             mean: r.mean[..terms].iter().map(|&m| grey(m)).collect(),
             covariance: DMatrix::from_fn(terms, terms, covariance),
             replicates: r.deviation.len() as u64,
+            evidence: (0..terms).map(|k| Evidence::of(&r.estimate(k..k + 1))).collect(),
         }
     }
 }
@@ -77,6 +86,7 @@ impl From<&Moments> for TermMeans {
             mean: moments.mean().iter().copied().collect(),
             covariance: moments.covariance_of_mean(),
             replicates: moments.count(),
+            evidence: vec![],
         }
     }
 }
@@ -109,10 +119,17 @@ pub enum NoRate {
     Covariance,
 }
 
+impl TermMeans {
+    /// Whether a term has an error.
+    pub fn has_error(&self, k: usize) -> bool {
+        self.evidence.get(k).is_none_or(|e| e.no_error.is_none())
+    }
+}
+
 /// The window of the fit: of the leading run k = 1, 2, … of terms above 5 standard errors (k = 0 is emission and never
-/// part of it) the later half, at least three where the run has them.
+/// part of it), where these are known, the later half, at least three where the run has them.
 pub fn tail_window(terms: &TermMeans) -> Range<usize> {
-    let visible = |&k: &usize| terms.mean[k] > 5.0 * terms.covariance[(k, k)].sqrt();
+    let visible = |&k: &usize| terms.mean[k] > 5.0 * terms.covariance[(k, k)].sqrt() && terms.has_error(k);
     let end = 1 + (1..terms.mean.len()).take_while(visible).count();
     let run = end - 1;
     let keep = run.div_ceil(2).max(3).min(run);
@@ -195,7 +212,7 @@ mod tests {
         let covariance = DMatrix::from_fn(mean.len(), mean.len(), |i, j| {
             relative * relative * mean[i] * mean[j] * correlation.powi((i as i32 - j as i32).abs())
         });
-        TermMeans { mean: mean.to_vec(), covariance, replicates: 256 }
+        TermMeans { mean: mean.to_vec(), covariance, replicates: 256, evidence: vec![] }
     }
 
     fn powers(rate: f64, n: i32) -> Vec<f64> {
@@ -267,7 +284,8 @@ mod tests {
         let row = |a: f64, b: f64, tail: f64| {
             vec![DVec3::new(3.0 * a, 0.0, 0.0), DVec3::new(0.0, b, 2.0 * b), DVec3::splat(tail)]
         };
-        let r = Replicates { mean: row(4.0, 2.0, 9.0), deviation: vec![row(0.1, 0.2, 5.0), row(-0.1, -0.2, -5.0)] };
+        let deviation = vec![row(0.1, 0.2, 5.0), row(-0.1, -0.2, -5.0)];
+        let r = Replicates { mean: row(4.0, 2.0, 9.0), deviation, counted: vec![] };
         let terms = TermMeans::from(&r);
         assert_eq!((terms.mean.as_slice(), terms.replicates), ([4.0, 2.0].as_slice(), 2));
         // n/(n − 1) Σ d_a d_b = 2 · (2 · 0.1 · 0.2)
@@ -277,7 +295,12 @@ mod tests {
 
     #[test]
     fn ratios_by_hand() {
-        let e = |m: f64, s: f64| Estimate { mean: DVec3::splat(m), std_error: DVec3::splat(s), replicates: 16 };
+        let e = |m: f64, s: f64| Estimate {
+            mean: DVec3::splat(m),
+            std_error: DVec3::splat(s),
+            replicates: 16,
+            events: None,
+        };
         let terms = TermMeans::independent(&[e(4.0, 0.4), e(2.0, 0.1), e(0.0, 0.1)], 1);
         let (r, s) = ratio(&terms, 0).unwrap();
         assert!((r - 0.5).abs() < 1e-15 && (s - 0.5 * (0.1f64 * 0.1 + 0.05 * 0.05).sqrt()).abs() < 1e-15);

@@ -20,15 +20,16 @@
 //! hold at once, at every n, with probability 1 − α.
 //!
 //! Against a finished result half of α_φ goes to its error: it lies within a = t* s, and only what is beyond counts.
-//! As in [`verdict`](super::verdict), a mean that rests on few events rejects nothing.
+//! As in [`verdict`](super::verdict), a mean whose [evidence](super::evidence) will not carry a verdict rejects nothing.
 
 mod track;
 
+use super::evidence::{JUDGED, Reason, WIDER, doubt_in_words};
 use super::hypothesis::{Measured, ROUNDING, critical};
 use super::power::one_sided_normal;
 use super::sequential::MeanSequence;
-use super::verdict::{CHANNELS, Criterion, FEW, NOT_FINITE, Outcome, Quantity, WIDER, shared_quantities};
-use crate::terms::{Estimate, Functional};
+use super::verdict::{CHANNELS, Criterion, Outcome, Quantity, shared_quantities};
+use crate::terms::{Doubt, Estimate, Functional, Series};
 use serde::Serialize;
 use track::Track;
 
@@ -41,6 +42,8 @@ pub struct Detector {
     /// The whole image by the first side, per channel.
     whole: [MeanSequence; 3],
     batches: u64,
+    /// What batches of one side cannot know: the side in words, the doubt, events to be expected of a batch.
+    doubts: Vec<(String, Doubt, f64)>,
 }
 
 /// What is known about one quantity, in the words of its clearest functional and channel.
@@ -67,18 +70,34 @@ pub struct Finding {
     /// What was found.
     pub outcome: Outcome,
     /// If inconclusive for another reason than noise: which.
-    pub reason: Option<&'static str>,
+    pub reason: Option<String>,
 }
 
 impl Detector {
     /// Watches two sides that are sampled batch by batch.
     pub fn new(criterion: Criterion) -> Self {
-        Self { criterion, finished: false, tracks: vec![], whole: Default::default(), batches: 0 }
+        Self { criterion, finished: false, tracks: vec![], whole: Default::default(), batches: 0, doubts: vec![] }
     }
 
     /// Watches one side against a finished result, whose errors are allowed for.
     pub fn against_finished(criterion: Criterion) -> Self {
         Self { finished: true, ..Self::new(criterion) }
+    }
+
+    /// With the doubts of a side that is sampled, whose cost is that of one batch.
+    #[must_use]
+    pub fn doubting(mut self, side: &Series) -> Self {
+        self.doubts.extend(side.doubts.iter().map(|d| (side.label.clone(), d.clone(), side.expected(d))));
+        self
+    }
+
+    /// Why a quantity can neither agree nor differ yet.
+    fn doubt(&self, quantity: Quantity) -> Option<String> {
+        let of = |(label, doubt, each): &(String, Doubt, f64)| {
+            let few = quantity.concerned(doubt) && each * (self.batches as f64) < JUDGED;
+            few.then(|| doubt_in_words(label, doubt, each * self.batches as f64))
+        };
+        self.doubts.iter().find_map(of)
     }
 
     /// Batches so far.
@@ -102,9 +121,10 @@ impl Detector {
             (0..3).for_each(|c| self.whole[c].push(image.total.mean[c]));
         }
         let (finished, whole) = (self.finished, self.whole);
-        for track in &mut self.tracks {
+        let doubts: Vec<bool> = self.tracks.iter().map(|t| self.doubt(t.quantity).is_some()).collect();
+        for (track, doubt) in self.tracks.iter_mut().zip(doubts) {
             track.push([first, second], finished);
-            if !track.few() {
+            if track.weak().is_none() && !doubt {
                 let log_e = track.difference.log_e(0.0, track.allowance + rounding(&whole, track.channel));
                 track.evidence = track.evidence.max(log_e); // NaN is no evidence
             }
@@ -196,29 +216,31 @@ impl Detector {
         let half = d.radius(track.level) + allowance;
         let scale = 0.5 * (track.values[0].mean() + track.values[1].mean());
         let delta = self.criterion.of_term * scale.abs() + self.criterion.of_total * self.whole[c].mean().abs();
-        let few = track.few();
+        let (weak, doubt) = (track.weak(), self.doubt(track.quantity));
+        let known = weak.is_none() && doubt.is_none();
         let outcome = if self.rejects(track) {
             Outcome::Differs
-        } else if d.mean().abs() + half * if few { 1.0 + WIDER } else { 1.0 } <= delta {
+        } else if d.mean().abs() + half * if weak.is_some() { 1.0 + WIDER } else { 1.0 } <= delta && doubt.is_none() {
             Outcome::Agrees
         } else {
             Outcome::Inconclusive
         };
         let reason = match outcome {
-            Outcome::Inconclusive if !d.mean().is_finite() => Some(NOT_FINITE),
-            Outcome::Inconclusive if few => Some(FEW),
+            Outcome::Inconclusive if !d.mean().is_finite() => Some(Reason::NotFinite.to_string()),
+            Outcome::Inconclusive => doubt.or(weak.map(|w| w.to_string())),
             _ => None,
         };
+        let or_unknown = |x: f64| if known || outcome != Outcome::Inconclusive { x } else { f64::NAN };
         // α is what this level would be had it no company
         let shared = self.criterion.alpha / track.level;
         Finding {
             name: track.quantity.name(),
             functional: track.name.clone(),
             effect: d.mean(),
-            interval: (d.mean() - half, d.mean() + half),
+            interval: (or_unknown(d.mean() - half), or_unknown(d.mean() + half)),
             log_e: d.log_e(0.0, allowance),
             p: if d.mean().is_nan() { f64::NAN } else { (shared * (-track.evidence).exp()).min(1.0) },
-            min_detectable: half + one_sided_normal(self.criterion.beta) * d.std_error(),
+            min_detectable: or_unknown(half + one_sided_normal(self.criterion.beta) * d.std_error()),
             scale,
             delta,
             outcome,
@@ -235,18 +257,19 @@ fn rounding(whole: &[MeanSequence; 3], channel: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terms::Events;
     use glam::DVec3;
 
     /// An image with two terms of these values, and a region.
     fn batch(values: [f64; 2], events: f64) -> Vec<Functional> {
-        let e = |x: f64| Estimate { mean: DVec3::splat(x), std_error: DVec3::NAN, replicates: 1 };
+        let events = Some(Events::equal(events));
+        let e = |x: f64| Estimate { mean: DVec3::splat(x), std_error: DVec3::NAN, replicates: 1, events };
         let one = |name: &str| Functional {
             name: name.into(),
             terms: values.map(e).to_vec(),
             tail: Estimate::NONE,
             sum: e(values[0] + values[1]),
             total: e(values[0] + values[1]),
-            events: vec![events; 5],
         };
         vec![one("image"), one("region 0,0")]
     }
@@ -292,7 +315,7 @@ mod tests {
     fn few_events_decide_nothing() {
         let d = watch(0.01, 1.0, 300);
         assert_eq!(d.outcome(), Outcome::Inconclusive);
-        assert_eq!(d.findings()[1].reason, Some(FEW));
+        assert!(d.findings()[1].reason.as_deref().is_some_and(|why| why.contains("rests on")));
     }
 
     /// A finished result that is off by less than its own error is no proof of a bias; off by much more, it is.
@@ -316,7 +339,7 @@ mod tests {
         let mut d = watch(0.0, 1000.0, 300);
         d.push(&batch([f64::NAN, 0.5], 1000.0), &batch([1.0, 0.5], 1000.0));
         let t0 = &d.findings()[0];
-        assert_eq!((t0.outcome, t0.reason), (Outcome::Inconclusive, Some(NOT_FINITE)));
+        assert_eq!((t0.outcome, t0.reason.clone()), (Outcome::Inconclusive, Some(Reason::NotFinite.to_string())));
         assert!(t0.p.is_nan());
     }
 }

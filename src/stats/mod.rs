@@ -10,6 +10,7 @@
 //! | t, ν, p | tests of one mean against another, Holm's adjustment | [`hypothesis`] |
 //! | δ, α | margin of equivalence, family level: verdicts on whole results | [`verdict`] |
 //! | n, β | sample sizes and what a test could have seen | [`power`] |
+//! | n, n₄, k̂ | what a number rests on: whether it may have an error, and may be judged | [`evidence`] |
 //! | γ | observed rate of decay of the terms | [`decay`] |
 //! | E_n | evidence that may be watched while it grows, and the interval that goes with it | [`sequential`] |
 //! | | two results watched batch by batch, in every quantity | [`detector`] |
@@ -26,6 +27,7 @@
 
 pub mod decay;
 pub mod detector;
+pub mod evidence;
 pub mod hypothesis;
 pub mod ledger;
 mod line;
@@ -41,6 +43,7 @@ pub mod verdict;
 
 pub use decay::{NoRate, Rate, TermMeans, observed_rate, ratio, tail_window};
 pub use detector::{Detector, Finding};
+pub use evidence::{Evidence, half_width_95};
 pub use hypothesis::{Measured, critical, difference, holm, two_sided_p};
 pub use moments::{Moments, estimate};
 pub use optimal::optimal_reach;

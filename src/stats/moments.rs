@@ -113,7 +113,7 @@ pub fn estimate(replicates: &[DVec3]) -> Estimate {
     let mean = replicates.iter().sum::<DVec3>() / n;
     let squares: DVec3 = replicates.iter().map(|&x| (x - mean) * (x - mean)).sum();
     let variance = squares / (n - 1.0); // 0/0 = NaN for n = 1
-    Estimate { mean, std_error: (variance / n).map(f64::sqrt), replicates: replicates.len() as u64 }
+    Estimate { mean, std_error: (variance / n).map(f64::sqrt), replicates: replicates.len() as u64, events: None }
 }
 
 #[cfg(test)]

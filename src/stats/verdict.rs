@@ -18,13 +18,14 @@
 //!
 //! The family is every functional (image mean, regions, projections) × every quantity (terms, tail, sum, total) ×
 //! channel. All of it can reject. Only image means must also *prove* agreement: a region sees more noise, and that no
-//! test rejected it proves nothing. Where a mean rests on few events its error is not known: then nothing is rejected, and
-//! agreement needs an interval ten times as narrow. Two one-sided tests as one interval: Schuirmann, *J. Pharmacokinetics
+//! test rejected it proves nothing. Where the [evidence](super::evidence) of a mean will not carry a verdict nothing is rejected, and
+//! agreement needs an interval ten times as narrow; where one side is in [doubt](crate::terms::Doubt) there is neither. Two one-sided tests as one interval: Schuirmann, *J. Pharmacokinetics
 //! and Biopharmaceutics* 15 (1987); a claim that needs all of them to hold needs no correction: Berger, *Technometrics* 24 (1982).
 
+use super::evidence::{Evidence, JUDGED, Reason, WIDER, doubt_in_words};
 use super::hypothesis::{Measured, ROUNDING, critical, difference, holm, two_sided_p};
 use super::power;
-use crate::terms::{Estimate, Functional, Series};
+use crate::terms::{Doubt, Estimate, Functional, Series};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -68,11 +69,11 @@ pub struct Verdict {
     pub functional: String,
     /// First − second.
     pub effect: f64,
-    /// Where the effect lies at level 1 − α; widened by the allowance.
+    /// Where the effect lies at level 1 − α; widened by the allowance. NaN where no error is known.
     pub interval: (f64, f64),
     /// Holm-adjusted p-value: rejected if ≤ α.
     pub p: f64,
-    /// Smallest true effect that would have been rejected with probability 1 − β.
+    /// Smallest true effect that would have been rejected with probability 1 − β; NaN where nothing could have been.
     pub min_detectable: f64,
     /// What was found.
     pub outcome: Outcome,
@@ -82,7 +83,7 @@ pub struct Verdict {
     /// None if no number of samples will do.
     pub needed_factor: Option<f64>,
     /// If inconclusive for another reason than noise: which.
-    pub reason: Option<&'static str>,
+    pub reason: Option<String>,
 }
 
 /// The comparison of two results.
@@ -98,30 +99,22 @@ pub struct Comparison {
     pub undecided: Option<String>,
 }
 
-/// `Some(reason)` texts of [`Verdict::reason`].
-const NO_ERROR: &str = "the standard error is unknown: one replicate only (raise the samples per pixel)";
-pub(super) const NOT_FINITE: &str = "a mean is not finite";
-pub(super) const FEW: &str = "a mean rests on too few events (hits) for its error to be known: raise --spp";
+/// Why nothing is decided where surfaces coincide and differ.
 const NO_ANSWER: &str = "the scene has no right answer";
-pub(super) const INFINITE: &str = "the variance is infinite under this roulette, so that no error bar means anything";
-pub(super) const UNKNOWN: &str =
-    "the variance may be infinite under this roulette, so that no error bar can be trusted";
 const ALLOWANCE: &str = "the allowance for discretisation alone exceeds what δ can resolve: refine the mesh";
 
 /// An allowance from two meshes is itself uncertain; a rejection must exceed it by this factor, the one that Roache asks for
 /// with two grids (*J. Fluids Engineering* 116, 1994).
 const SAFETY: f64 = 3.0;
 
-/// A sum of n events has a skewness of at least 1/√n, and a t-test at the depth of a family, z ≈ 5.5, is wrong by a factor
-/// of about exp(z³/6√n): 4 for this n. With fewer, a rare event that has not happened yet looks like a proof of darkness.
-pub(super) const EVENTS: f64 = 400.0;
-/// With fewer, an interval must fit into δ this many times more.
-pub(super) const WIDER: f64 = 9.0;
-
-/// Whether too few events carry a mean. A result in which a quantity is dark everywhere is no rare event, and is judged.
-fn few_events(quantity: Quantity, f: &Functional, image: &Functional) -> bool {
-    let dark = quantity.events(image) == Some(0.0);
-    !dark && quantity.events(f).is_some_and(|n| n < EVENTS)
+/// What one of two results cannot know of a quantity, in words: events of which too few are to be expected.
+fn doubt(quantity: Quantity, a: &Series, b: &Series) -> Option<String> {
+    let of = |s: &Series| {
+        let concerned = s.doubts.iter().filter(|d| quantity.concerned(d) && s.expected(d) < JUDGED);
+        let worst = concerned.min_by(|a, b| a.per_path.total_cmp(&b.per_path))?;
+        Some(doubt_in_words(&s.label, worst, s.expected(worst)))
+    };
+    of(a).or_else(|| of(b))
 }
 
 /// The largest allowance of the functionals of one kind (image, regions, projections): where the difference of two meshes
@@ -157,7 +150,8 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
             let extra = allowed.and_then(|f| quantity.of(f)).map_or(DVec3::ZERO, |e| e.mean.abs());
             let excused = SAFETY * largest_alike(allowance, &fa.name, quantity);
             let whole = 0.5 * (image_a.total.mean.abs() + image_b.total.mean.abs());
-            let few = [(fa, image_a), (fb, image_b)].iter().any(|(f, image)| few_events(quantity, f, image));
+            let evidence = Evidence::of(&x).and(Evidence::of(&y));
+            let doubt = doubt(quantity, a, b);
             for (c, channel) in CHANNELS.iter().enumerate() {
                 family.push(Item {
                     quantity,
@@ -168,7 +162,8 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
                     excuse: excused[c].max(extra[c]),
                     rounding: ROUNDING * whole[c],
                     delta: delta_of(quantity)[c].max(ROUNDING * whole[c]),
-                    few: few && x.std_error[c] + y.std_error[c] > 0.0,
+                    weak: evidence.no_verdict,
+                    doubt: doubt.clone(),
                 });
             }
         }
@@ -177,7 +172,7 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
     if let Some(why) = a.undecided.as_ref().or(b.undecided.as_ref()) {
         (found.outcome, found.undecided) = (Outcome::Inconclusive, Some(why.clone()));
         for row in &mut found.rows {
-            (row.outcome, row.needed_factor, row.reason) = (Outcome::Inconclusive, None, Some(NO_ANSWER));
+            (row.outcome, row.needed_factor, row.reason) = (Outcome::Inconclusive, None, Some(NO_ANSWER.to_owned()));
         }
     }
     found
@@ -195,7 +190,6 @@ pub fn discretisation(fine: &Series, coarse: &Series) -> Vec<Functional> {
             tail: gap(&f.tail, &c.tail),
             sum: gap(&f.sum, &c.sum),
             total: gap(&f.total, &c.total),
-            events: vec![],
         })
     };
     fine.functionals.iter().filter_map(functional).collect()
@@ -220,16 +214,9 @@ impl Quantity {
         }
     }
 
-    /// Of how many events, if that is known.
-    pub(super) fn events(self, f: &Functional) -> Option<f64> {
-        let k = f.terms.len();
-        let at = match self {
-            Self::Term(k) => k,
-            Self::Tail => k,
-            Self::Sum => k + 1,
-            Self::Total => k + 2,
-        };
-        f.events.get(at).copied()
+    /// Whether a doubt concerns it.
+    pub(super) fn concerned(self, doubt: &Doubt) -> bool {
+        if let Self::Term(k) = self { doubt.from <= k } else { true }
     }
 
     pub(super) fn name(self) -> String {
@@ -275,8 +262,10 @@ struct Item {
     /// What `f32` may lose: never a difference.
     rounding: f64,
     delta: f64,
-    /// Whether too few events carry a mean for its error to be known.
-    few: bool,
+    /// Why nothing may be rejected.
+    weak: Option<Reason>,
+    /// Why there can be no verdict at all.
+    doubt: Option<String>,
 }
 
 impl Item {
@@ -286,7 +275,7 @@ impl Item {
         let s = self.effect.std_error;
         if excess.is_nan() || s.is_nan() {
             f64::NAN
-        } else if excess <= 0.0 || self.few {
+        } else if excess <= 0.0 || self.weak.is_some() || self.doubt.is_some() {
             1.0
         } else {
             two_sided_p(excess / s, self.effect.dof) // s = 0: t = ∞
@@ -336,12 +325,11 @@ fn judge(family: &[Item], criterion: &Criterion) -> Comparison {
 fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Verdict {
     let (effect, s, delta) = (item.effect.mean, item.effect.std_error, item.delta);
     let (noise, reject) = (item.noise(levels.0), item.noise(levels.1));
-    let half = noise + item.allowance;
     // where the error is not known, agreement must not depend on it
-    let unknown = if item.few { WIDER * noise } else { 0.0 };
+    let half = item.allowance + if item.weak.is_some() { (1.0 + WIDER) * noise } else { noise };
     let outcome = if p <= criterion.alpha {
         Outcome::Differs
-    } else if effect.abs() + half + unknown <= delta {
+    } else if effect.abs() + half <= delta && item.doubt.is_none() {
         Outcome::Agrees
     } else {
         Outcome::Inconclusive
@@ -351,24 +339,26 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Ve
     let room = delta - item.allowance - item.excuse - item.rounding;
     let reason = match outcome {
         Outcome::Agrees | Outcome::Differs => None,
-        Outcome::Inconclusive if !effect.is_finite() => Some(NOT_FINITE),
-        Outcome::Inconclusive if s.is_infinite() => Some(INFINITE),
-        Outcome::Inconclusive if s.is_nan() && item.effect.dof > 0.0 => Some(UNKNOWN),
-        Outcome::Inconclusive if s.is_nan() => Some(NO_ERROR),
-        Outcome::Inconclusive if item.few => Some(FEW),
-        Outcome::Inconclusive if room <= 0.0 => Some(ALLOWANCE),
-        Outcome::Inconclusive => None,
+        Outcome::Inconclusive if room <= 0.0 && item.weak.is_none() && item.doubt.is_none() => {
+            Some(ALLOWANCE.to_owned())
+        }
+        Outcome::Inconclusive => item.doubt.clone().or(item.weak.map(|w| w.to_string())),
     };
+    // an error that is not known is not shown
+    let known = outcome != Outcome::Inconclusive || (item.weak.is_none() && item.doubt.is_none());
+    let or_unknown = |x: f64| if known { x } else { f64::NAN };
     let noise_decides = outcome == Outcome::Inconclusive && reason.is_none();
     Verdict {
         name: item.quantity.name(),
         functional: item.functional.clone(),
         effect,
-        interval: (effect - half, effect + half),
+        interval: (or_unknown(effect - half), or_unknown(effect + half)),
         p,
-        min_detectable: item.excuse
-            + item.rounding
-            + power::min_detectable(s, item.effect.dof, levels.1, criterion.beta),
+        min_detectable: if item.weak.is_some() || item.doubt.is_some() {
+            f64::NAN
+        } else {
+            item.excuse + item.rounding + power::min_detectable(s, item.effect.dof, levels.1, criterion.beta)
+        },
         outcome,
         delta,
         needed_factor: noise_decides.then(|| ((noise + reject) / room).powi(2)),

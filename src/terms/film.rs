@@ -16,6 +16,7 @@
 //!
 //! Memory: `pixels · R · slots · 24` bytes. Sums are `f64`; nothing is clamped, and non-finite samples are counted and left in.
 
+use super::largest::Largest;
 use crate::math::{Columns, Rgb};
 use glam::DVec3;
 
@@ -55,6 +56,10 @@ pub struct TermFilm {
     pub(crate) sums: Vec<f64>,
     /// Σ (r + g + b)² of what was added, by block, slot and pixel: how many events carry a mean.
     pub(crate) squares: Vec<f64>,
+    /// The largest contributions to each slot, over all pixels.
+    pub(crate) largest: Vec<Largest>,
+    /// Whether paths add to pixels other than their own: then pixels share their noise.
+    pub(crate) shared: bool,
 }
 
 /// Pixels of a block, the part of the film that one job fills.
@@ -74,6 +79,7 @@ pub(crate) struct FilmBlock<'a> {
     pub(crate) pixels: usize,
     pub(crate) sums: &'a mut [f64],
     pub(crate) squares: &'a mut [f64],
+    pub(crate) largest: Vec<Largest>,
     pub(crate) non_finite: u64,
     pub(crate) rays: Vec<u64>,
 }
@@ -85,6 +91,8 @@ impl FilmBlock<'_> {
         let (sample, x, y, z) = (&sample[..n], &value.x[..n], &value.y[..n], &value.z[..n]);
         let replicates = self.shape.replicates as u32;
         let (power, mask) = (replicates.is_power_of_two(), replicates - 1);
+        let largest = &mut self.largest[slot];
+        let mut added = 0;
         for i in 0..n {
             // most hits emit nothing, and adding zero is work for nobody
             if x[i] == 0.0 && y[i] == 0.0 && z[i] == 0.0 {
@@ -97,10 +105,14 @@ impl FilmBlock<'_> {
             s[0] += f64::from(x[i]);
             s[1] += f64::from(y[i]);
             s[2] += f64::from(z[i]);
-            let all = f64::from(x[i] + y[i] + z[i]);
+            let sum = x[i] + y[i] + z[i];
+            let all = f64::from(sum);
             self.squares[slot * self.pixels + (pixel[i] - self.first) as usize] += all * all;
-            self.non_finite += u64::from(!(x[i] + y[i] + z[i]).is_finite());
+            self.non_finite += u64::from(!sum.is_finite());
+            largest.push(sum);
+            added += 1;
         }
+        largest.count(added);
     }
 }
 
@@ -109,7 +121,16 @@ impl TermFilm {
     pub fn new(shape: Shape) -> Self {
         let sums = vec![0.0; shape.pixels() * shape.per_pixel()];
         let squares = vec![0.0; shape.pixels() * shape.slots];
-        Self { shape, samples: vec![0; shape.pixels()], rays: vec![0; shape.slots], non_finite: 0, sums, squares }
+        Self {
+            shape,
+            samples: vec![0; shape.pixels()],
+            rays: vec![0; shape.slots],
+            non_finite: 0,
+            sums,
+            squares,
+            largest: vec![Largest::default(); shape.slots],
+            shared: false,
+        }
     }
 
     /// A film of values that are known: one sample of each pixel, `slots[s][pixel]`.
@@ -135,6 +156,8 @@ impl TermFilm {
         let all = f64::from(value.x + value.y + value.z);
         self.squares[first * self.shape.slots + slot as usize * pixels + pixel] += all * all;
         self.non_finite += u64::from(!(value.x + value.y + value.z).is_finite());
+        self.largest[slot as usize].push(value.x + value.y + value.z);
+        self.largest[slot as usize].count(1);
     }
 
     /// Sum of the samples of one pixel, replicate and slot.

@@ -4,15 +4,26 @@
 //! regions say where, and the projections catch what is moved about without changing any mean.
 //!
 //! All are built from the sums over a 16 × 16 grid of tiles, so a pixel is read once.
+//!
+//! ```text
+//! few replicates, pixels that share no path:     se² = Σ_p w_p² se_p²,     dof = (R − 1) (Σ_p w_p² se_p²)² / Σ_p w_p⁴ se_p⁴
+//! ```
+//!
+//! Two or three replicates of the whole image may agree by chance, and know next to nothing of their scatter; each pixel has an
+//! error of its own, and together they know it better (Satterthwaite, *Biometrics Bulletin* 2, 1946).
 
 use super::film::TermFilm;
-use super::series::{Estimate, Functional};
+use super::largest::Largest;
+use super::series::{Estimate, Events, Functional};
 use crate::math::{Key, Purpose, Rng};
 use glam::DVec3;
+use std::ops::Range;
 
 const GRID: usize = 16;
 const REGIONS: usize = 4;
 const PROJECTIONS: u32 = 8;
+/// With fewer replicates errors come from the pixels.
+const REPLICATES: usize = 8;
 
 /// The terms of one functional, replicate by replicate.
 #[derive(Clone, Debug)]
@@ -21,16 +32,50 @@ pub struct Replicates {
     pub mean: Vec<DVec3>,
     /// `deviation[r][slot] = Σ_p w_p (S_r − n_r m)/N`; they sum to 0 over r.
     pub deviation: Vec<Vec<DVec3>>,
+    /// What each slot was added up from; empty if that was not counted.
+    pub counted: Vec<Counted>,
+}
+
+/// What was added to one slot: sums from which [`Events`] follow, of this slot and of several.
+#[derive(Clone, Debug, Default)]
+pub struct Counted {
+    /// Σ x.
+    pub sum: f64,
+    /// Σ x².
+    pub square: f64,
+    /// Over the whole image.
+    pub all: Whole,
+}
+
+/// What is known of a slot over the whole image only.
+#[derive(Clone, Debug, Default)]
+pub struct Whole {
+    square: f64,
+    largest: Largest,
+}
+
+/// The events of some slots together.
+fn events(slots: &[Counted]) -> Option<Events> {
+    let first = slots.first()?;
+    let (sum, square) = slots.iter().fold((0.0, 0.0), |a, c| (a.0 + c.sum, a.1 + c.square));
+    let (mut largest, mut everywhere) = (first.all.largest.clone(), first.all.square);
+    for c in &slots[1..] {
+        largest.merge(&c.all.largest);
+        everywhere += c.all.square;
+    }
+    let mean = if square > 0.0 { sum * sum / square } else { 0.0 };
+    Some(Events { mean, variance: largest.spread(everywhere), tail: largest.tail() })
 }
 
 impl Replicates {
     /// The estimate of a sum of slots.
-    pub fn estimate(&self, slots: std::ops::Range<usize>) -> Estimate {
+    pub fn estimate(&self, slots: Range<usize>) -> Estimate {
         let r = self.deviation.len();
         let square = |d: &Vec<DVec3>| d[slots.clone()].iter().sum::<DVec3>().powf(2.0);
         let variance = self.deviation.iter().map(square).sum::<DVec3>() * covariance_factor(r);
         let mean = self.mean[slots.clone()].iter().sum();
-        Estimate { mean, std_error: variance.map(f64::sqrt), replicates: r as u64 }
+        let events = self.counted.get(slots.clone()).and_then(events);
+        Estimate { mean, std_error: variance.map(f64::sqrt), replicates: r as u64, events }
     }
 
     /// Covariance of the means of two slots, per channel.
@@ -48,26 +93,8 @@ impl Replicates {
             tail: if k == 0 { Estimate::default() } else { self.estimate(k..slots) },
             sum: if k == 0 { Estimate::default() } else { self.estimate(0..k) },
             total: self.estimate(0..slots),
-            events: vec![],
         }
     }
-}
-
-/// `(Σ x)²/Σ x²` over the tiles with a weight: for the terms, the tail, the sum and the total.
-fn events(film: &TermFilm, t: &Tiles, inside: impl Fn(usize) -> bool) -> Vec<f64> {
-    let slots = film.shape.slots;
-    let over = |slots_of: std::ops::Range<usize>| {
-        let tiles = (0..GRID * GRID).filter(|&i| inside(i));
-        let (sum, square) = tiles
-            .flat_map(|i| slots_of.clone().map(move |s| i * slots + s))
-            .fold((0.0, 0.0), |a, at| (a.0 + t.sum[at], a.1 + t.square[at]));
-        if square > 0.0 { sum * sum / square } else { 0.0 }
-    };
-    let last = slots - 1;
-    if last == 0 {
-        return vec![0.0, 0.0, over(0..1)];
-    }
-    (0..slots).map(|s| over(s..s + 1)).chain([over(0..last), over(0..slots)]).collect()
 }
 
 fn covariance_factor(replicates: usize) -> f64 {
@@ -79,6 +106,10 @@ fn covariance_factor(replicates: usize) -> f64 {
 /// Per tile of the grid, slot and replicate: Σ_p m_p and Σ_p (S_r − n_r m_p)/N.
 struct Tiles {
     pixels: Vec<f64>,
+    /// Where replicates are few and pixels share no path: Σ_p se_p² and Σ_p se_p⁴ of the terms, the tail, the sum and the total.
+    noise: Vec<[DVec3; 2]>,
+    /// Of each slot, over the whole image.
+    whole: Vec<Whole>,
     mean: Vec<DVec3>,
     deviation: Vec<DVec3>,
     /// Σ (r + g + b) and Σ (r + g + b)² of all that was added.
@@ -91,15 +122,27 @@ fn tiles(film: &TermFilm) -> Tiles {
     let [w, h] = film.shape.size.map(|s| s as usize);
     let mut t = Tiles {
         pixels: vec![0.0; GRID * GRID],
+        noise: vec![],
+        whole: vec![],
         mean: vec![DVec3::ZERO; GRID * GRID * slots],
         deviation: vec![DVec3::ZERO; GRID * GRID * slots * replicates],
         sum: vec![0.0; GRID * GRID * slots],
         square: vec![0.0; GRID * GRID * slots],
     };
+    let parts = parts(slots);
+    let by_pixels = (2..REPLICATES).contains(&replicates) && !film.shared;
+    if by_pixels {
+        t.noise = vec![[DVec3::ZERO; 2]; GRID * GRID * parts.len()];
+    }
     for p in 0..w * h {
         let tile = (p / w) * GRID / h * GRID + (p % w) * GRID / w;
         let n = f64::from(film.samples[p]);
         t.pixels[tile] += 1.0;
+        for (at, part) in parts.iter().enumerate().filter(|_| by_pixels) {
+            let v = film.pixel(p, part.clone()).1.powf(2.0);
+            let noise = &mut t.noise[tile * parts.len() + at];
+            *noise = [noise[0] + v, noise[1] + v * v];
+        }
         for s in 0..slots {
             let mean = (0..replicates).map(|r| film.sum(p, r, s)).sum::<DVec3>() / n;
             t.mean[tile * slots + s] += mean;
@@ -111,7 +154,15 @@ fn tiles(film: &TermFilm) -> Tiles {
             }
         }
     }
+    let square = |s: usize| (0..GRID * GRID).map(|i| t.square[i * slots + s]).sum();
+    t.whole = (0..slots).map(|s| Whole { square: square(s), largest: film.largest[s].clone() }).collect();
     t
+}
+
+/// The slots of the terms, the tail, the sum and the total, in this order; of one slot, of itself.
+fn parts(slots: usize) -> Vec<Range<usize>> {
+    let single = (0..slots).map(|s| s..s + 1);
+    if slots == 1 { single.collect() } else { single.chain([0..slots - 1, 0..slots]).collect() }
 }
 
 /// The image mean alone, replicate by replicate.
@@ -126,18 +177,50 @@ fn weighted(film: &TermFilm, t: &Tiles, weight: impl Fn(usize) -> f64, total: f6
     let deviation = |r: usize, s: usize| {
         tiles.iter().map(|&(i, w)| t.deviation[(i * slots + s) * replicates + r] * w).sum::<DVec3>() / total
     };
+    let counted = |s: usize| {
+        let add = |of: &[f64]| tiles.iter().map(|&(i, _)| of[i * slots + s]).sum();
+        Counted { sum: add(&t.sum), square: add(&t.square), all: t.whole[s].clone() }
+    };
     Replicates {
         mean: (0..slots).map(mean).collect(),
         deviation: (0..replicates).map(|r| (0..slots).map(|s| deviation(r, s)).collect()).collect(),
+        counted: (0..slots).map(counted).collect(),
     }
+}
+
+/// The same as a functional, with errors from the pixels where replicates are few.
+fn functional(film: &TermFilm, t: &Tiles, weight: impl Fn(usize) -> f64, total: f64, name: &str) -> Functional {
+    let mut found = weighted(film, t, &weight, total).functional(name);
+    if t.noise.is_empty() {
+        return found;
+    }
+    let parts = parts(film.shape.slots).len();
+    let of = |part: usize| {
+        let add = |a: [DVec3; 2], i: usize| {
+            let (w2, v) = ((weight(i) / total).powi(2), t.noise[i * parts + part]);
+            [a[0] + w2 * v[0], a[1] + w2 * w2 * v[1]]
+        };
+        (0..GRID * GRID).fold([DVec3::ZERO; 2], add)
+    };
+    let single = (film.shape.replicates - 1) as f64;
+    let known = |e: &mut Estimate, [v, v2]: [DVec3; 2]| {
+        e.std_error = v.map(f64::sqrt);
+        let dof = (0..3).filter(|&c| v2[c] > 0.0).map(|c| single * v[c] * v[c] / v2[c]);
+        let least = dof.fold(f64::INFINITY, f64::min);
+        e.replicates = 1 + if least.is_finite() { least.max(single) as u64 } else { single as u64 };
+    };
+    match film.shape.slots {
+        1 => known(&mut found.total, of(0)),
+        _ => found.made_of(0).enumerate().for_each(|(part, e)| known(e, of(part))),
+    }
+    found
 }
 
 /// The same functionals of images that are known without error: `slots[s][pixel]`, the terms k = 0..=K and the tail.
 pub fn exact_functionals(size: [u32; 2], slots: &[Vec<DVec3>]) -> Vec<Functional> {
     let mut all = functionals(&TermFilm::exact(size, slots));
     for f in &mut all {
-        f.terms.iter_mut().chain([&mut f.tail, &mut f.sum, &mut f.total]).for_each(|e| *e = Estimate::exact(e.mean));
-        f.events.clear();
+        f.made_of(0).for_each(|e| *e = Estimate::exact(e.mean));
     }
     all
 }
@@ -146,24 +229,20 @@ pub fn exact_functionals(size: [u32; 2], slots: &[Vec<DVec3>]) -> Vec<Functional
 pub fn functionals(film: &TermFilm) -> Vec<Functional> {
     let t = tiles(film);
     let pixels = film.shape.pixels() as f64;
-    let everywhere = events(film, &t, |_| true);
-    let image = weighted(film, &t, |_| 1.0, pixels).functional("image");
-    let mut all = vec![Functional { events: everywhere.clone(), ..image }];
+    let mut all = vec![functional(film, &t, |_| 1.0, pixels, "image")];
     let step = GRID / REGIONS;
     for (row, column) in (0..REGIONS).flat_map(|y| (0..REGIONS).map(move |x| (y, x))) {
         let inside = |i: usize| i / GRID / step == row && i % GRID / step == column;
         let count: f64 = (0..GRID * GRID).filter(|&i| inside(i)).map(|i| t.pixels[i]).sum();
         if count > 0.0 {
-            let name = format!("region {row},{column}");
-            let region = weighted(film, &t, |i| if inside(i) { 1.0 } else { 0.0 }, count).functional(&name);
-            all.push(Functional { events: events(film, &t, inside), ..region });
+            let weight = |i: usize| if inside(i) { 1.0 } else { 0.0 };
+            all.push(functional(film, &t, weight, count, &format!("region {row},{column}")));
         }
     }
     let key = Key::new(0, "projections");
     for j in 0..PROJECTIONS {
         let sign = |i: usize| if Rng::at(key, i as u32, j, 0, Purpose::Start).one() < 0.5 { -1.0 } else { 1.0 };
-        let projection = weighted(film, &t, sign, pixels).functional(&format!("projection {j}"));
-        all.push(Functional { events: everywhere.clone(), ..projection });
+        all.push(functional(film, &t, sign, pixels, &format!("projection {j}")));
     }
     all
 }

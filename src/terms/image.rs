@@ -1,4 +1,4 @@
-//! Images of the terms: mean and standard error per pixel.
+//! Images of the terms: mean and standard error per pixel, and how many events carry a pixel.
 
 use super::film::TermFilm;
 use rayon::prelude::*;
@@ -20,4 +20,20 @@ impl TermImage {
         let (mean, std_error) = pixels.map(|(m, e)| (m.as_vec3().to_array(), e.as_vec3().to_array())).unzip();
         Self { mean, std_error }
     }
+}
+
+/// (Σ x)²/Σ x² of the pixel in the middle, of those that hold anything of some slots: half of them rest on fewer events. 0 where
+/// none does.
+pub fn events_of_pixels(film: &TermFilm, slots: Range<usize>) -> f64 {
+    let of = |p: usize| {
+        let sum = |s: usize| (0..film.shape.replicates).map(|r| film.sum(p, r, s).element_sum()).sum::<f64>();
+        let square: f64 = slots.clone().map(|s| film.square(p, s)).sum();
+        (square > 0.0).then(|| slots.clone().map(sum).sum::<f64>().powi(2) / square)
+    };
+    let mut all: Vec<f64> = (0..film.shape.pixels()).into_par_iter().filter_map(of).collect();
+    if all.is_empty() {
+        return 0.0;
+    }
+    let middle = all.len() / 2;
+    *all.select_nth_unstable_by(middle, f64::total_cmp).1
 }

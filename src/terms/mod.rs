@@ -6,6 +6,7 @@
 //! | image of T^k E with its error | [`TermImage`] | [`image`] |
 //! | φ(T^k E) | [`Functional`] | [`functional`] |
 //! | ‖T^k E‖₂ of the image | [`norms::SquaredNorm`] | [`norms`] |
+//! | the largest contributions, and how heavy their tail is | [`largest::Largest`] | [`largest`] |
 //! | how replicates scatter | [`scatter::Scatter`] | [`scatter`] |
 //! | E\[Y_a Y_b\] over the slots of one path | [`CrossMoments`] | [`cross_moments`] |
 //! | everything a world returns | [`Series`] | [`series`] |
@@ -15,6 +16,7 @@ pub mod cross_moments;
 pub mod film;
 pub mod functional;
 pub mod image;
+pub mod largest;
 pub mod norms;
 pub mod scatter;
 pub mod series;
@@ -23,4 +25,4 @@ pub mod variance;
 pub use cross_moments::{CrossMoments, Recorded};
 pub use film::{Shape, TermFilm};
 pub use image::TermImage;
-pub use series::{Cost, Estimate, Functional, Series, Unseen, Variance, World};
+pub use series::{Cost, Doubt, Estimate, Events, Functional, Series, Unseen, Variance, World};

@@ -21,6 +21,7 @@
 
 use super::TermImage;
 use super::film::TermFilm;
+use super::largest::Largest;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -38,6 +39,8 @@ pub struct Scatter {
     error: f64,
     /// What the noise of the reference adds to the error of MSE.
     pub reference_error: f64,
+    /// (Σ x²)²/Σ x⁴ over everything that was added: so many equal events carry V.
+    pub events: f64,
 }
 
 /// Sums over some pixels.
@@ -49,6 +52,8 @@ struct Sums {
     square: f64,
     noise: f64,
     noise_squared: f64,
+    /// Σ x².
+    added: f64,
 }
 
 impl Scatter {
@@ -64,6 +69,7 @@ impl Scatter {
             square: 0.0,
             noise: 0.0,
             noise_squared: 0.0,
+            added: 0.0,
         };
         // chunks of a fixed size, added in order: the same bits for any number of threads
         let chunk = |c: usize| {
@@ -74,6 +80,8 @@ impl Scatter {
         let parts: Vec<Sums> = (0..pixels.div_ceil(1024)).into_par_iter().map(chunk).collect();
         let s = parts.iter().fold(zero, |a, b| a.plus(b));
         let (count, n) = (3.0 * pixels as f64, r as f64);
+        let mut largest = Largest::default();
+        slots.clone().for_each(|slot| largest.merge(&film.largest[slot]));
         let mean = |all: Vec<f64>| all.into_iter().map(|x| x / count).collect();
         Self {
             q: mean(s.q),
@@ -81,6 +89,7 @@ impl Scatter {
             cross: mean(s.cross),
             error: if reference.is_some() { (s.square - s.noise) / count } else { f64::NAN },
             // |e|² about its mean, and se² about its own: normal errors, channels fully correlated, pixels independent
+            events: largest.spread(s.added),
             reference_error: (2.0 * s.noise_squared * (1.0 + 1.0 / (n - 1.0))).sqrt() / count,
         }
     }
@@ -149,6 +158,7 @@ impl Sums {
         let of = |i: usize| slots.clone().map(|s| film.sum(p, i, s)).sum::<DVec3>();
         let sums: Vec<DVec3> = (0..r).map(of).collect();
         let mean = sums.iter().sum::<DVec3>() / samples;
+        self.added += slots.clone().map(|s| film.square(p, s)).sum::<f64>();
         let about = |i: usize| (sums[i] - mean * film.count(p, i)) * (r as f64 / samples);
         for i in 0..r {
             let d = about(i);
@@ -172,6 +182,7 @@ impl Sums {
         self.square += other.square;
         self.noise += other.noise;
         self.noise_squared += other.noise_squared;
+        self.added += other.added;
         self
     }
 }

@@ -3,7 +3,27 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+/// What a mean was added up from: many events alike, or a few that are bright. An event is one contribution x = r + g + b.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Events {
+    /// (Σ x)²/Σ x²: so many equal events would carry the mean with as much noise. 0: nothing was found.
+    pub mean: f64,
+    /// (Σ x²)²/Σ x⁴, or less: so many equal events would carry the variance.
+    pub variance: f64,
+    /// k̂ of the largest contributions ([`largest`](super::largest)); 0 where it is not known.
+    pub tail: f64,
+}
+
+impl Events {
+    /// So many equal events.
+    pub fn equal(n: f64) -> Self {
+        Self { mean: n, variance: n, tail: 0.0 }
+    }
+}
+
 /// A mean with its standard error, per channel. For a matrix result the error is zero and `replicates` is 0.
+///
+/// Whether the error may be believed is for [`Evidence`](crate::stats::Evidence) to say.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The estimated value.
@@ -11,18 +31,22 @@ pub struct Estimate {
     /// Standard error of `mean`; ∞ where the variance is infinite, NaN where it is not known (one replicate, or a variance that may
     /// be infinite).
     pub std_error: DVec3,
-    /// Independent replicates behind the error: `replicates − 1` degrees of freedom. 0 means exact.
+    /// Independent replicates behind the error: `replicates − 1` degrees of freedom. 0 means exact. Where the error comes from
+    /// pixels, since there are few replicates, as many as would know it as well.
     pub replicates: u64,
+    /// What it was added up from, where that was counted.
+    #[serde(default)]
+    pub events: Option<Events>,
 }
 
 impl Estimate {
     /// A value known without error.
     pub fn exact(mean: DVec3) -> Self {
-        Self { mean, std_error: DVec3::ZERO, replicates: 0 }
+        Self { mean, std_error: DVec3::ZERO, replicates: 0, events: None }
     }
 
     /// Nothing was estimated: the tail of paths that are cut at K.
-    pub const NONE: Self = Self { mean: DVec3::NAN, std_error: DVec3::NAN, replicates: 0 };
+    pub const NONE: Self = Self { mean: DVec3::NAN, std_error: DVec3::NAN, replicates: 0, events: None };
 
     /// Whether this is [`Estimate::NONE`]. (A broken render is NaN too, but it has replicates.)
     pub fn is_none(&self) -> bool {
@@ -92,10 +116,14 @@ pub struct Functional {
     pub sum: Estimate,
     /// Σ_{k≤K} terms + tail: the whole image.
     pub total: Estimate,
-    /// How many equal events would carry as much noise: `(Σ x)²/Σ x²` over everything that was added, for each of the terms,
-    /// the tail, the sum and the total. Empty if not known. Where few events carry a mean, its error is not known either.
-    #[serde(default)]
-    pub events: Vec<f64>,
+}
+
+impl Functional {
+    /// What is made of the terms k ≥ `from`: these, the tail, the sum and the total.
+    pub fn made_of(&mut self, from: usize) -> impl Iterator<Item = &mut Estimate> {
+        let late = self.terms.iter_mut().skip(from);
+        late.chain([&mut self.tail, &mut self.sum, &mut self.total])
+    }
 }
 
 /// A kind of paths that a way of sampling cannot find.
@@ -105,6 +133,17 @@ pub struct Unseen {
     pub what: String,
     /// The first term that has such paths.
     pub from: usize,
+}
+
+/// What the samples of a result cannot know about themselves: most often a kind of paths that is met only by chance.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Doubt {
+    /// In words: `the light of a lamp through mirrors or glass`.
+    pub what: String,
+    /// The first term that it concerns.
+    pub from: usize,
+    /// So many events of the kind are to be expected from one path; 1e-6: from a million paths one. 0: no number of paths will do.
+    pub per_path: f64,
 }
 
 /// What a world returns.
@@ -121,10 +160,10 @@ pub struct Series {
     /// Kinds of paths that this way of sampling cannot find in this scene; empty if it finds all light.
     #[serde(default)]
     pub unseen: Vec<Unseen>,
-    /// Kinds of paths that it finds by rare and bright events only: until it has found enough of them its error bars are too
-    /// small, and nothing in its samples says so.
+    /// What its samples cannot know: kinds of paths that they meet only by chance. Until enough have been met error bars are too
+    /// small, and nothing in the samples says so; the events of the estimates are therefore no more than are to be expected.
     #[serde(default)]
-    pub by_luck: Vec<String>,
+    pub doubts: Vec<Doubt>,
     /// Why no comparison with this result is decided, if none is: the scene has no right answer.
     #[serde(default)]
     pub undecided: Option<String>,
@@ -144,13 +183,28 @@ impl Series {
         only(self, other).into_iter().chain(only(other, self)).min()
     }
 
+    /// The events of the kind that a doubt names, as many as are to be expected.
+    pub fn expected(&self, doubt: &Doubt) -> f64 {
+        doubt.per_path * self.cost.paths as f64
+    }
+
+    /// The same with doubts: what they concern rests on no more events than they allow.
+    #[must_use]
+    pub fn doubted(mut self, doubts: Vec<Doubt>) -> Self {
+        for doubt in &doubts {
+            let most = self.expected(doubt);
+            let estimates = self.functionals.iter_mut().flat_map(|f| f.made_of(doubt.from));
+            estimates.filter_map(|e| e.events.as_mut()).for_each(|e| e.mean = e.mean.min(most));
+        }
+        Self { doubts, ..self }
+    }
+
     /// The terms k < `end` alone: no tail, and a whole that means nothing else's.
     #[must_use]
     pub fn before(&self, end: usize) -> Self {
         let mut cut = self.clone();
         for f in &mut cut.functionals {
             f.terms.truncate(end);
-            f.events.clear();
             f.tail = Estimate::NONE;
         }
         cut

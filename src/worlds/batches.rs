@@ -5,8 +5,9 @@
 
 use super::Settings;
 use super::coplanar::undecided;
+use super::doubts::doubts;
 use super::sampled::{Estimator, film};
-use super::unseen::{by_luck, unseen};
+use super::unseen::unseen;
 use crate::estimator::render::{Amount, Unwatched, render};
 use crate::estimator::{PathTracer, Plan};
 use crate::operator::SceneTransport;
@@ -81,16 +82,19 @@ impl Side {
         }
     }
 
-    /// A result without numbers that says what this way cannot see in a scene, and what it finds by luck only.
+    /// A result without numbers that says what this way cannot see in a scene, and what its samples cannot know; its cost is that of one
+    /// batch.
     pub fn limits(&self, scene: &Scene) -> Series {
         let unseen = unseen(scene, self.estimator, self.settings.technique);
+        let [w, h] = scene.camera.size.map(u64::from);
+        let paths = w * h * u64::from(self.settings.spp);
         Series {
             world: if self.estimator.is_some() { World::Terms } else { World::Path },
             label: self.label(),
             functionals: vec![],
-            cost: Cost::default(),
+            cost: Cost { paths, ..Cost::default() },
             unseen,
-            by_luck: by_luck(scene, self.estimator),
+            doubts: doubts(scene, self.estimator, &self.settings),
             undecided: undecided(scene),
             variance: Variance::Finite,
         }

@@ -15,6 +15,7 @@
 
 use super::Observer;
 use super::sampled::Sampled;
+use crate::stats::evidence::FITTED_SPREAD;
 use crate::stats::{Slope, falling_slope};
 use crate::terms::scatter::Scatter;
 use crate::terms::{TermFilm, TermImage};
@@ -137,7 +138,7 @@ impl Part {
         kept.map(part).collect()
     }
 
-    /// The slope of V; none where there is no noise, or fewer than two points.
+    /// The slope of V; none where there is no noise, or fewer than two points that rest on events enough.
     pub fn slope(&self) -> Option<Slope> {
         self.fit(Scatter::variance, Scatter::variance_without)
     }
@@ -148,9 +149,11 @@ impl Part {
     }
 
     fn fit(&self, value: impl Fn(&Scatter) -> f64, without: impl Fn(&Scatter, usize) -> f64) -> Option<Slope> {
-        let points: Vec<(f64, f64)> = self.points.iter().map(|(n, s)| (f64::from(*n), value(s))).collect();
+        // a variance that rests on few events is no point of a curve: most of it has not happened yet
+        let known = || self.points.iter().filter(|(_, s)| s.events >= FITTED_SPREAD);
+        let points: Vec<(f64, f64)> = known().map(|(n, s)| (f64::from(*n), value(s))).collect();
         let leave = |s: &Scatter| (0..s.replicates()).map(|i| without(s, i)).collect();
-        let curves: Vec<Vec<f64>> = self.points.iter().map(|(_, s)| leave(s)).collect();
+        let curves: Vec<Vec<f64>> = known().map(|(_, s)| leave(s)).collect();
         falling_slope(&points, &curves)
     }
 }

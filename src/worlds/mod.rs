@@ -24,6 +24,7 @@
 pub mod batches;
 pub mod coplanar;
 pub mod discrete;
+pub mod doubts;
 pub mod equilibrium;
 pub mod falling;
 pub mod growth;

@@ -13,7 +13,7 @@
 //! T_H = R T P is the operator of the unions, and R u so near its mode that the quotient is off by the square of the
 //! difference. It costs one product, and shares the sampling noise of stored rays with r(T_h): the noise stays out of the
 //! difference. Unions are less regular than a mesh, which matters where patches are few; dense matrices have coarser
-//! meshes of their own. From the three values follows the limit ([`limit`]), an estimate.
+//! meshes of their own. From the last two values follows the limit ([`limit`]), an estimate; the first shows that meshes get finer.
 
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;

@@ -23,6 +23,7 @@ use crate::operator::edges::essential_band;
 use crate::operator::matrix::{Ritz, leading};
 use crate::scene::{Description, Scene};
 use crate::solver::Radiosity;
+use crate::stats::Evidence;
 use crate::terms::Estimate;
 use glam::DVec3;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -112,12 +113,14 @@ impl std::fmt::Display for Quantity {
 }
 
 impl Refinement {
-    /// e_h of the image mean, averaged over channels, and its standard error: that of both renders.
+    /// e_h of the image mean, averaged over channels, and its standard error: that of both renders. NaN where it is not known.
     pub fn mean_error(&self, mesh: &Mesh, quantity: Quantity) -> (f64, f64) {
         let [a, b] = [&mesh.picture, &self.truth].map(|s| quantity.mean(s));
+        let evidence = Evidence::of(&a).and(Evidence::of(&b));
         let grey = |v: DVec3| v.element_sum() / 3.0;
         // channels of one path move together: the mean of their errors bounds the error of the mean
-        (grey(a.mean - b.mean), grey(a.std_error).hypot(grey(b.std_error)))
+        let error = grey(a.std_error).hypot(grey(b.std_error));
+        (grey(a.mean - b.mean), if evidence.no_error.is_none() { error } else { f64::NAN })
     }
 
     /// ‖R_h − R‖/‖R‖ of term k over the image with the noise of both taken out, and its standard error, both relative; negative squares

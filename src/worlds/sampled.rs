@@ -3,8 +3,9 @@
 use super::{
     Observer, Settings,
     coplanar::undecided,
+    doubts::doubts,
     growth::{self, Growth},
-    unseen::{by_luck, unseen},
+    unseen::unseen,
 };
 use crate::estimator::render::{Amount, Watch, render};
 use crate::estimator::{
@@ -14,6 +15,7 @@ use crate::math::Points;
 use crate::operator::{Adjoint, SceneTransport, Sensor, Transport};
 use crate::scene::Scene;
 use crate::terms::functional::{Replicates, functionals, image_replicates};
+use crate::terms::image::events_of_pixels;
 use crate::terms::norms::{SquaredNorm, squared_norm};
 use crate::terms::variance::{Snapshot, snapshot};
 use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, Variance, World};
@@ -68,6 +70,8 @@ pub struct Sampled {
     pub replicates: Replicates,
     /// Rays asked for, by slot.
     pub rays: Vec<u64>,
+    /// Events of the pixel in the middle: of every slot, of the sum over k ≤ K, of the whole.
+    pub pixel_events: Vec<f64>,
     /// Variances at 1, 2, 4, … samples per replicate.
     pub snapshots: Vec<Snapshot>,
     /// Squared L2 norms of the term images; none with fewer than three replicates.
@@ -149,7 +153,7 @@ pub(super) fn annotated(
     settings: &Settings,
 ) -> Sampled {
     result.series.unseen = unseen(scene, estimator, settings.technique);
-    result.series.by_luck = by_luck(scene, estimator);
+    result.series = result.series.doubted(doubts(scene, estimator, settings));
     result.series.undecided = undecided(scene);
     if !settings.roulette_of(estimator).ends() {
         cut(&mut result.series, settings);
@@ -252,6 +256,7 @@ impl<'a> Run<'a> {
             seconds: self.started.elapsed().as_secs_f64(),
         };
         let image = |s: usize| TermImage::of(film, s..s + 1);
+        let parts = (0..slots).map(|s| s..s + 1).chain([0..slots - 1, 0..slots]);
         Sampled {
             series: Series {
                 world,
@@ -259,7 +264,7 @@ impl<'a> Run<'a> {
                 functionals: functionals(film),
                 cost,
                 unseen: vec![],
-                by_luck: vec![],
+                doubts: vec![],
                 undecided: None,
                 variance: Variance::Finite,
             },
@@ -270,6 +275,7 @@ impl<'a> Run<'a> {
             total: TermImage::of(film, 0..slots),
             replicates: image_replicates(film),
             rays: film.rays.clone(),
+            pixel_events: parts.map(|p| events_of_pixels(film, p)).collect(),
             snapshots: self.snapshots,
             norms: (0..slots - 1).map(|s| squared_norm(film, s)).collect(),
             spp: film.least_samples(),

@@ -31,16 +31,3 @@ pub fn unseen(scene: &Scene, estimator: Option<Estimator>, technique: Technique)
     };
     missing.map(|(from, what)| Unseen { what: what.to_owned(), from }).into_iter().collect()
 }
-
-/// The kinds of paths that can only be found by hitting a light of small area from afar: rare, bright, and the reason why a
-/// difference that looks certain may be light that one side has not found yet.
-pub fn by_luck(scene: &Scene, estimator: Option<Estimator>) -> Vec<String> {
-    let lamps = scene.lights.len() > usize::from(scene.has_environment());
-    let what = match estimator {
-        _ if !scene.any_delta_surface() || !lamps => return vec![],
-        Some(Estimator::Light) => return vec![],
-        Some(Estimator::Bidirectional) => "caustics that the eye sees in mirrors or glass",
-        _ => "caustics, the light of a lamp through mirrors or glass",
-    };
-    vec![what.to_owned()]
-}

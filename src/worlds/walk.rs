@@ -118,7 +118,7 @@ pub fn walk(
         functionals,
         cost: Cost::default(),
         unseen: vec![],
-        by_luck: vec![],
+        doubts: vec![],
         undecided: None,
         variance: Default::default(),
     };

@@ -10,15 +10,14 @@
 //! | p | Holm's smallest: rejecting where it is ≤ α is a false alarm with probability ≤ α | [`Judgement::p`] |
 //! | V(n) | variance of the mean of n samples, per pixel | [`crate::terms::variance`] |
 //!
-//! What is carried by fewer than 400 equal events is not judged: its error is not known. Samples that are not finite settle the matter.
+//! What the [evidence](crate::stats::evidence) will not carry is not judged. A term that is black altogether is judged by what the
+//! reference, which walks the same way, would have seen in as many paths. Samples that are not finite settle the matter.
 
 use crate::stats::hypothesis::ROUNDING;
-use crate::stats::{Measured, difference, holm, two_sided_p, variance_slope};
-use crate::terms::Estimate;
+use crate::stats::{Evidence, Measured, difference, holm, two_sided_p, variance_slope};
+use crate::terms::{Estimate, Events};
 use crate::worlds::sampled::Sampled;
 
-/// Below this many equal events nothing is judged.
-const FEW: f64 = 400.0;
 /// Rounding of a walk of a few dozen vertices in `f32`, as a multiple of [`ROUNDING`].
 const LONG_WALKS: f64 = 50.0;
 
@@ -38,14 +37,12 @@ pub fn judge(suspect: &Sampled, reference: &Sampled) -> Judgement {
     }
     let share = suspect.series.cost.paths as f64 / reference.series.cost.paths as f64;
     let (image, reference) = (suspect.series.image(), reference.series.image());
-    let last = image.terms.len();
     let mut names = vec![];
     let mut p = vec![];
-    let mut compare = |name: String, slot: usize, a: &Estimate, b: &Estimate| {
-        // a term that is black altogether is judged by what the reference would have seen in as many paths
-        let seen = image.events.get(slot).copied().unwrap_or(0.0);
-        let expected = reference.events.get(slot).copied().unwrap_or(0.0) * share;
-        if (if seen == 0.0 { expected } else { seen }) < FEW {
+    let mut compare = |name: String, a: &Estimate, b: &Estimate| {
+        let black = a.events.is_some_and(|e| e.mean == 0.0);
+        let expected = b.events.map(|e| Events::equal(e.mean * share));
+        if (if black { expected } else { a.events }).is_some_and(|e| Evidence::of_events(e).no_verdict.is_some()) {
             return;
         }
         for c in 0..3 {
@@ -54,15 +51,15 @@ pub fn judge(suspect: &Sampled, reference: &Sampled) -> Judgement {
         }
     };
     for (k, (a, b)) in image.terms.iter().zip(&reference.terms).enumerate() {
-        compare(format!("k = {k}"), k, a, b);
+        compare(format!("k = {k}"), a, b);
     }
     if image.tail.is_none() || reference.tail.is_none() {
         // one of them ends at K; what is finished as a whole is no sum
         let whole = if image.tail.is_none() { &image.total } else { &image.sum };
-        compare("whole".into(), last + 1, whole, &reference.sum);
+        compare("whole".into(), whole, &reference.sum);
     } else {
-        compare("tail".into(), last, &image.tail, &reference.tail);
-        compare("whole".into(), last + 2, &image.total, &reference.total);
+        compare("tail".into(), &image.tail, &reference.tail);
+        compare("whole".into(), &image.total, &reference.total);
     }
     if let Some(law) = law_of_the_variance(suspect) {
         names.push("variance against samples".into());

@@ -8,6 +8,7 @@
 //!
 //! r_0 = 1 in all three: what the eye sees directly goes through neither.
 
+use crate::stats::Evidence;
 use crate::terms::{Estimate, Functional};
 
 /// c for k ≥ 1.
@@ -35,7 +36,7 @@ pub fn unknown(_: usize) -> Option<f64> {
 pub struct Ratio {
     /// T_k^wrong / T_k^right, means over the channels.
     pub value: f64,
-    /// Its standard error: an upper bound where the channels are not perfectly correlated.
+    /// Its standard error: an upper bound where the channels are not perfectly correlated; NaN where it is not known.
     pub std_error: f64,
     /// Replicates behind it.
     pub replicates: u64,
@@ -44,7 +45,10 @@ pub struct Ratio {
 impl Ratio {
     /// Of two independent estimates, by the delta method; not a number where the right one is zero.
     pub fn of(wrong: &Estimate, right: &Estimate) -> Self {
-        let average = |e: &Estimate| (e.mean.element_sum() / 3.0, e.std_error.element_sum() / 3.0);
+        let average = |e: &Estimate| {
+            let known = Evidence::of(e).no_error.is_none();
+            (e.mean.element_sum() / 3.0, if known { e.std_error.element_sum() / 3.0 } else { f64::NAN })
+        };
         let ((a, sa), (b, sb)) = (average(wrong), average(right));
         let value = a / b;
         let std_error = ((sa / b).powi(2) + (value * sb / b).powi(2)).sqrt();
@@ -64,7 +68,12 @@ mod tests {
 
     #[test]
     fn ratios_have_the_error_of_both() {
-        let of = |m: f64, s: f64| Estimate { mean: DVec3::splat(m), std_error: DVec3::splat(s), replicates: 16 };
+        let of = |m: f64, s: f64| Estimate {
+            mean: DVec3::splat(m),
+            std_error: DVec3::splat(s),
+            replicates: 16,
+            events: None,
+        };
         let r = Ratio::of(&of(6.0, 0.3), &of(3.0, 0.2));
         assert!((r.value - 2.0).abs() < 1e-12 && (r.std_error - (0.01f64 + 4.0 / 9.0 * 0.04).sqrt()).abs() < 1e-12);
         assert!(Ratio::of(&of(0.0, 0.0), &of(0.0, 0.0)).value.is_nan());

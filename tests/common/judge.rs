@@ -98,5 +98,5 @@ impl Jury {
 /// Mean and error at one pixel of the sum over some slots.
 pub fn at(film: &TermFilm, pixel: usize, slots: std::ops::Range<usize>) -> Estimate {
     let (mean, std_error) = film.pixel(pixel, slots);
-    Estimate { mean, std_error, replicates: film.shape.replicates as u64 }
+    Estimate { mean, std_error, replicates: film.shape.replicates as u64, events: None }
 }

@@ -32,7 +32,7 @@ The watch ends when a bias is found (exit code 1), when every image mean is boun
 inflates the error rate: the e-value of a mean exceeds 1/α at any time ever with probability α only.
 
 Assumed: the mean of a batch is nearly normal. A batch has --batch samples of every pixel; where fewer
-than 400 events carry a mean nothing is rejected.";
+than 400 events carry a mean, or are to be expected, nothing is rejected.";
 
 /// Width and height of a batch: means need samples, not pixels.
 const SMALL: u32 = 64;
@@ -155,6 +155,9 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
         Against::Rendered(_) => Detector::new(criterion),
         Against::Finished(_) => Detector::against_finished(criterion),
     };
+    for side in limits.iter().flatten() {
+        detector = detector.doubting(side);
+    }
     let most = args.spp.map_or(u32::MAX, |n| n.div_ceil(spp));
     let time = args.time.or(args.spp.is_none().then_some(Duration::from_secs(60)));
     // batches are short: one that is begun is finished, so that all are alike
@@ -229,11 +232,6 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
         if cost[2] > 0 {
             foot += &format!("\nwarning: {} samples were not finite; they are left in the sums", cost[2]);
         }
-        if outcome == Outcome::Differs
-            && let Some(luck) = facts::luck(limits.iter().flatten())
-        {
-            foot += &format!("\nwarning: {luck}");
-        }
         let head = format!(
             "{}\nfirst   {}\nsecond  {second}\n{} batches of {} paths a side, seed {}; {} comparisons share α = {}",
             loaded.command,
@@ -263,7 +261,7 @@ fn cut(functionals: Vec<Functional>, gap: Option<&(usize, String)>) -> Vec<Funct
         functionals,
         cost: fredholm::terms::Cost::default(),
         unseen: vec![],
-        by_luck: vec![],
+        doubts: vec![],
         undecided: None,
         variance: Default::default(),
     };

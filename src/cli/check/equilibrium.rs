@@ -14,7 +14,7 @@ use fredholm::report::{picture, summary, table, typeset::Caption, zmap};
 use fredholm::scene::bsdf::Sampling;
 use fredholm::stats::{Outcome, estimate};
 use fredholm::terms::TermImage;
-use fredholm::worlds::equilibrium::{self, Balance, EVENTS, Group, Judgement, Origin, judge};
+use fredholm::worlds::equilibrium::{self, Balance, Group, Judgement, Origin, judge};
 use fredholm::worlds::{Settings, coplanar};
 use serde_json::json;
 use std::path::Path;
@@ -165,15 +165,18 @@ fn people(found: &Found, folder: &Path, files: &[String]) -> String {
         let c = worst(g);
         let (value, difference, half) = (g.value[c], g.difference.mean[c], g.half[c]);
         let channel = ["red", "green", "blue"][c];
+        let apart = match g.evidence.no_error {
+            None => {
+                let (apart, half, delta) = (100.0 * difference / value, 100.0 * half / value, 100.0 * args.delta);
+                format!("{apart:+.2} ± {half:.2} % of it (δ {delta} %), p = {}", significant(g.p, 2))
+            }
+            Some(why) => format!("{}, which has no error ({})", significant(difference, 3), why.short()),
+        };
         lines.push(format!(
-            "mean over {} {} points: T L {} ({channel}), L − (E + T L) {:+.2} ± {:.2} % of it (δ {} %), p = {}: {}",
+            "mean over {} {} points: T L {} ({channel}), L − (E + T L) {apart}: {}",
             g.points,
             g.name,
             significant(value, 4),
-            100.0 * difference / value,
-            100.0 * half / value,
-            100.0 * args.delta,
-            significant(g.p, 2),
             table::outcome(g.outcome.into())
         ));
     }
@@ -192,6 +195,9 @@ fn people(found: &Found, folder: &Path, files: &[String]) -> String {
         _ if found.undecided.is_some() => "",
         Outcome::Agrees => "The equation holds, as closely as was asked for.",
         Outcome::Differs => "The equation does not hold.",
+        Outcome::Inconclusive if j.groups.iter().all(|g| g.value == glam::DVec3::ZERO) => {
+            "No light was found at any of the points: nothing was tested."
+        }
         Outcome::Inconclusive => {
             "Nothing speaks against the equation; the noise hides differences as large as δ: raise --spp."
         }
@@ -203,7 +209,8 @@ fn people(found: &Found, folder: &Path, files: &[String]) -> String {
 
 /// The channel whose difference is bounded worst.
 fn worst(g: &Group) -> usize {
-    ((g.difference.mean.abs() + g.half) / g.value).max_position()
+    let reach = (g.difference.mean.abs() + g.half) / g.value;
+    (0..3).filter(|&c| reach[c].is_finite()).max_by(|&a, &b| reach[a].total_cmp(&reach[b])).unwrap_or(0)
 }
 
 fn record(found: &Found) -> serde_json::Value {
@@ -217,7 +224,7 @@ fn record(found: &Found) -> serde_json::Value {
     let point = |(from, b): (&str, &Balance)| {
         json!({
             "from": from, "position": b.at.p, "normal": b.at.n, "direction": b.at.omega, "left": b.left,
-            "right": b.right, "p": b.p, "events": b.events,
+            "right": b.right, "p": b.p,
         })
     };
     let points = found.groups.iter().flat_map(|(from, b)| b.iter().map(move |b| (*from, b)));
@@ -245,7 +252,7 @@ fn write_all(folder: &Path, found: &Found, started: Instant) -> Result<Vec<Strin
             right: b.right.mean.element_sum() / 3.0,
             std_error: mean.std_error.x,
             replicates: mean.replicates,
-            p: if b.events >= EVENTS { b.p } else { f64::NAN },
+            p: if b.judged() { b.p } else { f64::NAN },
             rejected: found.judgement.rejected.contains(&i),
         }
     };

@@ -191,7 +191,7 @@ impl Source {
         for missing in missing {
             super::super::note(&format!("note: not supported by the reference, {missing}"));
         }
-        let luck = result.series.by_luck.first().cloned();
+        let luck = super::super::facts::doubts(std::iter::once(&result.series)).into_iter().next();
         let label = format!(
             "{}, {}, k ≤ {max_bounces}, {spp} spp at {}×{}",
             self.name, result.series.label, small[0], small[1]

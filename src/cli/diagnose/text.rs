@@ -75,7 +75,7 @@ impl Page<'_> {
         blocks.insert(1.min(blocks.len()), wrapped(&head, "") + if how.is_empty() { "" } else { "\n" } + how);
         if let (Some(luck), true) = (self.luck, found.iter().any(|f| f.diagnosis.verdict == Verdict::Wrong)) {
             blocks.push(wrapped(
-                &format!("warning: found by rare bright hits only: {luck}. A difference may be light that one side has not found yet."),
+                &format!("warning: of the reference: {luck}. A difference may be light that it has not found yet."),
                 "",
             ));
         }

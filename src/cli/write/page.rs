@@ -49,11 +49,14 @@ pub(super) fn write_page(found: &Found, out: &Files, summary: &summary::Summary)
         ("scene hash", found.hash.clone()),
         ("seconds", format!("{:.1} on {} threads", summary.seconds, summary.threads)),
     ];
+    let errors = fredholm::report::pixel_errors::words(&summary.pixel_errors);
+    let facts = facts.map(|(k, v)| (k.to_string(), v)).into_iter();
+    let facts = facts.chain((!errors.is_empty()).then(|| ("errors of pixels".to_string(), errors)));
     let worlds = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
     let page = Page {
         title: found.description.name.clone(),
         command: found.command.clone(),
-        facts: facts.map(|(k, v)| (k.to_string(), v)).to_vec(),
+        facts: facts.collect(),
         verdicts: &found.verdicts,
         plates,
         series: worlds.map(|s| (s.series.label.clone(), s.series.image())).collect(),

@@ -2,46 +2,75 @@
 
 use super::{Files, Pixels, attributes};
 use crate::cli::{Failure, solve::Found};
+use fredholm::report::pixel_errors::{self, PixelErrors};
 use fredholm::report::sheet::{self, Cell, Sheet, direct_and_indirect, single};
 use fredholm::report::typeset::{Caption, superscript};
 use fredholm::report::{exr, picture, zmap};
-use fredholm::terms::TermImage;
+use fredholm::terms::{Estimate, TermImage};
+use fredholm::worlds::sampled::Sampled;
 
-pub(super) fn write_exr(found: &Found, out: &mut Files, size: [u32; 2]) -> Result<(), Failure> {
-    let mut layers: Vec<(String, &Pixels)> = vec![];
-    fn push<'a>(layers: &mut Vec<(String, &'a Pixels)>, name: &str, image: &'a TermImage) {
-        layers.push((name.to_string(), &image.mean));
-        layers.push((format!("{name}_se"), &image.std_error));
-    }
-    let beauty = found.path.as_ref().or(found.terms.first()).map(|s| &s.total);
-    if let Some(image) = beauty.or(found.radiosity.as_ref().map(|r| &r.fine.total)) {
-        layers.push((String::new(), &image.mean));
-    }
+/// A layer with errors: its name, its image, and what is said of these errors.
+type Layer<'a> = (String, &'a TermImage, PixelErrors);
+
+/// The layers of a run that have errors.
+fn layers(found: &Found) -> Vec<Layer<'_>> {
+    let mut layers = vec![];
+    let mut push = |name: String, image, s: &Sampled, part: usize, mean: &Estimate| {
+        // met by chance only: a pixel rests on no more than its share of what is to be expected
+        let share = s.series.cost.paths as f64 / s.total.mean.len() as f64;
+        let concerned = s.series.doubts.iter().filter(|d| part >= s.terms.len() || d.from <= part);
+        let events = concerned.map(|d| d.per_path * share).fold(s.pixel_events[part], f64::min);
+        let errors = pixel_errors::of(&name, mean, events, u64::from(s.spp.min(16)));
+        layers.push((name, image, errors));
+    };
+    let series = |s: &'_ Sampled| s.series.image().clone();
     if let Some(t) = found.terms.first() {
-        for (k, image) in t.terms.iter().enumerate() {
-            push(&mut layers, &format!("T{k:02}"), image);
-        }
-        push(&mut layers, "Tsum", &t.sum);
-        if !t.series.image().tail.is_none() {
-            push(&mut layers, "tail", &t.tail);
-            push(&mut layers, "Tall", &t.total);
+        let (f, last) = (series(t), t.terms.len());
+        t.terms.iter().enumerate().for_each(|(k, image)| push(format!("T{k:02}"), image, t, k, &f.terms[k]));
+        push("Tsum".into(), &t.sum, t, last + 1, &f.sum);
+        if !f.tail.is_none() {
+            push("tail".into(), &t.tail, t, last, &f.tail);
+            push("Tall".into(), &t.total, t, last + 2, &f.total);
         }
     }
     if let Some(p) = &found.path {
-        push(&mut layers, "path", &p.total);
+        push("path".into(), &p.total, p, 0, &p.series.image().total);
     }
-    if let Some(r) = &found.radiosity {
-        for (k, image) in r.fine.terms.iter().enumerate() {
-            push(&mut layers, &format!("R{k:02}"), image);
-        }
-        push(&mut layers, "Rsum", &r.fine.sum);
-        push(&mut layers, "Rfull", &r.fine.total);
+    if let Some(r) = found.radiosity.as_ref().map(|r| &r.fine) {
+        let (f, last) = (series(r), r.terms.len());
+        r.terms.iter().enumerate().for_each(|(k, image)| push(format!("R{k:02}"), image, r, k, &f.terms[k]));
+        push("Rsum".into(), &r.sum, r, last + 1, &f.sum);
+        push("Rfull".into(), &r.total, r, last + 2, &f.total);
+    }
+    layers
+}
+
+/// Which of the errors can be trusted.
+pub(super) fn pixel_errors(found: &Found) -> Vec<PixelErrors> {
+    layers(found).into_iter().map(|l| l.2).collect()
+}
+
+pub(super) fn write_exr(found: &Found, trust: &[PixelErrors], out: &mut Files, size: [u32; 2]) -> Result<(), Failure> {
+    let all = layers(found);
+    let names: Vec<String> = all.iter().map(|l| format!("{}_se", l.0)).collect();
+    let mut layers: Vec<(&str, &Pixels)> = vec![];
+    let beauty = found.path.as_ref().or(found.terms.first()).map(|s| &s.total);
+    if let Some(image) = beauty.or(found.radiosity.as_ref().map(|r| &r.fine.total)) {
+        layers.push(("", &image.mean));
+    }
+    for ((name, image, _), errors) in all.iter().zip(&names) {
+        layers.push((name, &image.mean));
+        layers.push((errors, &image.std_error));
     }
     if layers.is_empty() {
         return Ok(());
     }
     let layers: Vec<exr::Layer> = layers.iter().map(|(name, pixels)| exr::Layer { name, pixels }).collect();
-    exr::write(&out.add("terms.exr"), size[0] as usize, size[1] as usize, &layers, &attributes(found))?;
+    let flags: Vec<(String, String)> =
+        trust.iter().map(|t| (format!("fredholm.{}_se", t.layer), t.why.clone())).collect();
+    let mut attributes = attributes(found).to_vec();
+    attributes.extend(flags.iter().map(|(name, why)| (name.as_str(), why.clone())));
+    exr::write(&out.add("terms.exr"), size[0] as usize, size[1] as usize, &layers, &attributes)?;
     Ok(())
 }
 

@@ -1,8 +1,9 @@
-//! One scalar that is watched, and the events that carry it.
+//! One scalar that is watched, and what it rests on.
 
+use crate::stats::evidence::{Evidence, Reason};
 use crate::stats::sequential::MeanSequence;
-use crate::stats::verdict::{EVENTS, Quantity};
-use crate::terms::Functional;
+use crate::stats::verdict::Quantity;
+use crate::terms::{Events, Functional};
 
 /// One scalar that is watched.
 #[derive(Clone, Debug)]
@@ -17,33 +18,46 @@ pub(super) struct Track {
     pub(super) difference: MeanSequence,
     /// The value on both sides.
     pub(super) values: [MeanSequence; 2],
-    /// Σ m and Σ m²/events, from which the events behind the mean follow; of this functional, and of the image.
-    pub(super) events: [[Events; 2]; 2],
+    /// What both sides rest on.
+    pub(super) events: [Counted; 2],
     /// Error of a finished second side.
     pub(super) allowance: f64,
-    /// Largest ln E_n so far where there were events enough.
+    /// Largest ln E_n so far where the evidence carries a verdict.
     pub(super) evidence: f64,
 }
 
-/// `(Σ x)²/Σ x²` over all batches, from that of each.
+/// The events of all batches, from those of each: Σ x, Σ x² and Σ x⁴ add up.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Events {
+pub(super) struct Counted {
     known: bool,
     sum: f64,
     square: f64,
+    fourth: f64,
+    /// k̂ of one batch is noisy, its mean over batches is not.
+    tail: MeanSequence,
 }
 
-impl Events {
+impl Counted {
     fn push(&mut self, quantity: Quantity, f: &Functional) {
-        let (Some(events), Some(e)) = (quantity.events(f), quantity.of(f)) else { return };
+        let Some((e, Some(events))) = quantity.of(f).map(|e| (e, e.events)) else { return };
         let sum = e.mean.element_sum();
         self.known = true;
         self.sum += sum;
-        self.square += if events > 0.0 { sum * sum / events } else { 0.0 };
+        let per = |a: f64, n: f64| if n > 0.0 { a * a / n } else { 0.0 };
+        let square = per(sum, events.mean);
+        self.square += square;
+        self.fourth += per(square, events.variance);
+        self.tail.push(events.tail);
     }
 
-    fn count(&self) -> f64 {
-        if self.square > 0.0 { self.sum * self.sum / self.square } else { 0.0 }
+    fn events(&self) -> Option<Events> {
+        let ratio = |a: f64, b: f64| if b > 0.0 { a * a / b } else { 0.0 };
+        let found = Events {
+            mean: ratio(self.sum, self.square),
+            variance: ratio(self.square, self.fourth),
+            tail: self.tail.mean(),
+        };
+        self.known.then_some(found)
     }
 }
 
@@ -56,16 +70,14 @@ impl Track {
             self.values[s].push(values[s]);
             // of a finished result the events have been counted once and for all
             if s == 0 || !finished || self.difference.count() == 1 {
-                self.events[s][0].push(self.quantity, &sides[s][self.at[s]]);
-                self.events[s][1].push(self.quantity, &sides[s][0]);
+                self.events[s].push(self.quantity, &sides[s][self.at[s]]);
             }
         }
     }
 
-    /// Whether too few events carry one of the sides. What is dark everywhere is no rare event, and is judged.
-    pub(super) fn few(&self) -> bool {
-        let few = |[own, image]: &[Events; 2]| own.known && image.count() > 0.0 && own.count() < EVENTS;
-        self.difference.std_error() > 0.0 && self.events.iter().any(few)
+    /// Why nothing may be rejected.
+    pub(super) fn weak(&self) -> Option<Reason> {
+        self.events.iter().filter_map(Counted::events).find_map(|e| Evidence::of_events(e).no_verdict)
     }
 
     pub(super) fn is_image(&self) -> bool {

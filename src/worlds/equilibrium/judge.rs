@@ -5,16 +5,13 @@
 //! Agrees     nothing is, and every mean over points lies within ±δ with its whole interval
 //! ```
 //!
-//! A point whose sides rest on fewer than 400 events is not judged by itself: its t-test would be wrong at the depth of the
-//! family. It still counts in the mean over points.
+//! A point whose [evidence](crate::stats::evidence) will not carry a verdict is not judged by itself. It still counts in the mean over
+//! points, which rests on the events of all.
 
-use super::{Balance, aggregate};
-use crate::stats::{Measured, Outcome, Uniformity, critical, holm, two_sided_p, uniformity};
+use super::{Balance, aggregate, evidence};
+use crate::stats::{Evidence, Measured, Outcome, Uniformity, critical, holm, two_sided_p, uniformity};
 use crate::terms::Estimate;
 use glam::DVec3;
-
-/// Events that a t-test at one point needs.
-pub const EVENTS: f64 = 400.0;
 
 /// The mean over some points.
 #[derive(Clone, Debug)]
@@ -27,8 +24,10 @@ pub struct Group {
     pub value: DVec3,
     /// Mean of L − (E + T L).
     pub difference: Estimate,
-    /// Half width of its interval at level α.
+    /// Half width of its interval at level α; NaN where no error is known.
     pub half: DVec3,
+    /// What it rests on.
+    pub evidence: Evidence,
     /// The smallest of its channels' p-values, for all groups and channels together.
     pub p: f64,
     /// The margin.
@@ -58,8 +57,7 @@ pub struct Judgement {
 pub fn judge(groups: &[(&str, &[Balance])], alpha: f64, of_term: f64) -> Judgement {
     let third = alpha / 3.0;
     let all: Vec<&Balance> = groups.iter().flat_map(|g| g.1).collect();
-    // equal without noise is no test at all
-    let judged: Vec<usize> = (0..all.len()).filter(|&i| all[i].events >= EVENTS && !all[i].p.is_nan()).collect();
+    let judged: Vec<usize> = (0..all.len()).filter(|&i| all[i].judged()).collect();
     let adjusted = holm(&judged.iter().flat_map(|&i| all[i].channels).map(quiet).collect::<Vec<f64>>());
     let least = |j: usize| adjusted[3 * j..3 * j + 3].iter().copied().fold(1.0, f64::min);
     let rejected: Vec<usize> = judged.iter().enumerate().filter(|(j, _)| least(*j) <= third).map(|(_, &i)| i).collect();
@@ -101,12 +99,16 @@ fn group(name: &str, balances: &[&Balance], (alpha, third, scalars): (f64, f64, 
         DVec3::from(measured.map(|m| if m.std_error == 0.0 { 0.0 } else { critical(alpha, m.dof) * m.std_error }));
     let p = measured.map(|m| quiet(two_sided_p(m.mean / m.std_error, m.dof))).into_iter().fold(1.0, f64::min);
     let p = (p * scalars as f64).min(1.0);
-    let inside = (difference.mean.abs() + half).cmple(delta).all();
+    let evidence = evidence(balances);
+    let judged = evidence.no_verdict.is_none();
+    let (p, half) = (if judged { p } else { 1.0 }, if evidence.no_error.is_none() { half } else { DVec3::NAN });
+    let inside = judged && (difference.mean.abs() + half).cmple(delta).all();
     Group {
         name: name.to_owned(),
         points: balances.len(),
         value,
         half,
+        evidence,
         p,
         delta,
         outcome: match (p <= third, inside) {

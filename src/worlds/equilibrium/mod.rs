@@ -16,7 +16,7 @@
 
 mod judge;
 
-pub use judge::{EVENTS, Group, Judgement, judge};
+pub use judge::{Group, Judgement, judge};
 
 use super::{Advance, Observer, Settings};
 use crate::estimator::render::{Amount, render};
@@ -24,8 +24,8 @@ use crate::estimator::{Equilibrium, Plan};
 use crate::math::{Key, Purpose, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};
 use crate::scene::{Scene, SurfaceSensor, Vertex};
-use crate::stats::{Measured, estimate, two_sided_p};
-use crate::terms::{Estimate, TermFilm, TermImage};
+use crate::stats::{Evidence, Measured, estimate, two_sided_p};
+use crate::terms::{Estimate, Events, TermFilm, TermImage};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 
@@ -89,8 +89,6 @@ pub struct Balance {
     pub p: f64,
     /// The same channel by channel.
     pub channels: [f64; 3],
-    /// `(Σ x)²/Σ x²` of the side that has fewer events.
-    pub events: f64,
 }
 
 impl Balance {
@@ -104,7 +102,7 @@ impl Balance {
         let events = |slot: usize, replicates: &[DVec3]| {
             let sum: f64 = replicates.iter().enumerate().map(|(r, x)| x.element_sum() * film.count(pixel, r)).sum();
             let square = film.square(pixel, slot);
-            if square > 0.0 { sum * sum / square } else { 0.0 }
+            Some(Events::equal(if square > 0.0 { sum * sum / square } else { 0.0 }))
         };
         let d = estimate(&differences);
         let mean = estimate(&differences.iter().map(|d| DVec3::splat(d.element_sum() / 3.0)).collect::<Vec<_>>());
@@ -113,11 +111,21 @@ impl Balance {
             emission,
             p: p(Measured::of(&mean, 0)),
             channels: [0, 1, 2].map(|c| p(Measured::of(&d, c))),
-            events: events(0, &l).min(events(1, &r)),
-            left: estimate(&l),
-            right: estimate(&r),
+            left: Estimate { events: events(0, &l), ..estimate(&l) },
+            right: Estimate { events: events(1, &r), ..estimate(&r) },
             differences,
         }
+    }
+
+    /// What both sides rest on.
+    pub fn evidence(&self) -> Evidence {
+        let of = |side: &Estimate| Evidence::of_events(side.events.unwrap_or(Events::equal(0.0)));
+        of(&self.left).and(of(&self.right))
+    }
+
+    /// Whether the point is judged by itself. Equal without noise is no test at all.
+    pub fn judged(&self) -> bool {
+        self.evidence().no_verdict.is_none() && !self.p.is_nan()
     }
 }
 
@@ -159,6 +167,22 @@ pub fn through_camera(
     observer.begin("L and E + T L through the camera", u64::from(w) * u64::from(h) * u64::from(settings.spp));
     let film = render(&t, &scene.camera, &estimator(settings, factor), amount, &mut Advance(observer), stop);
     [0, 1].map(|slot| TermImage::of(&film, slot..slot + 1))
+}
+
+/// The events behind the mean of one side over some points.
+fn events<'a>(sides: impl Iterator<Item = &'a Estimate>) -> Events {
+    let add = |(sum, square): (f64, f64), e: &Estimate| {
+        let (m, n) = (e.mean.element_sum(), e.events.map_or(0.0, |e| e.mean));
+        (sum + m, square + if n > 0.0 { m * m / n } else { 0.0 })
+    };
+    let (sum, square) = sides.fold((0.0, 0.0), add);
+    Events::equal(if square > 0.0 { sum * sum / square } else { 0.0 })
+}
+
+/// What the mean over some points rests on.
+pub fn evidence(balances: &[&Balance]) -> Evidence {
+    let [left, right] = [events(balances.iter().map(|b| &b.left)), events(balances.iter().map(|b| &b.right))];
+    Evidence::of_events(left).and(Evidence::of_events(right))
 }
 
 /// The mean of d over some points, with the error of its replicates.
