@@ -315,7 +315,7 @@ fn both_techniques_state_the_densities_of_the_pair() {
                 );
             }
         }
-        let least = if name == "tiny" { [0, 1000] } else { [50, 40] };
+        let least = if name == "tiny" { [0, 1000] } else { [40, 40] };
         assert!(counted[0] >= least[0] && counted[1] >= least[1], "{name}: {counted:?} pairs");
     }
 }
