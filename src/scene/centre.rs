@@ -61,11 +61,10 @@ impl Description {
     ///
     /// ```
     /// use fredholm::scene::load;
-    /// let options = load::Options { set: vec!["shapes[0].min=[1e8, 0, 0]".into()], ..Default::default() };
-    /// # let options = load::Options::default();
-    /// let file = load::scene("furnace", &options)?.description;
-    /// let centred = file.centred();
-    /// assert_eq!(centred.scene.shapes.len(), file.shapes.len());
+    /// let furnace = load::scene("furnace", &load::Options::default())?.description;
+    /// let centred = furnace.centred();
+    /// assert_eq!(centred.origin, glam::DVec3::ZERO); // its box runs from −1 to 1
+    /// assert_eq!(centred.scene.shapes, furnace.shapes);
     /// # Ok::<(), fredholm::scene::SceneError>(())
     /// ```
     #[must_use]

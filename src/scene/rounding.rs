@@ -35,7 +35,7 @@ pub(crate) const REACH: f64 = 16.0;
 /// M in the same units, four times that of e: a ray that starts e off one wall is still before the next one where they meet at
 /// 15° or more.
 pub(crate) const KEEP: f64 = 64.0;
-/// Boxes around primitives are this part wider than these.
+/// The box around a primitive is wider than the primitive by this part of its extent.
 pub(crate) const WIDER: f64 = 1.0 / 262_144.0;
 /// M is at most this part of half the width.
 pub(crate) const MOST_KEEP: f64 = 1.0 / 1024.0;
