@@ -93,23 +93,6 @@ pub fn suits_a_matrix(description: &Description, worlds: &mut Vec<WorldName>, as
     Ok(())
 }
 
-/// Refuses a camera whose pixels are so narrow that densities over them overflow single precision.
-pub fn pixels_have_a_size(description: &Description) -> Result<(), Failure> {
-    /// The tangent of the angle of a pixel. Its square is a density to be divided by, and it is multiplied with others.
-    const LEAST: f64 = 1e-12;
-    let camera = &description.camera;
-    let pixel = 2.0 * (0.5 * camera.fov).to_radians().tan() / f64::from(camera.size[0]);
-    if pixel >= LEAST {
-        return Ok(());
-    }
-    Err(Failure::Usage(format!(
-        "error: camera.fov = {:e} makes pixels {pixel:.0e} rad wide, too narrow for single precision\n\
-         help: a field of view of at least {:.0e} degrees has pixels that can be told apart from a point",
-        camera.fov,
-        (LEAST * f64::from(camera.size[0])).to_degrees()
-    )))
-}
-
 /// Refuses what would only be dark, and says what will be missing.
 pub fn light_is_seen(
     scene: &Scene,

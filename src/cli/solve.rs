@@ -166,7 +166,6 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     if run.guide != GuideName::Bsdf {
         guard::can_be_guided(&scene, &estimators, &settings, &worlds)?;
     }
-    guard::pixels_have_a_size(&description)?;
     guard::light_is_seen(&scene, &estimators, &settings, &worlds)?;
     guard::fits_in_memory(&settings, description.camera.size)?;
     if worlds.contains(&WorldName::Radiosity) {

@@ -13,8 +13,9 @@ use glam::DVec3;
 /// Horizontal field of view of a bare OBJ, degrees: that of the Cornell box's camera, 25 mm of film behind a 35 mm lens.
 pub(super) const FRAMED_FOV: f64 = 39.3077;
 const FILLED: f64 = 0.9;
-/// Width of a pixel at distance 1: a thousand times the rounding of a direction in `f64`.
-const NARROWEST: f64 = 2.5e-13;
+/// Least width of a pixel at distance 1. Its square is a density to be divided by, and it is multiplied with others in single precision;
+/// directions in `f64` are told apart at a thousandth of it.
+const NARROWEST: f64 = 1e-12;
 pub(super) const KEYS: [&str; 5] = ["origin", "target", "up", "fov", "size"];
 
 /// Reads `[camera]`. With `bounds` a missing origin, target or up is chosen to frame them.
@@ -28,7 +29,7 @@ pub(super) fn read(c: &Cursor, bounds: Option<[DVec3; 2]>) -> Result<CameraDescr
     let size = c.require("size", "width and height in pixels: size = [256, 256]")?.size()?;
     let pixel = 2.0 * (0.5 * fov).to_radians().tan() / f64::from(size[0]);
     if pixel < NARROWEST {
-        let e = at.error(format!("fov {fov:e} makes pixels {pixel:.1e} wide: their directions are equal to rounding"));
+        let e = at.error(format!("fov {fov:e} makes pixels {pixel:.0e} rad wide, too narrow for single precision"));
         return Err(e.help(format!(
             "{:.0e} degrees is the least for {} pixels",
             NARROWEST.to_degrees() * f64::from(size[0]),
