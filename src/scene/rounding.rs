@@ -9,7 +9,7 @@
 //! |---|---|---|
 //! | x, n | a point of a surface and the unit normal there | `Vertex` |
 //! | e(x, n) | bound on the distance of x from the surface along n, and how far a ray starts off it, m | [`error`], [`lift`] |
-//! | R | how near to an edge the coordinates of a hit no longer tell on which side it is, m | [`REACH`], [`across`] |
+//! | R | how near to an edge the coordinates of a hit no longer tell on which side it is, m | [`UNSURE`], [`across`] |
 //! | M | how far from an edge the next ray starts at least, m | [`KEEP`], [`across`] |
 //!
 //! **Why 16.** A hit is projected onto the plane n·x = h. The product n·x has an error of at most 3 ε Σ|nᵢ xᵢ|, the difference
@@ -31,7 +31,7 @@ pub(crate) const EPSILON: f64 = 1.0 / 16_777_216.0;
 /// e in units of ε Σ|nᵢ xᵢ|.
 const OFF: f32 = 16.0 * EPSILON as f32;
 /// R in units of ε Σ|âᵢ| max|xᵢ|: twice the error of a coordinate.
-pub(crate) const REACH: f64 = 16.0;
+pub(crate) const UNSURE: f64 = 16.0;
 /// M in the same units, four times that of e: a ray that starts e off one wall is still before the next one where they meet at
 /// 15° or more.
 pub(crate) const KEEP: f64 = 64.0;

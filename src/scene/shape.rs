@@ -15,7 +15,7 @@
 //! its edges, where it would catch rays that have just left its neighbour.
 
 use super::primitive::Primitive;
-use super::rounding::{KEEP, MOST_KEEP, REACH, across, onto};
+use super::rounding::{KEEP, MOST_KEEP, UNSURE, across, onto};
 use glam::{DVec3, Vec3};
 
 /// A hit: distance in units of the direction's length, and the two surface coordinates where the kind needs them.
@@ -55,7 +55,7 @@ pub(crate) struct Flat {
     pub(crate) b: Vec3,
     pub(crate) b0: f32,
     /// Up to here, 1 − R, a hit is certain; up to the next rounding may be to blame for either answer.
-    reach: [f32; 2],
+    sure: [f32; 2],
     band: [f32; 2],
     corners: [Vec3; 4],
     center: Vec3,
@@ -84,7 +84,7 @@ impl Flat {
             a0: (-1.0 - a.dot(origin)) as f32,
             b: f(b),
             b0: (-1.0 - b.dot(origin)) as f32,
-            reach: part(REACH, 0.25).map(|r| 1.0 - r),
+            sure: part(UNSURE, 0.25).map(|r| 1.0 - r),
             band: part(KEEP, 0.5).map(|r| 1.0 + r),
             corners: [0, 1, 3, 2].map(|i| f(corners[i])),
             center: f(origin + 0.5 * (u + v)),
@@ -101,7 +101,7 @@ impl Flat {
         let t = (self.h - dot(self.n, o)) / dot(self.n, d);
         let p = Vec3::new(d.x * t + o.x, d.y * t + o.y, d.z * t + o.z);
         let (u, v) = ((dot(self.a, p) + self.a0).abs(), (dot(self.b, p) + self.b0).abs());
-        let met = (u <= self.reach[0]) & (v <= self.reach[1]) & (t > 0.0);
+        let met = (u <= self.sure[0]) & (v <= self.sure[1]) & (t > 0.0);
         (t, met, !met & (u <= self.band[0]) & (v <= self.band[1]) & (t > 0.0))
     }
 
