@@ -84,7 +84,7 @@ impl Adjoint for SceneTransport<'_> {
             // of the pair of points, as every other strategy takes it; where rounding has turned it away, as it was drawn
             None => Some(self.toward(at, &state, role).density)
                 .filter(|density| *density > 0.0)
-                .unwrap_or(d.pdf * self.angle(at, &state, d.direction)),
+                .unwrap_or_else(|| d.pdf * self.angle(at, &state, d.direction)),
         };
         Some(Walk { state, weight: d.weight, density, delta })
     }
@@ -207,8 +207,7 @@ impl Camera {
 
     /// Whether nothing stands between the eye and what it would see.
     pub(crate) fn unhidden(&self, t: &SceneTransport, at: &Vertex) -> bool {
-        let d = self.toward(t, at).normalize();
-        let start = self.enter(d);
+        let start = self.enter(self.toward(t, at).normalize());
         let (p, n) = if at.on_surface() {
             let toward_eye = if at.n.dot(start - at.p) < 0.0 { -at.n } else { at.n };
             (at.p, toward_eye)

@@ -53,17 +53,18 @@ fn nearest_flat(s: &Flat, id: u32, o: &[Lane; 3], d: &[Lane; 3], t: &mut Lane, p
     let mut any = 0;
     for i in 0..LANES {
         let (o, d) = at(i);
-        let (r, met, unsure) = s.look(o, d);
-        let nearer = met & (r < t[i]);
+        let (r, near, certain) = s.look(o, d);
+        let near = near & (r < t[i]);
+        let nearer = near & certain;
         t[i] = if nearer { r } else { t[i] };
         prim[i] = if nearer { id } else { prim[i] };
-        any |= u32::from(unsure);
+        any |= u32::from(near != nearer);
     }
     if any != 0 {
         for i in 0..LANES {
             let (o, d) = at(i);
-            let (r, _, unsure) = s.look(o, d);
-            if unsure && r < t[i] && s.edges(o, d) {
+            let (r, near, certain) = s.look(o, d);
+            if near && !certain && r < t[i] && s.edges(o, d) {
                 (t[i], prim[i]) = (r, id);
             }
         }
@@ -105,15 +106,16 @@ fn block_flat(s: &Flat, r: &[Lane; 6], blocked: &mut [u32; LANES]) {
     let mut any = 0;
     for (i, blocked) in blocked.iter_mut().enumerate() {
         let (o, d) = at(i);
-        let (t, met, unsure) = s.look(o, d);
-        *blocked |= u32::from(met & (t < 1.0));
-        any |= u32::from(unsure);
+        let (t, near, certain) = s.look(o, d);
+        let near = near & (t < 1.0);
+        *blocked |= u32::from(near & certain);
+        any |= u32::from(near & !certain);
     }
     if any != 0 {
         for (i, blocked) in blocked.iter_mut().enumerate() {
             let (o, d) = at(i);
-            let (t, _, unsure) = s.look(o, d);
-            *blocked |= u32::from(unsure && t < 1.0 && s.edges(o, d));
+            let (t, near, certain) = s.look(o, d);
+            *blocked |= u32::from(near && !certain && t < 1.0 && s.edges(o, d));
         }
     }
 }

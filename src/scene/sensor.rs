@@ -11,8 +11,8 @@ use glam::{DVec3, Vec3};
 
 /// A pinhole camera. Pixel (0, 0) is top left; right = forward × up; pixels are square.
 ///
-/// Its rays are made in `f64` and start where they enter a sphere around the scene, so that a camera may stand as far away as it
-/// likes and its pixels may be as narrow as `f64` can tell apart.
+/// Its rays are made in `f64`. Those of a distant camera start where they enter a sphere around the scene, so that a camera may stand
+/// as far away as it likes and its pixels may be as narrow as `f64` can tell apart.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
     /// The pinhole, about the middle of the scene.
@@ -21,11 +21,17 @@ pub struct Camera {
     corner: DVec3,
     across: DVec3,
     down: DVec3,
+    /// Unit directions of the picture: right, down, forward.
+    axes: [DVec3; 3],
+    /// Width of a pixel at distance 1.
+    width: f64,
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// A sphere around the shapes.
     center: DVec3,
     radius: f64,
+    /// The pinhole is at most three radii from the middle: rays may start there without loss.
+    near: bool,
 }
 
 impl Camera {
@@ -35,34 +41,37 @@ impl Camera {
         let right = forward.cross(c.up).normalize();
         let up = right.cross(forward);
         let half = (0.5 * c.fov).to_radians().tan();
-        let pixel = 2.0 * half / f64::from(c.size[0]);
+        let width = 2.0 * half / f64::from(c.size[0]);
         Self {
             origin: c.origin,
-            corner: forward - right * half + up * (0.5 * pixel * f64::from(c.size[1])),
-            across: right * pixel,
-            down: -up * pixel,
+            corner: forward - right * half + up * (0.5 * width * f64::from(c.size[1])),
+            across: right * width,
+            down: -up * width,
+            axes: [right, -up, forward],
+            width,
             size: c.size,
             center,
             // a little more, so that no surface lies before the start of a ray
             radius: radius * 1.001,
+            near: c.origin.distance(center) <= 3.0 * radius,
         }
     }
 
-    /// The pixel that sees a point (of the sky: any point in its direction), if it is in the picture, and the density per solid angle
-    /// with which its paths take that direction: the inverse of the solid angle of the pixel there, `l³/|pixel|²` with l the length of
-    /// the direction to the plane at 1.
+    /// The pixel that sees what lies along `d`, of any length, if it is in the picture, and the density per solid angle with which
+    /// its paths take that direction: the inverse of the solid angle of the pixel there, `l³/|pixel|²` with l the length of the
+    /// direction to the plane at 1.
     pub(crate) fn pixel(&self, d: DVec3) -> Option<(Option<u32>, f32)> {
-        let d = d.normalize();
-        let pixel = self.across.length();
-        let (right, down) = (self.across / pixel, self.down / pixel);
-        let along = d.dot(right.cross(down));
+        let [right, down, forward] = self.axes;
+        let along = d.dot(forward);
         if along <= 0.0 {
             return None;
         }
-        let q = d / along - self.corner;
-        let (x, y) = ((q.dot(right) / pixel).floor(), (q.dot(down) / pixel).floor());
+        let at_one = d * (1.0 / along);
+        let (q, per_pixel) = (at_one - self.corner, 1.0 / self.width);
+        let (x, y) = (q.dot(right) * per_pixel, q.dot(down) * per_pixel);
         let inside = x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]);
-        let per_angle = 1.0 / (along * along * along * pixel * pixel);
+        let l2 = at_one.length_squared();
+        let per_angle = l2 * l2.sqrt() * (per_pixel * per_pixel);
         Some((inside.then(|| y as u32 * self.size[0] + x as u32), per_angle as f32))
     }
 
@@ -76,9 +85,12 @@ impl Camera {
         (self.enter(d), d.as_vec3())
     }
 
-    /// Where the ray from the pinhole in unit direction `d` comes near the scene: the pinhole itself if it is there already.
+    /// Where the ray from the pinhole in unit direction `d` comes near the scene: the pinhole itself if it is near already.
     #[inline(always)]
     pub(crate) fn enter(&self, d: DVec3) -> Vec3 {
+        if self.near {
+            return self.origin.as_vec3();
+        }
         let to = self.center - self.origin;
         let (along, r2) = (to.dot(d), self.radius * self.radius);
         let before = along - (r2 - (to - d * along).length_squared()).max(0.0).sqrt();

@@ -45,23 +45,25 @@ fn edge(a: Vec3, b: Vec3, d: Vec3) -> f32 {
     dot(cross(a - b, a + b), d)
 }
 
-/// A parallelogram, ready for rays: plane `n·p = h`; `a·p + a0` and `b·p + b0` run from −1 to 1 across it.
+/// A parallelogram, ready for rays: plane `n·p = h`; where `a·p + a0` and `b·p + b0` are in [−1, 1], a hit is certain. They run
+/// across it from −1/s to 1/s, s = 1 − R.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flat {
-    pub(crate) n: Vec3,
-    pub(crate) h: f32,
-    pub(crate) a: Vec3,
-    pub(crate) a0: f32,
-    pub(crate) b: Vec3,
-    pub(crate) b0: f32,
-    /// Up to here, 1 − R, a hit is certain; up to the next rounding may be to blame for either answer.
+    n: Vec3,
+    h: f32,
+    a: Vec3,
+    a0: f32,
+    b: Vec3,
+    b0: f32,
+    /// Up to here, in these coordinates, rounding may be to blame for either answer.
+    band: f32,
+    /// s for both.
     sure: [f32; 2],
-    band: [f32; 2],
     corners: [Vec3; 4],
     center: Vec3,
     half_u: Vec3,
     half_v: Vec3,
-    /// 1 − M
+    /// (1 − M)/s
     keep: [f32; 2],
 }
 
@@ -75,39 +77,49 @@ impl Flat {
         let corners = [origin, origin + u, origin + v, origin + u + v];
         let round = [a, b].map(|a| across(a, &corners));
         let touch = [a, b].map(|a| touch * a.length());
-        let part = |k: f64, most: f64| [0, 1].map(|i| (k * round[i] + touch[i]).min(most) as f32);
+        let part = |k: f64, most: f64| [0, 1].map(|i| (k * round[i] + touch[i]).min(most));
+        let sure = part(UNSURE, 0.25).map(|r| 1.0 - r);
+        let [wide, long] = [0, 1].map(|i| (1.0 + part(KEEP, 0.5)[i]) / sure[i]);
         let f = |v: DVec3| v.as_vec3();
         Self {
             n: f(n),
             h: n.dot(origin) as f32,
-            a: f(a),
-            a0: (-1.0 - a.dot(origin)) as f32,
-            b: f(b),
-            b0: (-1.0 - b.dot(origin)) as f32,
-            sure: part(UNSURE, 0.25).map(|r| 1.0 - r),
-            band: part(KEEP, 0.5).map(|r| 1.0 + r),
+            a: f(a / sure[0]),
+            a0: ((-1.0 - a.dot(origin)) / sure[0]) as f32,
+            b: f(b / sure[1]),
+            b0: ((-1.0 - b.dot(origin)) / sure[1]) as f32,
+            band: wide.max(long) as f32,
+            sure: sure.map(|s| s as f32),
             corners: [0, 1, 3, 2].map(|i| f(corners[i])),
             center: f(origin + 0.5 * (u + v)),
             half_u: f(0.5 * u),
             half_v: f(0.5 * v),
-            keep: part(KEEP, MOST_KEEP).map(|m| 1.0 - m),
+            keep: [0, 1].map(|i| ((1.0 - part(KEEP, MOST_KEEP)[i]) / sure[i]) as f32),
         }
     }
 
-    /// Distance, whether the ray meets the parallelogram there, and whether the [edges](Self::edges) must say so. Also used lane by
-    /// lane in packets.
+    /// Distance, whether the ray meets the parallelogram there or next to its edges, and whether that is certain: if not, the
+    /// [edges](Self::edges) say. Also used lane by lane in packets.
     #[inline(always)]
     pub(crate) fn look(&self, o: Vec3, d: Vec3) -> (f32, bool, bool) {
         let t = (self.h - dot(self.n, o)) / dot(self.n, d);
         let p = Vec3::new(d.x * t + o.x, d.y * t + o.y, d.z * t + o.z);
         let (u, v) = ((dot(self.a, p) + self.a0).abs(), (dot(self.b, p) + self.b0).abs());
-        let met = (u <= self.sure[0]) & (v <= self.sure[1]) & (t > 0.0);
-        (t, met, !met & (u <= self.band[0]) & (v <= self.band[1]) & (t > 0.0))
+        let most = if u > v { u } else { v };
+        (t, (most <= self.band) & (t > 0.0), most <= 1.0)
     }
 
     /// Whether the ray's line passes between the edges, each with the same sign as in the primitive beyond it.
-    #[cold]
+    #[inline(always)]
     pub(crate) fn edges(&self, o: Vec3, d: Vec3) -> bool {
+        self.between(o.x, o.y, o.z, d.x, d.y, d.z)
+    }
+
+    /// By numbers, which travel in registers: a ray in memory made the loops around a rare call half as fast.
+    #[cold]
+    #[inline(never)]
+    fn between(&self, ox: f32, oy: f32, oz: f32, dx: f32, dy: f32, dz: f32) -> bool {
+        let (o, d) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
         let v = self.corners.map(|p| p - o);
         let w = [0, 1, 2, 3].map(|i| edge(v[(i + 1) % 4], v[i], d));
         (w.iter().all(|w| *w >= 0.0) || w.iter().all(|w| *w <= 0.0)) && w.iter().any(|w| *w != 0.0)
@@ -115,8 +127,12 @@ impl Flat {
 
     #[inline(always)]
     fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
-        let (t, met, unsure) = self.look(o, d);
-        (t, met || unsure && self.edges(o, d))
+        let (t, near, certain) = self.look(o, d);
+        let mut met = near & certain;
+        if near != met {
+            met = self.edges(o, d);
+        }
+        (t, met)
     }
 
     /// The point of the plane nearest to `p`, kept inside the edges.
@@ -129,7 +145,7 @@ impl Flat {
             return p;
         }
         let back = |x: f32, k: f32| if x.abs() <= k { 0.0 } else { k.copysign(x) - x };
-        p + self.half_u * back(u, ku) + self.half_v * back(v, kv)
+        p + self.half_u * (self.sure[0] * back(u, ku)) + self.half_v * (self.sure[1] * back(v, kv))
     }
 }
 
@@ -317,7 +333,9 @@ impl Shape {
     /// Where a point of the surface lies: u, v along the edges of a parallelogram, the weights of a triangle's corners.
     pub(crate) fn coordinates(&self, p: Vec3) -> [f32; 3] {
         match self {
-            Self::Flat(s) => [0.5 * (dot(s.a, p) + s.a0 + 1.0), 0.5 * (dot(s.b, p) + s.b0 + 1.0), 0.0],
+            Self::Flat(s) => {
+                [0.5 * (s.sure[0] * (dot(s.a, p) + s.a0) + 1.0), 0.5 * (s.sure[1] * (dot(s.b, p) + s.b0) + 1.0), 0.0]
+            }
             Self::Triangle(s) => {
                 let w = s.parts(p);
                 w.map(|x| x / (w[0] + w[1] + w[2]))
