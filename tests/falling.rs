@@ -14,7 +14,7 @@ use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::load::{self, Options};
 use fredholm::stats::{Measured, critical, two_sided_p};
 use fredholm::terms::scatter::Scatter;
-use fredholm::terms::{TermFilm, TermImage};
+use fredholm::terms::{TermFilm, TermImage, Variance};
 use fredholm::worlds::falling::Part;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
@@ -38,7 +38,7 @@ fn curve<T: Transport>(
 ) -> Part {
     let mut kept = Kept(slots, vec![]);
     render(t, sensor, estimator, amount, &mut kept, &AtomicBool::new(false));
-    Part { name: "all".into(), points: kept.1 }
+    Part { name: "all".into(), points: kept.1, variance: Variance::Finite }
 }
 
 /// Four rows that lose light; rows 0 and 2 emit.

@@ -9,9 +9,13 @@ use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, Technique, TermEst
 use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
 use fredholm::scene::{Scene, bsdf::Sampling};
-use fredholm::stats::{Criterion, Outcome, compare};
+use fredholm::stats::evidence::Reason;
+use fredholm::stats::{Criterion, Detector, Outcome, compare};
 use fredholm::terms::functional::image_replicates;
 use fredholm::terms::{Estimate, Variance};
+use fredholm::worlds::batches::Side;
+use fredholm::worlds::equilibrium::{self, Origin, judge};
+use fredholm::worlds::falling::{Part, Recorder};
 use fredholm::worlds::growth::{FromEye, growth, proved};
 use fredholm::worlds::resort::with_last_resort;
 use fredholm::worlds::roulette::beyond;
@@ -125,6 +129,32 @@ fn infinite_variance_is_said_in_place_of_an_error() {
     let row = compared.rows.iter().find(|r| r.name == "total").unwrap();
     assert_eq!(row.outcome, Outcome::Inconclusive);
     assert!(row.reason.as_deref().unwrap().contains("infinite"), "{row:?}");
+    // the same where batches are watched,
+    let side = Side { estimator: None, settings: lecture.clone() };
+    let mut watched = Detector::new(Criterion::default()).doubting(&side.limits(&scene));
+    for i in 0..3 {
+        let batch = |name| side.batch(&scene, name, i, &stop).functionals;
+        watched.push(&batch("first"), &batch("second"));
+    }
+    let total = watched.findings().into_iter().find(|f| f.name == "total").unwrap();
+    assert_eq!(total.outcome, Outcome::Inconclusive);
+    assert!(total.reason.as_deref().unwrap().contains("infinite"), "{total:?}");
+    // where both sides of the equation are held against each other,
+    let at = equilibrium::points(&scene, Origin::Surface, 4, 1);
+    let balances = equilibrium::at_points(&scene, &at, &lecture, 1.0, &Unobserved, &stop);
+    assert!(balances.iter().all(|b| b.evidence().no_error == Some(Reason::Infinite)));
+    let judged = judge(&[("surface", &balances)], 0.05, 0.5);
+    assert_eq!((judged.outcome, judged.judged), (Outcome::Inconclusive, 0));
+    // and where noise falls: samples whose variance were finite would have a slope
+    let recorder = Recorder::new(&Unobserved, None, vec![64, 128, 256]);
+    let longer = Settings { spp: 256, ..lecture.clone() };
+    let swept = sampled::terms(&scene, Estimator::Prefix, &longer, &recorder, &stop);
+    let stands = recorder.stands();
+    for (variance, known) in [(Variance::Finite, true), (swept.series.variance, false)] {
+        let parts = Part::all(&stands, true, variance);
+        let all = parts.iter().find(|p| p.name == "all").unwrap();
+        assert_eq!(all.slope().is_some(), known, "{variance:?}");
+    }
     // by albedo everything keeps its error
     let usual = sampled::path(&scene, &settings, &Unobserved, &stop);
     assert!(usual.doubt.is_none() && usual.series.image().total.std_error.is_finite());

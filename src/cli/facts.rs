@@ -13,7 +13,6 @@ use fredholm::terms::functional::Replicates;
 use fredholm::worlds::discrete::{Discrete, Unlit};
 use fredholm::worlds::growth;
 use fredholm::worlds::guided::Prepared;
-use fredholm::worlds::radius::radius_limit;
 use fredholm::worlds::realisation::{Difference, Sampling};
 use fredholm::worlds::sampled::Estimator;
 use glam::DVec3;
@@ -72,7 +71,7 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
         i.smallest,
         i.largest,
         m.solution.residual.max_element(),
-        radius_limit(&r.radii).map_or(String::new(), |l| limit_words(&l) + "\n"),
+        limit_words(&r.radii).map_or(String::new(), |l| l + "\n"),
         d.element_sum() / 3.0
     );
     if let Some(s) = &m.sampling {

@@ -13,6 +13,7 @@ use fredholm::report::sweep::fall::{self, Fall};
 use fredholm::report::typeset::Caption;
 use fredholm::report::{exr, summary, write_atomically};
 use fredholm::scene::{Description, Scene};
+use fredholm::stats::Evidence;
 use fredholm::terms::{TermFilm, TermImage};
 use fredholm::worlds::falling::{Recorder, Reference};
 use fredholm::worlds::sampled::{self, Estimator};
@@ -244,7 +245,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         let tail = !result.series.image().tail.is_none();
         let stands = recorder.stands();
         if !stands.is_empty() {
-            falls.push(Fall::new(case.label.clone(), pixels, stands, tail));
+            falls.push(Fall::new(case.label.clone(), pixels, stands, tail, result.series.variance));
             series.push(result.series);
         }
     }
@@ -304,6 +305,11 @@ fn people(falls: &[Fall], record: &summary::Summary, reference: Option<&Referenc
     }
     if falls.iter().all(|f| f.stands.len() < 2) {
         head += "\nnote: one number of samples has no slope; choose at least --spp 32";
+    }
+    for (fall, series) in falls.iter().zip(&record.series) {
+        if let Some(reason) = Evidence::of_variance(series.variance).no_error {
+            head += &format!("\n{}: {reason}; V of the tail and of all says nothing", fall.label);
+        }
     }
     let broken = record.series.iter().filter(|s| s.cost.non_finite > 0);
     let broken: Vec<_> =

@@ -15,7 +15,7 @@ use super::{
     typeset::{Caption, superscript},
 };
 use crate::stats::{Limit, Order, convergence_order};
-use crate::worlds::radius::radius_limit;
+use crate::worlds::radius::{Radius, radius_limit};
 use crate::worlds::refine::{Mesh, Quantity, Refinement};
 
 /// Quantity by quantity: the error of the image mean on every mesh and the fitted order, of the mean and of the image.
@@ -49,20 +49,24 @@ pub fn table(r: &Refinement, max_bounces: usize) -> String {
     format!(
         "{}{}\n\nerror of the image mean, by patches (± standard error)\n{means}\nerror over the image ‖R_h − R‖/‖R‖, noise taken out; negative: noise is all there is\n{images}",
         r.meshes.iter().map(mesh).collect::<Vec<_>>().join("\n"),
-        radius_limit(&r.meshes.iter().map(|m| m.radius).collect::<Vec<_>>())
-            .map_or(String::new(), |l| format!("\n{}", limit_words(&l)))
+        limit_words(&r.meshes.iter().map(|m| m.radius).collect::<Vec<_>>()).map_or(String::new(), |l| format!("\n{l}"))
     )
 }
 
-/// The spectral radius for h → 0, with what it rests on.
-pub fn limit_words(limit: &[Limit; 3]) -> String {
+/// The spectral radius for h → 0 from meshes, coarsest first, with what it rests on; nothing where one mesh is all there is.
+pub fn limit_words(meshes: &[Radius]) -> Option<String> {
+    let Some(limit) = radius_limit(meshes) else {
+        let coarse = meshes.iter().nth_back(1).is_some_and(|m| !m.resolved);
+        return coarse
+            .then(|| "not extrapolated to h → 0: the coarser mesh has fewer than three patches to a face".into());
+    };
     let each = |f: &dyn Fn(&Limit) -> String| limit.each_ref().map(f).join(", ");
-    format!(
+    Some(format!(
         "extrapolated to h → 0: ({})\n±({}), for orders {} in h; an estimate, no bound",
         each(&|l| format!("{:.5}", l.value)),
         each(&|l| format!("{:.0e}", l.half_width)),
         each(&|l| format!("{:.1} to {:.1}", l.orders[0], l.orders[1])),
-    )
+    ))
 }
 
 /// An error with its standard error.

@@ -24,12 +24,12 @@
 
 mod track;
 
-use super::evidence::{JUDGED, Reason, WIDER, doubt_in_words};
+use super::evidence::{Evidence, JUDGED, Reason, WIDER, doubt_in_words};
 use super::hypothesis::{Measured, ROUNDING, critical};
 use super::power::one_sided_normal;
 use super::sequential::MeanSequence;
 use super::verdict::{CHANNELS, Criterion, Outcome, Quantity, shared_quantities};
-use crate::terms::{Doubt, Estimate, Functional, Series};
+use crate::terms::{Doubt, Estimate, Functional, Series, Variance};
 use serde::Serialize;
 use track::Track;
 
@@ -44,6 +44,8 @@ pub struct Detector {
     batches: u64,
     /// What batches of one side cannot know: the side in words, the doubt, events to be expected of a batch.
     doubts: Vec<(String, Doubt, f64)>,
+    /// Whose sums without end have no finite variance, or none that is known: the side in words, and what is known.
+    variances: Vec<(String, Variance)>,
 }
 
 /// What is known about one quantity, in the words of its clearest functional and channel.
@@ -76,7 +78,15 @@ pub struct Finding {
 impl Detector {
     /// Watches two sides that are sampled batch by batch.
     pub fn new(criterion: Criterion) -> Self {
-        Self { criterion, finished: false, tracks: vec![], whole: Default::default(), batches: 0, doubts: vec![] }
+        Self {
+            criterion,
+            finished: false,
+            tracks: vec![],
+            whole: Default::default(),
+            batches: 0,
+            doubts: vec![],
+            variances: vec![],
+        }
     }
 
     /// Watches one side against a finished result, whose errors are allowed for.
@@ -84,15 +94,25 @@ impl Detector {
         Self { finished: true, ..Self::new(criterion) }
     }
 
-    /// With the doubts of a side that is sampled, whose cost is that of one batch.
+    /// With the doubts of a side that is sampled, whose cost is that of one batch, and with what is known of its variance.
     #[must_use]
     pub fn doubting(mut self, side: &Series) -> Self {
         self.doubts.extend(side.doubts.iter().map(|d| (side.label.clone(), d.clone(), side.expected(d))));
+        self.variances.push((side.label.clone(), side.variance));
         self
     }
 
     /// Why a quantity can neither agree nor differ yet.
     fn doubt(&self, quantity: Quantity) -> Option<String> {
+        if matches!(quantity, Quantity::Tail | Quantity::Total) {
+            // a mean over batches is nearly normal only where there is a variance
+            let endless = |(label, variance): &(String, Variance)| {
+                Evidence::of_variance(*variance).no_verdict.map(|reason| format!("{label}: {reason}"))
+            };
+            if let Some(reason) = self.variances.iter().find_map(endless) {
+                return Some(reason);
+            }
+        }
         let of = |(label, doubt, each): &(String, Doubt, f64)| {
             let few = quantity.concerned(doubt) && each * (self.batches as f64) < JUDGED;
             few.then(|| doubt_in_words(label, doubt, each * self.batches as f64))

@@ -29,7 +29,7 @@
 //! mean normal (Vehtari, Simpson, Gelman, Yao and Gabry, *Pareto smoothed importance sampling*, 2024).
 
 use super::hypothesis::{ROUNDING, critical};
-use crate::terms::{Doubt, Estimate, Events};
+use crate::terms::{Doubt, Estimate, Events, Variance};
 use serde::Serialize;
 use std::fmt;
 
@@ -162,13 +162,22 @@ impl Evidence {
             return Self::nothing(Reason::OneReplicate);
         }
         if !e.std_error.is_finite() {
-            return Self::nothing(if e.std_error.is_nan() { Reason::Unknown } else { Reason::Infinite });
+            return Self::of_variance(if e.std_error.is_nan() { Variance::Unknown } else { Variance::Infinite });
         }
         let found = e.events.map_or(Self { no_error: None, no_verdict: None }, Self::of_events);
         let alike =
             e.replicates < ALIKE && (0..3).any(|c| e.mean[c] != 0.0 && e.std_error[c] <= ROUNDING * e.mean[c].abs());
         let no_verdict = found.no_verdict.or(alike.then_some(Reason::Alike(e.replicates)));
         Self { no_verdict, ..found }
+    }
+
+    /// Of a sum without end, by what is known of its variance.
+    pub fn of_variance(variance: Variance) -> Self {
+        match variance {
+            Variance::Finite => Self { no_error: None, no_verdict: None },
+            Variance::Infinite => Self::nothing(Reason::Infinite),
+            Variance::Unknown => Self::nothing(Reason::Unknown),
+        }
     }
 
     /// Of what a mean was added up from.

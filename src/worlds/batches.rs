@@ -6,7 +6,7 @@
 use super::Settings;
 use super::coplanar::undecided;
 use super::doubts::doubts;
-use super::sampled::{Estimator, film};
+use super::sampled::{Estimator, doubt, film};
 use super::unseen::unseen;
 use crate::estimator::render::{Amount, Unwatched, render};
 use crate::estimator::{PathTracer, Plan};
@@ -96,7 +96,12 @@ impl Side {
             unseen,
             doubts: doubts(scene, self.estimator, &self.settings),
             undecided: undecided(scene),
-            variance: Variance::Finite,
+            variance: doubt(
+                &SceneTransport { scene, sampling: self.settings.sampling },
+                self.estimator,
+                &self.settings,
+            )
+            .map_or(Variance::Finite, |growth| growth.variance()),
         }
     }
 }

@@ -16,9 +16,9 @@
 use super::Observer;
 use super::sampled::Sampled;
 use crate::stats::evidence::FITTED_SPREAD;
-use crate::stats::{Slope, falling_slope};
+use crate::stats::{Evidence, Slope, falling_slope};
 use crate::terms::scatter::Scatter;
-use crate::terms::{TermFilm, TermImage};
+use crate::terms::{TermFilm, TermImage, Variance};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -122,11 +122,13 @@ pub struct Part {
     pub name: String,
     /// n and what the film says there, in rising order.
     pub points: Vec<(u32, Scatter)>,
+    /// Whether what is shown tends to anything: the variance of a sum without end may be infinite.
+    pub variance: Variance,
 }
 
 impl Part {
-    /// The parts of a render: its slots (a tail only if it is `known`), then the sum.
-    pub fn all(stands: &[Stand], tail_is_known: bool) -> Vec<Self> {
+    /// The parts of a render: its slots (a tail only if it is `known`), then the sum. `variance` is that of the tail and of the sum.
+    pub fn all(stands: &[Stand], tail_is_known: bool, variance: Variance) -> Vec<Self> {
         let count = stands.first().map_or(0, |s| s.parts.len());
         let name = |i: usize| match count - i {
             1 => "all".to_owned(),
@@ -134,11 +136,15 @@ impl Part {
             _ => i.to_string(),
         };
         let kept = (0..count).filter(|&i| tail_is_known || i + 2 != count);
-        let part = |i| Self { name: name(i), points: stands.iter().map(|s| (s.spp, s.parts[i].clone())).collect() };
+        let part = |i| Self {
+            name: name(i),
+            points: stands.iter().map(|s| (s.spp, s.parts[i].clone())).collect(),
+            variance: if i + 2 < count { Variance::Finite } else { variance },
+        };
         kept.map(part).collect()
     }
 
-    /// The slope of V; none where there is no noise, or fewer than two points that rest on events enough.
+    /// The slope of V; none where there is no noise or no variance, or fewer than two points that rest on events enough.
     pub fn slope(&self) -> Option<Slope> {
         self.fit(Scatter::variance, Scatter::variance_without)
     }
@@ -149,6 +155,9 @@ impl Part {
     }
 
     fn fit(&self, value: impl Fn(&Scatter) -> f64, without: impl Fn(&Scatter, usize) -> f64) -> Option<Slope> {
+        if Evidence::of_variance(self.variance).no_error.is_some() {
+            return None;
+        }
         // a variance that rests on few events is no point of a curve: most of it has not happened yet
         let known = || self.points.iter().filter(|(_, s)| s.events >= FITTED_SPREAD);
         let points: Vec<(f64, f64)> = known().map(|(n, s)| (f64::from(*n), value(s))).collect();

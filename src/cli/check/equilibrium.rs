@@ -12,7 +12,7 @@ use fredholm::report::sheet::{self, Cell};
 use fredholm::report::table::significant;
 use fredholm::report::{picture, summary, table, typeset::Caption, zmap};
 use fredholm::scene::bsdf::Sampling;
-use fredholm::stats::{Outcome, estimate};
+use fredholm::stats::{Evidence, Outcome, estimate};
 use fredholm::terms::TermImage;
 use fredholm::worlds::equilibrium::{self, Balance, Group, Judgement, Origin, judge};
 use fredholm::worlds::{Settings, coplanar};
@@ -191,6 +191,7 @@ fn people(found: &Found, folder: &Path, files: &[String]) -> String {
         significant(j.uniformity.distance, 2),
         significant(j.uniformity.p, 2)
     ));
+    let endless = found.groups.iter().find_map(|g| Evidence::of_variance(g.1.first()?.variance).no_verdict);
     let verdict = match j.outcome {
         _ if found.undecided.is_some() => "",
         Outcome::Agrees => "The equation holds, as closely as was asked for.",
@@ -203,7 +204,11 @@ fn people(found: &Found, folder: &Path, files: &[String]) -> String {
         }
     };
     let files = format!("written to {}: {}", folder.display(), files.join(", "));
-    let verdict = found.undecided.as_deref().map_or(verdict.to_owned(), facts::undecided);
+    let verdict = match (&found.undecided, endless) {
+        (Some(why), _) => facts::undecided(why),
+        (None, Some(reason)) => format!("Nothing is decided: {reason}."),
+        (None, None) => verdict.to_owned(),
+    };
     paragraphs(&[head, lines.join("\n"), verdict, files])
 }
 

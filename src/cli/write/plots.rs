@@ -89,7 +89,8 @@ fn write_variance(found: &Found, out: &mut Files, caption: &Caption) -> Result<(
     // a slot of the snapshots, or their sum
     let mut curve = |label: String, s: &Sampled, slot: Option<usize>| {
         let at = |snap: &Snapshot| Some((snap.spp, snap.scatter.get(slot.unwrap_or(snap.scatter.len() - 1))?.clone()));
-        let part = Part { name: label.clone(), points: s.snapshots.iter().filter_map(at).collect() };
+        let variance = if slot.is_none() { s.series.variance } else { Default::default() };
+        let part = Part { name: label.clone(), points: s.snapshots.iter().filter_map(at).collect(), variance };
         let replicates = s.series.image().total.replicates;
         let point = |(spp, scatter): &(u32, Scatter)| {
             let v = fredholm::terms::variance::Variance::from(scatter);

@@ -19,7 +19,7 @@ use super::super::{
 };
 use super::quoted;
 use crate::stats::Slope;
-use crate::terms::scatter::Scatter;
+use crate::terms::{Variance, scatter::Scatter};
 use crate::worlds::falling::{Part, Stand};
 
 /// One render as its noise falls.
@@ -36,9 +36,9 @@ pub struct Fall {
 }
 
 impl Fall {
-    /// From the stands of one render.
-    pub fn new(label: String, pixels: usize, stands: Vec<Stand>, tail_is_known: bool) -> Self {
-        Self { label, pixels, parts: Part::all(&stands, tail_is_known), stands }
+    /// From the stands of one render. `variance` is that of the tail and of the sum.
+    pub fn new(label: String, pixels: usize, stands: Vec<Stand>, tail_is_known: bool, variance: Variance) -> Self {
+        Self { label, pixels, parts: Part::all(&stands, tail_is_known, variance), stands }
     }
 
     /// Rays and seconds per path at a stand.

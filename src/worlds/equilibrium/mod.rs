@@ -18,6 +18,7 @@ mod judge;
 
 pub use judge::{Group, Judgement, judge};
 
+use super::sampled::doubt;
 use super::{Advance, Observer, Settings};
 use crate::estimator::render::{Amount, render};
 use crate::estimator::{Equilibrium, Plan};
@@ -25,7 +26,7 @@ use crate::math::{Key, Purpose, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};
 use crate::scene::{Scene, SurfaceSensor, Vertex};
 use crate::stats::{Evidence, Measured, estimate, two_sided_p};
-use crate::terms::{Estimate, Events, TermFilm, TermImage};
+use crate::terms::{Estimate, Events, TermFilm, TermImage, Variance};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 
@@ -89,10 +90,12 @@ pub struct Balance {
     pub p: f64,
     /// The same channel by channel.
     pub channels: [f64; 3],
+    /// Whether L by such paths has a variance.
+    pub variance: Variance,
 }
 
 impl Balance {
-    fn of(film: &TermFilm, pixel: usize, at: Vertex, emission: DVec3) -> Self {
+    fn of(film: &TermFilm, pixel: usize, at: Vertex, emission: DVec3, variance: Variance) -> Self {
         let side = |slot: usize| -> Vec<DVec3> {
             (0..film.shape.replicates).map(|r| film.sum(pixel, r, slot) / film.count(pixel, r)).collect()
         };
@@ -114,13 +117,14 @@ impl Balance {
             left: Estimate { events: events(0, &l), ..estimate(&l) },
             right: Estimate { events: events(1, &r), ..estimate(&r) },
             differences,
+            variance,
         }
     }
 
     /// What both sides rest on.
     pub fn evidence(&self) -> Evidence {
         let of = |side: &Estimate| Evidence::of_events(side.events.unwrap_or(Events::equal(0.0)));
-        of(&self.left).and(of(&self.right))
+        Evidence::of_variance(self.variance).and(of(&self.left)).and(of(&self.right))
     }
 
     /// Whether the point is judged by itself. Equal without noise is no test at all.
@@ -148,7 +152,9 @@ pub fn at_points(
     let amount = Amount { spp: settings.spp, replicates: REPLICATES.min(settings.spp as usize), key };
     observer.begin("L and E + T L at points", at.len() as u64 * u64::from(settings.spp));
     let film = render(&t, &Fixed(at), &estimator(settings, factor), amount, &mut Advance(observer), stop);
-    at.iter().enumerate().map(|(i, &x)| Balance::of(&film, i, x, t.emission(&x).as_dvec3())).collect()
+    let variance = doubt(&t, None, settings).map_or(Variance::Finite, |growth| growth.variance());
+    let balance = |(i, x): (usize, &Vertex)| Balance::of(&film, i, *x, t.emission(x).as_dvec3(), variance);
+    at.iter().enumerate().map(balance).collect()
 }
 
 /// Both sides through the camera: images of L and of E + T L.
@@ -182,7 +188,8 @@ fn events<'a>(sides: impl Iterator<Item = &'a Estimate>) -> Events {
 /// What the mean over some points rests on.
 pub fn evidence(balances: &[&Balance]) -> Evidence {
     let [left, right] = [events(balances.iter().map(|b| &b.left)), events(balances.iter().map(|b| &b.right))];
-    Evidence::of_events(left).and(Evidence::of_events(right))
+    let variance = balances.first().map_or(Variance::Finite, |b| b.variance);
+    Evidence::of_variance(variance).and(Evidence::of_events(left)).and(Evidence::of_events(right))
 }
 
 /// The mean of d over some points, with the error of its replicates.
