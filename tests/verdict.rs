@@ -235,6 +235,41 @@ fn an_allowance_beyond_delta_proves_nothing() {
     }
 }
 
+/// A mesh whose T2 still halves tells nothing of T2, and sums are judged without it; what it does resolve is judged as before.
+#[test]
+fn a_term_that_no_mesh_resolves_rejects_nothing() {
+    let of_mesh = |factor: f64| {
+        let mut s = Series { world: World::Radiosity, ..series(0.0) };
+        for f in &mut s.functionals {
+            let lost = (1.0 - factor) * f.terms[2].mean;
+            f.terms[2].mean -= lost;
+            (f.sum.mean, f.total.mean) = (f.sum.mean - lost, f.total.mean - lost);
+        }
+        s
+    };
+    let (fine, coarse) = (of_mesh(0.1), of_mesh(0.05));
+    let allowance = discretisation(&fine, &coarse);
+    let c = compare(&series(1e-4), &fine, &Criterion::default(), &allowance);
+    assert_eq!(c.outcome, Outcome::Inconclusive);
+    assert!(c.rows[2].reason.as_deref().unwrap().contains("does not resolve"), "{:?}", c.rows[2]);
+    assert!(c.rows.iter().all(|r| r.outcome != Outcome::Differs));
+    // where meshes agree on a wrong T2, it is found
+    assert_eq!(
+        compare(&series(1e-4), &fine, &Criterion::default(), &discretisation(&fine, &fine)).outcome,
+        Outcome::Differs
+    );
+    // and so is a wrong T1 beside what is not resolved, by itself and in the sum
+    let mut wrong = series(1e-4);
+    for f in &mut wrong.functionals {
+        let more = 0.5 * f.terms[1].mean;
+        f.terms[1].mean += more;
+        (f.sum.mean, f.total.mean) = (f.sum.mean + more, f.total.mean + more);
+    }
+    let c = compare(&wrong, &fine, &Criterion::default(), &allowance);
+    let names: Vec<_> = c.rows.iter().filter(|r| r.outcome == Outcome::Differs).map(|r| r.name.as_str()).collect();
+    assert_eq!(names, ["T1", "sum", "total"]);
+}
+
 #[test]
 fn the_order_of_the_worlds_only_turns_the_sign() {
     let mut b = series(2e-3);

@@ -12,6 +12,7 @@
 //! | s, ν | standard error of the effect, its degrees of freedom | [`difference`] |
 //! | a | allowance: an error that is no noise (discretisation) | [`compare`] |
 //! | 3 max a | what a rejection must exceed: the largest allowance of its kind, with Roache's safety factor | [`compare`] |
+//! | – | a term whose a exceeds a quarter of it is not resolved by the mesh: it rejects nothing, and sums are judged without it | [`compare`] |
 //! | δ | 2 % of the term + 10⁻⁴ of the whole image, per channel | [`Criterion`] |
 //! | α | chance that two equal worlds are told apart anywhere in the whole family | [`Criterion::alpha`] |
 //! | t* | critical value at α: agreement needs *every* interval inside its margin, and such a claim needs no share of α for each | [`Verdict::interval`] |
@@ -25,7 +26,7 @@
 use super::evidence::{Evidence, JUDGED, Reason, WIDER, doubt_in_words};
 use super::hypothesis::{Measured, ROUNDING, critical, difference, holm, two_sided_p};
 use super::power;
-use crate::terms::{Doubt, Estimate, Functional, Series};
+use crate::terms::{Doubt, Estimate, Functional, Series, World};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -107,6 +108,18 @@ const ALLOWANCE: &str = "the allowance for discretisation alone exceeds what δ 
 /// with two grids (*J. Fluids Engineering* 116, 1994).
 const SAFETY: f64 = 3.0;
 
+/// A term that changes by more than this part of itself from one mesh to the next is not resolved: how far it is off, two meshes do
+/// not say. It rejects nothing, and sums are judged without what it differs by.
+const UNRESOLVED: f64 = 0.25;
+const NOT_RESOLVED: &str = "the mesh does not resolve it, it still changes by more than a quarter: refine the mesh";
+
+/// Per channel, whether the image mean of a quantity by a matrix is not resolved.
+fn unresolved(quantity: Quantity, mesh: Option<&Series>, allowance: &[Functional]) -> [bool; 3] {
+    let (Some(mesh), Some(gap)) = (mesh.map(Series::image), allowance.first()) else { return [false; 3] };
+    let (Some(value), Some(gap)) = (quantity.of(mesh), quantity.of(gap)) else { return [false; 3] };
+    [0, 1, 2].map(|c| gap.mean[c].abs() > UNRESOLVED * value.mean[c].abs())
+}
+
 /// What one of two results cannot know of a quantity, in words: events of which too few are to be expected.
 fn doubt(quantity: Quantity, a: &Series, b: &Series) -> Option<String> {
     let of = |s: &Series| {
@@ -142,6 +155,7 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
         return Comparison { rows: Vec::new(), family: 0, outcome: Outcome::Inconclusive, undecided: None };
     };
     let delta_of = |q: Quantity| margin(criterion, q, image_a, image_b);
+    let mesh = [b, a].into_iter().find(|s| s.world == World::Radiosity);
     for (i, fa) in a.functionals.iter().enumerate() {
         let Some(fb) = b.functionals.iter().find(|f| f.name == fa.name) else { continue };
         let allowed = allowance.iter().find(|f| f.name == fa.name).or(allowance.first());
@@ -152,6 +166,14 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
             let whole = 0.5 * (image_a.total.mean.abs() + image_b.total.mean.abs());
             let evidence = Evidence::of(&x).and(Evidence::of(&y));
             let doubt = doubt(quantity, a, b);
+            let unresolved = |q: Quantity| unresolved(q, mesh, allowance);
+            let own = unresolved(quantity);
+            // what the terms of a sum that are not resolved differ by
+            let parts = shared_quantities(fa, fb).into_iter().filter(|q| quantity.contains(*q));
+            let unknown = parts.fold(DVec3::ZERO, |sum, q| match (q.of(fa), q.of(fb)) {
+                (Some(x), Some(y)) => sum + DVec3::from(unresolved(q).map(f64::from)) * (x.mean - y.mean).abs(),
+                _ => sum,
+            });
             for (c, channel) in CHANNELS.iter().enumerate() {
                 family.push(Item {
                     quantity,
@@ -159,7 +181,7 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
                     is_image: i == 0,
                     effect: difference(Measured::of(&x, c), Measured::of(&y, c)),
                     allowance: extra[c],
-                    excuse: excused[c].max(extra[c]),
+                    excuse: if own[c] { f64::INFINITY } else { excused[c].max(extra[c]) + unknown[c] },
                     rounding: ROUNDING * whole[c],
                     delta: delta_of(quantity)[c].max(ROUNDING * whole[c]),
                     weak: evidence.no_verdict,
@@ -217,6 +239,15 @@ impl Quantity {
     /// Whether a doubt concerns it.
     pub(super) fn concerned(self, doubt: &Doubt) -> bool {
         if let Self::Term(k) = self { doubt.from <= k } else { true }
+    }
+
+    /// Whether it is a sum that `part` belongs to.
+    fn contains(self, part: Self) -> bool {
+        match self {
+            Self::Term(_) | Self::Tail => false,
+            Self::Sum => matches!(part, Self::Term(_)),
+            Self::Total => matches!(part, Self::Term(_) | Self::Tail),
+        }
     }
 
     pub(super) fn name(self) -> String {
@@ -339,6 +370,9 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Ve
     let room = delta - item.allowance - item.excuse - item.rounding;
     let reason = match outcome {
         Outcome::Agrees | Outcome::Differs => None,
+        Outcome::Inconclusive if item.excuse.is_infinite() && item.weak.is_none() && item.doubt.is_none() => {
+            Some(NOT_RESOLVED.to_owned())
+        }
         Outcome::Inconclusive if room <= 0.0 && item.weak.is_none() && item.doubt.is_none() => {
             Some(ALLOWANCE.to_owned())
         }
@@ -354,7 +388,7 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Ve
         effect,
         interval: (or_unknown(effect - half), or_unknown(effect + half)),
         p,
-        min_detectable: if item.weak.is_some() || item.doubt.is_some() {
+        min_detectable: if item.weak.is_some() || item.doubt.is_some() || item.excuse.is_infinite() {
             f64::NAN
         } else {
             item.excuse + item.rounding + power::min_detectable(s, item.effect.dof, levels.1, criterion.beta)
