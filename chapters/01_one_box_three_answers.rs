@@ -11,7 +11,9 @@
 use fredholm::report::decay::{self, Decay, Rate};
 use fredholm::report::plot::{Curve, Look};
 use fredholm::report::table::{average, significant};
-use fredholm::report::{ReportError, markdown, markdown::Claim, picture, sheet, typeset::Caption, write_atomically};
+use fredholm::report::{
+    ReportError, contact_sheet, markdown, markdown::Claim, picture, typeset::Caption, write_atomically,
+};
 use fredholm::scene::{Description, Scene, SceneError, load};
 use fredholm::stats::{Comparison, Criterion, Outcome, TermMeans, compare, discretisation};
 use fredholm::terms::{TermImage, functional::Replicates};
@@ -145,7 +147,9 @@ fn figures(out: &Path, scene: &Scene, a: &Answers, settings: &Settings) -> Resul
     let [w, h] = scene.camera.size.map(|n| n as usize);
     let images: Vec<&[[f32; 3]]> = a.series.terms.iter().map(|t| t.mean.as_slice()).collect();
     let note = format!("{} paths per pixel and term", settings.spp);
-    sheet::terms(w, h, &images, Some(&a.series.total.mean), &note, &caption)?.picture.write(&out.join("terms.png"))?;
+    contact_sheet::terms(w, h, &images, Some(&a.series.total.mean), &note, &caption)?
+        .picture
+        .write(&out.join("terms.png"))?;
 
     let matrix: Vec<f64> = a.matrix.matrix.surface.iter().map(|v| v.element_sum() / 3.0).collect();
     let (series, k) = (TermMeans::from(&a.norms), settings.max_bounces);

@@ -12,14 +12,14 @@ use chi_square::{Cells, Chart, p_value, together};
 use common::random::cases;
 use common::{Noise, truth};
 use fredholm::scene::bsdf::fresnel::{Interface, conductor, hemispherical};
-use fredholm::scene::bsdf::{Bsdf, BsdfSample, Carried, Sampling};
+use fredholm::scene::bsdf::{Bsdf, BsdfSample, Sampling, TransportMode};
 use fredholm::scene::description::{BsdfDescription, Choice, Colour, Ggx, Masking, Metal};
 use fredholm::terms::Estimate;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use surfaces::{Surface, all, fresnel, glass, gold, metal, outgoing, plastic, tilted};
 
-const BOTH: [Carried; 2] = [Carried::Radiance, Carried::Flux];
+const BOTH: [TransportMode; 2] = [TransportMode::Radiance, TransportMode::Flux];
 
 /// Pilot samples in a cell.
 const PILOT: usize = 8;
@@ -101,7 +101,7 @@ fn densities(account: &mut common::Account, n: usize) {
         }
         for (i, wo) in outgoing().into_iter().enumerate() {
             for &sampling in surface.samplings(i) {
-                let draw = |u| bsdf.sample(wo, sampling, Carried::Radiance, u).into();
+                let draw = |u| bsdf.sample(wo, sampling, TransportMode::Radiance, u).into();
                 let pdf = |wi| bsdf.pdf(wo, wi, sampling);
                 let what = format!("{sampling:?}, {wo}, {surface:?}");
                 let p = p_values(wo, &surface.cuts(wo), n, &mut noise, draw, pdf);
@@ -137,7 +137,7 @@ fn wrong_densities_are_found() {
         assert!(p < level, "{what}: p = {p:e} passes the level {level:e}");
     };
     let rough = |alpha| metal(gold(), Some(Ggx { alpha, masking: Masking::Separable })).bsdf();
-    let own = |bsdf: Bsdf, wo: Vec3| move |u| bsdf.sample(wo, Sampling::Bsdf, Carried::Radiance, u).into();
+    let own = |bsdf: Bsdf, wo: Vec3| move |u| bsdf.sample(wo, Sampling::Bsdf, TransportMode::Radiance, u).into();
     let half = |wo: Vec3, wi: Vec3| (wo + wi).normalize();
     for wo in outgoing() {
         let b = rough(0.4);
@@ -162,7 +162,7 @@ fn wrong_densities_are_found() {
 }
 
 /// ∫ f |cos θ_i| dω_i without deltas, as well as `n` samples deserve.
-fn quadrature(surface: &Surface, bsdf: &Bsdf, wo: Vec3, carried: Carried, n: usize) -> DVec3 {
+fn quadrature(surface: &Surface, bsdf: &Bsdf, wo: Vec3, carried: TransportMode, n: usize) -> DVec3 {
     if !bsdf.connects() {
         return DVec3::ZERO;
     }
@@ -178,7 +178,7 @@ fn quadrature(surface: &Surface, bsdf: &Bsdf, wo: Vec3, carried: Carried, n: usi
 }
 
 /// What a delta part adds to the albedo.
-fn delta(surface: &Surface, wo: Vec3, carried: Carried) -> DVec3 {
+fn delta(surface: &Surface, wo: Vec3, carried: TransportMode) -> DVec3 {
     let c = f64::from(wo.z);
     match &surface.description {
         BsdfDescription::Mirror { reflectance } => *reflectance,
@@ -188,7 +188,7 @@ fn delta(surface: &Surface, wo: Vec3, carried: Carried) -> DVec3 {
         }
         BsdfDescription::Dielectric { rough: None, .. } => {
             let f = fresnel(c, surface.eta, 0.0);
-            let squeezed = if carried == Carried::Radiance { surface.eta.powi(-2) } else { 1.0 };
+            let squeezed = if carried == TransportMode::Radiance { surface.eta.powi(-2) } else { 1.0 };
             DVec3::splat(f + (1.0 - f) * squeezed)
         }
         BsdfDescription::Plastic { ior, rough: None, .. } => DVec3::splat(fresnel(c, *ior, 0.0)),
@@ -245,7 +245,8 @@ fn no_surface_gains_energy() {
         let bsdf = surface.bsdf();
         for z in [1.0, 0.8, 0.4, 0.1, 0.01] {
             let wo = tilted(z, 0.7);
-            let truth = quadrature(&surface, &bsdf, wo, Carried::Flux, 30_000) + delta(&surface, wo, Carried::Flux);
+            let truth =
+                quadrature(&surface, &bsdf, wo, TransportMode::Flux, 30_000) + delta(&surface, wo, TransportMode::Flux);
             let (bound, max) = (bsdf.albedo(wo).as_dvec3(), bsdf.max_albedo().as_dvec3());
             let what = format!("z = {z}, {surface:?}: {truth}, bound {bound}, {max}");
             let slack = DVec3::splat(1e-5);
@@ -269,7 +270,7 @@ fn no_surface_gains_energy() {
 #[test]
 fn only_roughness_loses_energy() {
     let wo = tilted(0.5, 0.0);
-    let left = |surface: &Surface| quadrature(surface, &surface.bsdf(), wo, Carried::Flux, 30_000).x;
+    let left = |surface: &Surface| quadrature(surface, &surface.bsdf(), wo, TransportMode::Flux, 30_000).x;
     let rough = |alpha| Some(Ggx { alpha, masking: Masking::HeightCorrelated });
     let alphas = [0.05, 0.2, 0.5, 1.0];
     for make in [|r| metal(Metal::Reflectance(DVec3::ONE), r), |r| glass(Choice::Fresnel, r, false)] {
@@ -299,7 +300,7 @@ fn light_may_go_either_way() {
         for _ in 0..2000 {
             let wo = tilted(noise.uniform(), 6.0 * noise.uniform());
             let at_random = tilted(2.0 * noise.uniform() - 1.0, 6.0 * noise.uniform());
-            let sampled = here.sample(wo, Sampling::Bsdf, Carried::Radiance, three(&mut noise));
+            let sampled = here.sample(wo, Sampling::Bsdf, TransportMode::Radiance, three(&mut noise));
             for wi in [Some(at_random), sampled.map(|s| s.wi)].into_iter().flatten() {
                 let crosses = wi.z < 0.0;
                 let mirrored = |v: Vec3| if crosses { Vec3::new(v.x, v.y, -v.z) } else { v };

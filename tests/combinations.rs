@@ -37,7 +37,7 @@ use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
 use fredholm::scene::Selection;
 use fredholm::stats::ledger;
-use fredholm::worlds::{sampled::Estimator, unseen::unseen};
+use fredholm::worlds::{sampled::Estimator, unsampled::unsampled};
 use judge::{Findings, Sees, compare};
 use measure::{Measurement, measure, scene};
 use rayon::prelude::*;
@@ -68,7 +68,7 @@ fn check(known: &Known, c: &Combination, effort: u32, seed: u64, level: f64) -> 
     let key = |what| Key::new(seed, &format!("{}, {c}, {what}", known.case.name));
     let run = measure(&t, &scene.camera, c, effort, key("run"));
     let pilot = measure(&t, &scene.camera, c, effort, key("pilot"));
-    let sees = Sees { all: unseen(&scene, c.estimator, c.technique).is_empty(), delta: scene.any_delta_surface() };
+    let sees = Sees { all: unsampled(&scene, c.estimator, c.technique).is_empty(), delta: scene.any_delta_surface() };
     compare(&known.case, c, (&run, &pilot, &known.reference), sees, level)
 }
 
@@ -136,13 +136,13 @@ fn assert_sound(found: &[Vec<Findings>], proved: f64, both_sides: f64) {
     let share = |of: fn(&Findings) -> u32| f64::from(sum(found, of)) / scalars;
     let text = format!(
         "of {scalars} scalars {:.3} were proved equivalent, {:.3} consistent, and {:.3} were judged from above only: {:.3} found by \
-         luck, {:.3} too noisy, {:.3} not supported",
+         rare_paths, {:.3} too noisy, {:.3} not supported",
         share(|f| f.equivalent),
         share(|f| f.consistent),
-        share(|f| f.luck + f.noisy + f.unseen),
-        share(|f| f.luck),
+        share(|f| f.rare_paths + f.noisy + f.unsampled),
+        share(|f| f.rare_paths),
         share(|f| f.noisy),
-        share(|f| f.unseen)
+        share(|f| f.unsampled)
     );
     eprintln!("{text}");
     let extreme: Vec<&String> = found.iter().flatten().flat_map(|f| &f.extreme).collect();

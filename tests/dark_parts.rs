@@ -7,7 +7,7 @@ use common::scenes::{Surface, description, room, sphere};
 use fredholm::scene::Scene;
 use fredholm::scene::description::{BsdfDescription, Choice, Description, Geometry, LightDescription, Sides, Sky};
 use fredholm::worlds::discrete::{Matrix, MatrixError, dense_matrix, matrix, sampled_matrix};
-use fredholm::worlds::realisation::Factors;
+use fredholm::worlds::discretisation::Factors;
 use fredholm::worlds::resort::with_last_resort;
 use fredholm::worlds::trap::trapped;
 use fredholm::worlds::{Settings, Unobserved, sampled};

@@ -172,7 +172,7 @@ fn right_renderers(scene: &Scene, seed: u64) -> Vec<(String, Pictures)> {
     // whoever does not see all light says so, and is no right renderer of the scene
     let terms = |e, s: &Settings| {
         let render = sampled::terms(scene, e, s, &Unobserved, &NEVER);
-        render.series.unseen.is_empty().then(|| Pictures::of(&render, SIZE))
+        render.series.unsampled.is_empty().then(|| Pictures::of(&render, SIZE))
     };
     let mut all: Vec<(String, Option<Pictures>)> = vec![];
     for e in [

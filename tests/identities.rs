@@ -306,7 +306,7 @@ fn weights_of_the_two_techniques_sum_to_one() {
                 if distance < 0.1 || cosine_density(&x, &y) < 0.01 || c.omega_cosine() < 0.1 {
                     continue;
                 }
-                let from = Scene::lift(x.p, x.n);
+                let from = Scene::offset_origin(x.p, x.n);
                 let seen = scene.trace(from, (y.p - from).normalize()).unwrap();
                 assert_eq!(seen.side, y.side, "{name}: the ray towards {y:?} ends at {seen:?}");
                 assert!(

@@ -18,7 +18,7 @@ use fredholm::estimator::{Bidirectional, LightTracer, PathTracer, Plan, Prefix, 
 use fredholm::math::Key;
 use fredholm::operator::scene_transport::SurfaceStrip;
 use fredholm::operator::{SceneTransport, Sensor};
-use fredholm::scene::bsdf::{Bsdf, Carried, fresnel::hemispherical};
+use fredholm::scene::bsdf::{Bsdf, TransportMode, fresnel::hemispherical};
 use fredholm::scene::description::{
     BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
 };
@@ -319,7 +319,7 @@ fn a_mirror_wall_doubles_the_light() {
     for way in [Way::Light, Way::Bidirectional(Technique::Mis), Way::Bidirectional(Technique::Power)] {
         check_image(&mut jury, "image of a point", &d, way, 8192, &terms);
     }
-    // and the eye's walks cannot, which is said in `worlds::unseen`
+    // and the eye's walks cannot, which is said in `worlds::unsampled`
     let mut direct = terms.clone();
     direct[2] = DVec3::ZERO;
     check_image(&mut jury, "image of a point", &d, Way::Prefix(Technique::Mis), 1024, &direct);
@@ -577,7 +577,7 @@ fn albedo(bsdf: &Bsdf, wo: Vec3) -> DVec3 {
         if c > 0.0 && wi.z > 0.0 {
             // dh = z³ tan dtan dφ
             let dh = z.powi(3) * tan / (1.0 - r).powi(2) / f64::from(N) * TAU / f64::from(2 * N);
-            let f = bsdf.eval(wo, wi.as_vec3(), Carried::Radiance).as_dvec3();
+            let f = bsdf.eval(wo, wi.as_vec3(), TransportMode::Radiance).as_dvec3();
             sum += f * wi.z * 4.0 * c * dh;
         }
     }

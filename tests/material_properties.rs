@@ -20,7 +20,7 @@ use fredholm::math::direction::Frame;
 use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::scene_transport::SurfaceStrip;
 use fredholm::operator::{Adjoint, Role, SceneTransport, Sensor, Transport};
-use fredholm::scene::bsdf::{Bsdf, Carried, Sampling};
+use fredholm::scene::bsdf::{Bsdf, Sampling, TransportMode};
 use fredholm::scene::description::{BsdfDescription, Description, Geometry, LightDescription, Shape, Sides};
 use fredholm::scene::emitter::environment::Environment;
 use fredholm::scene::{ESCAPED, LIGHT, Primitive, Scene, SurfaceSensor, Vertex};
@@ -147,11 +147,11 @@ impl<'a> Reference<'a> {
     fn scatter(&self, wo: DVec3, at: &Vertex, wi: DVec3, delta: bool) -> (DVec3, f64) {
         let (bsdf, o, i) = self.local(wo, at, wi);
         if !delta {
-            let f = bsdf.eval(o, i, Carried::Radiance).as_dvec3() * f64::from(i.z.abs());
+            let f = bsdf.eval(o, i, TransportMode::Radiance).as_dvec3() * f64::from(i.z.abs());
             return (f, f64::from(bsdf.pdf(o, i, Sampling::Bsdf)));
         }
-        let draws =
-            [0.0, 1.0 - f32::EPSILON / 2.0].map(|u| bsdf.sample(o, Sampling::Bsdf, Carried::Radiance, [0.5, 0.5, u]));
+        let draws = [0.0, 1.0 - f32::EPSILON / 2.0]
+            .map(|u| bsdf.sample(o, Sampling::Bsdf, TransportMode::Radiance, [0.5, 0.5, u]));
         let s = draws.into_iter().flatten().find(|s| s.delta && (s.wi.z > 0.0) == (i.z > 0.0)).unwrap();
         let relative = match bsdf {
             Bsdf::Dielectric(d) if i.z < 0.0 => f64::from(d.interface.eta),
@@ -310,19 +310,19 @@ fn finds(t: &SceneTransport, key: Key, pixel: u32, sample: u32, last: usize) -> 
     for (k, x) in eye.iter().enumerate() {
         let e = t.emission(&x.state);
         if e != Rgb::ZERO {
-            find(&eye[..=k], &[], None, x.through * e);
+            find(&eye[..=k], &[], None, x.throughput * e);
         }
     }
     for (v, x) in eye.iter().take(last).enumerate() {
         if let Some(c) = t.connect(&x.state, &mut eye_numbers(v, Purpose::Connect)) {
             let y = Node::new(c.state, Rgb::ONE, t.emit_density(&c.state));
-            find(&eye[..=v], &[y], None, x.through * c.weight * t.emission(&c.state));
+            find(&eye[..=v], &[y], None, x.throughput * c.weight * t.emission(&c.state));
         }
     }
     for (i, x) in eye.iter().enumerate() {
         for (j, y) in light.iter().enumerate().skip(1).take(last.saturating_sub(i + 1)) {
             let here = t.toward(&x.state, &y.state, Role::Radiance).value;
-            let value = x.through * here * t.toward(&y.state, &x.state, Role::Flux).value * y.through;
+            let value = x.throughput * here * t.toward(&y.state, &x.state, Role::Flux).value * y.throughput;
             let link = if value == Rgb::ZERO { 0.0 } else { t.link(&x.state, &y.state) };
             if link > 0.0 {
                 find(&eye[..=i], &light[..=j], None, value * link);
@@ -332,7 +332,7 @@ fn finds(t: &SceneTransport, key: Key, pixel: u32, sample: u32, last: usize) -> 
     for (k, y) in light.iter().enumerate() {
         let Some(seen) = sensor.project(t, &y.state) else { continue };
         let role = if k == 0 { Role::Emission } else { Role::Flux };
-        let value = y.through * t.toward(&y.state, &seen.eye, role).value * seen.importance;
+        let value = y.throughput * t.toward(&y.state, &seen.eye, role).value * seen.importance;
         if value != Rgb::ZERO && sensor.sees(t, &y.state) {
             find(&[], &light[..=k], Some((seen.eye, seen.density * share)), value * share);
         }

@@ -9,12 +9,12 @@ use exr::prelude::{
 };
 use fredholm::{
     report::{
+        contact_sheet::{self, Cell},
         decay::{self, Decay, Rate, RateKind, independent_ratios},
         exr as layers,
         html::{self, Plate},
         picture::{NON_FINITE, auto_gain, develop, gain_label, srgb},
         plot::{Curve, Figure, Look, Point},
-        sheet::{self, Cell},
         summary::{self, Bounds, Outcome, Radiosity, Summary, Verdict},
         table,
         typeset::Caption,
@@ -181,7 +181,7 @@ fn sheets_show_every_pixel_of_every_image() {
     let images: Vec<_> = (0..7).map(|i| ramp(w, h, 1.0 + i as f32)).collect();
     let cells: Vec<_> =
         images.iter().enumerate().map(|(i, pixels)| Cell { label: format!("T{i}"), pixels, gain: Some(0.1) }).collect();
-    let sheet = sheet::grid("seven", w, h, &cells, &caption()).unwrap();
+    let sheet = contact_sheet::grid("seven", w, h, &cells, &caption()).unwrap();
     assert_eq!(sheet.clipped, [0; 7]);
     // Two rows of four: more than three images wide, less than five.
     assert!((4 * w..5 * w).contains(&sheet.picture.width), "{}", sheet.picture.width);
@@ -197,15 +197,15 @@ fn sheets_show_every_pixel_of_every_image() {
     }
 
     // A small image is enlarged by a whole factor, and the strip lies below it.
-    let (single, gain) = sheet::single("T3", 16, 16, &ramp(16, 16, 0.05), None).unwrap();
+    let (single, gain) = contact_sheet::single("T3", 16, 16, &ramp(16, 16, 0.05), None).unwrap();
     assert_eq!((single.picture.width, gain), (48, 16.0));
     assert!(single.picture.height > 48);
     let codes = develop(16, 16, &ramp(16, 16, 0.05), gain).picture;
     for (i, pixel) in single.picture.pixels[..48 * 48].iter().enumerate() {
         assert_eq!(*pixel, codes.pixels[i / 48 / 3 * 16 + i % 48 / 3]);
     }
-    assert!(sheet::grid("none", w, h, &[], &caption()).is_err());
-    assert!(sheet::single("T0", 3, 3, &ramp(2, 2, 1.0), None).is_err());
+    assert!(contact_sheet::grid("none", w, h, &[], &caption()).is_err());
+    assert!(contact_sheet::single("T0", 3, 3, &ramp(2, 2, 1.0), None).is_err());
 }
 
 #[test]
@@ -341,7 +341,7 @@ fn full_summary() -> Summary {
         label: "prefix, mis".into(),
         functionals: vec![functional],
         cost,
-        unseen: vec![],
+        unsampled: vec![],
         doubts: vec![],
         undecided: None,
         variance: Default::default(),
@@ -501,7 +501,7 @@ fn tables_are_aligned_and_narrow() {
 fn page_is_self_contained_and_escapes() {
     let folder = tempfile::tempdir().unwrap();
     let (png, svg) = (folder.path().join("terms.png"), folder.path().join("decay.svg"));
-    sheet::single("T0", 20, 20, &ramp(20, 20, 1.0), None).unwrap().0.picture.write(&png).unwrap();
+    contact_sheet::single("T0", 20, 20, &ramp(20, 20, 1.0), None).unwrap().0.picture.write(&png).unwrap();
     let points = (0..4).map(|k| Point::exact(f64::from(k), 0.5f64.powi(k))).collect();
     let decay = Decay { surface: vec![curve(points)], ..Decay::default() };
     decay::draw(&decay, &caption()).unwrap().write(folder.path(), "decay").unwrap();

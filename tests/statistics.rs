@@ -53,7 +53,7 @@ fn simulated(rng: &mut Noise, design: Design, truth: impl Fn(usize, usize) -> f6
         label: "simulated".into(),
         functionals,
         cost: Cost::default(),
-        unseen: vec![],
+        unsampled: vec![],
         doubts: vec![],
         undecided: None,
         variance: Default::default(),

@@ -35,7 +35,7 @@ fn series(cv: f64) -> Series {
         label: "test".into(),
         functionals,
         cost: Cost::default(),
-        unseen: vec![],
+        unsampled: vec![],
         doubts: vec![],
         undecided: None,
         variance: Default::default(),

@@ -491,7 +491,7 @@ fn directions_are_rejected_in_199_of_200_runs() {
 #[test]
 #[ignore = "nightly: 200 runs of every member"]
 fn shares_are_rejected_in_199_of_200_runs() {
-    rejected_in_199_of_200_runs(common::open("shares_are_rejected_in_199_of_200_runs"), &zoo::shares::BUGS);
+    rejected_in_199_of_200_runs(common::open("shares_are_rejected_in_199_of_200_runs"), &zoo::mis_weights::BUGS);
 }
 
 #[test]

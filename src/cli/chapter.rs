@@ -26,7 +26,7 @@ pub struct Chapter {
 pub fn run(args: &Chapter) -> Result<Ending, Failure> {
     let Some(number) = args.number else {
         let lines: Vec<String> = CHAPTERS.iter().map(|(n, title, _)| format!("{n:>2}  {title}")).collect();
-        super::say(&lines.join("\n"))?;
+        super::print(&lines.join("\n"))?;
         return Ok(Ending::Ok);
     };
     let Some((_, _, run)) = CHAPTERS.iter().find(|c| c.0 == number) else {

@@ -1,7 +1,7 @@
 //! `fredholm compare A B`: two results, verdict per term, z map.
 
 use super::args::{fraction, probability};
-use super::{Ending, Failure, facts, output, write};
+use super::{Ending, Failure, notes, output, write};
 use clap::Args;
 use fredholm::report::{exr, summary, table, typeset::Caption, zmap};
 use fredholm::stats::{Criterion, compare, discretisation};
@@ -87,7 +87,7 @@ pub fn run(args: &Compare) -> Result<Ending, Failure> {
     output::remove_stale(&folder, &old, &record.files);
 
     if args.json {
-        super::say(&serde_json::to_string_pretty(&comparison)?)?;
+        super::print(&serde_json::to_string_pretty(&comparison)?)?;
     } else {
         let line = |name: char, path: &Path, world: &Series, s: &summary::Summary| {
             let (path, world) = (path.display(), &world.label);
@@ -97,11 +97,11 @@ pub fn run(args: &Compare) -> Result<Ending, Failure> {
         if a.1.command == b.1.command {
             head += "\nwarning: both were made by the same command with the same seed: equal bits prove nothing";
         }
-        let mut foot = facts::judgement(&comparison);
+        let mut foot = notes::judgement(&comparison);
         if let Some((from, why)) = &gap {
             foot += &format!("\nT{from} and everything longer: not supported, {why}");
         }
-        for doubt in facts::doubts([x, y].into_iter()) {
+        for doubt in notes::doubts([x, y].into_iter()) {
             foot += &format!("\nwarning: {doubt}");
         }
         if let Some((two, three)) = map {
@@ -114,7 +114,7 @@ pub fn run(args: &Compare) -> Result<Ending, Failure> {
             };
             foot += &format!("\n       {}", folder.join("z.png").display());
         }
-        super::say(&super::paragraphs(&[head, table::verdicts(&verdicts), foot]))?;
+        super::print(&super::paragraphs(&[head, table::verdicts(&verdicts), foot]))?;
     }
     Ok(if comparison.outcome == fredholm::stats::Outcome::Agrees && gap.is_none() {
         Ending::Ok

@@ -1,7 +1,7 @@
 //! `fredholm figure ID`: a registry of figures, each a recipe or a command that leaves data, pictures and a caption.
 
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, args, guard, output, solve};
+use super::{Ending, Failure, args, output, preflight, solve};
 use clap::{Args, Parser};
 use fredholm::estimator::Roulette;
 use fredholm::report::{stages as report, summary, typeset::Caption, write_atomically};
@@ -145,7 +145,7 @@ pub fn run(args: &Figure) -> Result<Ending, Failure> {
     if args.list {
         let widest = FIGURES.iter().map(|f| f.id().len()).max().unwrap_or(0);
         let lines: Vec<String> = FIGURES.iter().map(|f| format!("{:widest$}  {}", f.id(), f.title())).collect();
-        return super::say(&lines.join("\n")).map(|()| Ending::Ok);
+        return super::print(&lines.join("\n")).map(|()| Ending::Ok);
     }
     if args.id.is_none() && !args.all {
         let help = "`fredholm figure --list` names them, --all makes them all";
@@ -221,7 +221,7 @@ fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Endin
         path_roulette: end,
         ..Settings::default()
     };
-    guard::fits_in_memory(&settings, description.camera.size)?;
+    preflight::fits_in_memory(&settings, description.camera.size)?;
     let folder = output::folder(folder, recipe.id, &command, args.force)?;
     let progress = Progress::new(args.quiet, |_: &TermFilm| {});
     let grown = render_stages(&scene, recipe, &settings, &progress, stop_flag());
@@ -268,6 +268,6 @@ fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Endin
     let foot = "mean: what the samples say; mean shown: with everything above white cut off, as the screen does.\n\
                 The reference loses lamps and bright light, too; what an image loses beyond that is noise";
     let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
-    super::say(&super::paragraphs(&[head, format!("{}{foot}", report::table(&grown)), files]))?;
+    super::print(&super::paragraphs(&[head, format!("{}{foot}", report::table(&grown)), files]))?;
     Ok(if stop_flag().load(Ordering::Relaxed) { Ending::Interrupted } else { Ending::Ok })
 }

@@ -28,7 +28,7 @@ pub struct Info {
 pub fn run(args: &Info) -> Result<Ending, Failure> {
     let Some(name) = &args.scene else {
         let lines: Vec<String> = builtin::ALL.iter().map(|s| format!("{:15} {}", s.name, s.summary)).collect();
-        super::say(&lines.join("\n"))?;
+        super::print(&lines.join("\n"))?;
         return Ok(Ending::Ok);
     };
     let loaded = load::scene(name, &args.changes.options(None))?;
@@ -39,9 +39,9 @@ pub fn run(args: &Info) -> Result<Ending, Failure> {
     let scene = Scene::new(d);
     super::open::coplanar(&scene);
     if args.json {
-        super::say(&serde_json::to_string_pretty(&machine(d, &scene))?)?;
+        super::print(&serde_json::to_string_pretty(&machine(d, &scene))?)?;
     } else {
-        super::say(&people(d, &scene))?;
+        super::print(&people(d, &scene))?;
     }
     Ok(Ending::Ok)
 }
@@ -110,7 +110,7 @@ fn people(d: &Description, scene: &Scene) -> String {
         out += "  T is not closed: a ray that leaves the scene meets the sky, and the light it brings is E\n";
     }
     if let Some(matrix) = super::solve::coarse(d, scene)
-        && let Some(what) = super::facts::unlit(&matrix.unlit, d)
+        && let Some(what) = super::notes::unlit(&matrix.unlit, d)
     {
         let radius = matrix.spectral.each_ref().map(|s| format!("{:.3}", s.radius)).join(", ");
         out += &format!(

@@ -10,12 +10,12 @@ mod chapter;
 mod check;
 mod compare;
 mod diagnose;
-mod facts;
 mod figure;
-mod guard;
 mod info;
+mod notes;
 mod open;
 mod output;
+mod preflight;
 mod progress;
 mod quiz;
 mod radiosity;
@@ -60,7 +60,7 @@ pub enum Ending {
 }
 
 /// Prints to stdout, with a final newline. A reader that has seen enough (`| head`) is no error.
-pub fn say(text: &str) -> Result<(), Failure> {
+pub fn print(text: &str) -> Result<(), Failure> {
     use std::io::{ErrorKind, Write};
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {

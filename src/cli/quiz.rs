@@ -2,7 +2,7 @@
 
 use super::progress::{Progress, stop_flag};
 use super::zoo::{Zoo, brief, introduction, settings, whole};
-use super::{Ending, Failure, paragraphs, say};
+use super::{Ending, Failure, paragraphs, print};
 use fredholm::math::{Key, Purpose, Rng};
 use fredholm::scene::Scene;
 use fredholm::worlds::sampled;
@@ -20,7 +20,7 @@ pub fn run(args: &Zoo) -> Result<Ending, Failure> {
     let (settings, progress) = (settings(args, 64), Progress::new(args.quiet, |_| {}));
     let order = shuffled(args.seed, 0, zoo::all());
     let (mut right, mut answered, mut asked) = (0, 0, 0);
-    say("Which mistake was made? rₖ = Tₖ of the suspect / Tₖ of the right renderer. Answer with a number.")?;
+    print("Which mistake was made? rₖ = Tₖ of the suspect / Tₖ of the right renderer. Answer with a number.")?;
     for (round, &bug) in order.iter().cycle().take(args.rounds as usize).enumerate() {
         let scene = Scene::new(&bug.exposed_by.load(args.size)?);
         let truth = sampled::terms(&scene, sampled::Estimator::Prefix, &settings, &progress, stop_flag());
@@ -41,7 +41,7 @@ pub fn run(args: &Zoo) -> Result<Ending, Failure> {
         let named: Vec<String> =
             choices.iter().enumerate().map(|(i, b)| format!("  {}  {}: {}", i + 1, b.name, b.what)).collect();
         let head = format!("{} of {}, scene {}", round + 1, args.rounds, bug.exposed_by.label);
-        say(&format!("\n{}", paragraphs(&[format!("{head}\n{}", table.join("\n")), named.join("\n")])))?;
+        print(&format!("\n{}", paragraphs(&[format!("{head}\n{}", table.join("\n")), named.join("\n")])))?;
         asked += 1;
 
         let verdict = match answer(&mut lines)? {
@@ -53,9 +53,9 @@ pub fn run(args: &Zoo) -> Result<Ending, Failure> {
                 if hit { "right".into() } else { "no".to_string() }
             }
         };
-        say(&format!("\n{verdict}: it is\n{}", introduction(bug)))?;
+        print(&format!("\n{verdict}: it is\n{}", introduction(bug)))?;
     }
-    say(&format!("\n{right} of {answered} right, {asked} asked"))?;
+    print(&format!("\n{right} of {answered} right, {asked} asked"))?;
     Ok(Ending::Ok)
 }
 

@@ -2,7 +2,7 @@
 //! the best one found.
 
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, args, guard, output, solve, sweep};
+use super::{Ending, Failure, args, output, preflight, solve, sweep};
 use fredholm::estimator::{self, Technique};
 use fredholm::report::roulette::{self as rows, Row};
 use fredholm::report::typeset::Caption;
@@ -98,8 +98,8 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
         sampling: args.sampling,
         ..Settings::default()
     };
-    guard::light_is_seen(&scene, &[fredholm::worlds::sampled::Estimator::Prefix], &settings, &[])?;
-    guard::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
+    preflight::light_is_seen(&scene, &[fredholm::worlds::sampled::Estimator::Prefix], &settings, &[])?;
+    preflight::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
     let name = format!("{}-roulette", description.name);
     let folder = output::folder(args.shared.out.as_deref(), &name, &command, args.shared.force)?;
     let progress = Progress::new(args.shared.quiet, |_| {});
@@ -170,7 +170,7 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
     let warnings = warnings(&doubts, &recorded);
     if args.shared.json {
         warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-        super::say(&serde_json::to_string_pretty(&record)?)?;
+        super::print(&serde_json::to_string_pretty(&record)?)?;
     } else {
         let [w, h] = description.camera.size;
         let head = format!(
@@ -187,7 +187,7 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
         let found = if args.optimise { gains(&all, best.as_ref()) } else { String::new() };
         let warned = warnings.iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n");
         let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
-        super::say(&super::paragraphs(&[head, rows::table(&all), found, warned, files]))?;
+        super::print(&super::paragraphs(&[head, rows::table(&all), found, warned, files]))?;
     }
     // a variance that cannot be measured contradicts nothing
     let told = all.iter().filter(|r| doubts.iter().all(|d| d.0 != r.name));

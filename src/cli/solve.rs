@@ -3,7 +3,7 @@
 use super::args::{EstimatorName, FactorsName, GuideName, Run, Schedule, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::radiosity::Export;
-use super::{Ending, Failure, facts, guard, output, write};
+use super::{Ending, Failure, notes, output, preflight, write};
 use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::math::Points;
@@ -15,9 +15,9 @@ use fredholm::stats::{Criterion, compare, discretisation};
 use fredholm::terms::functional::Replicates;
 use fredholm::terms::{Recorded, Series, Variance};
 use fredholm::worlds::discrete::{self, Discrete, Matrix, MatrixError};
+use fredholm::worlds::discretisation::{Difference, Factors};
 use fredholm::worlds::guided::{self, Prepared};
 use fredholm::worlds::pyramid::{self, Strategy};
-use fredholm::worlds::realisation::{Difference, Factors};
 use fredholm::worlds::roulette::Radii;
 use fredholm::worlds::sampled::{self, Estimator, Sampled};
 use fredholm::worlds::{Settings, Unobserved, roulette, surface};
@@ -133,14 +133,14 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         roulette: asked.clone().unwrap_or(fallback.clone().after(max_bounces)),
         path_roulette: asked.unwrap_or(fallback),
         patches: patches as usize,
-        factors: guard::factors(run, patches)?,
+        factors: preflight::factors(run, patches)?,
         read_patches: run.read_patches,
         grading: run.grading,
     };
     let mut worlds: Vec<WorldName> = if run.worlds.is_empty() { default.worlds.to_vec() } else { run.worlds.clone() };
     let by_name = !run.worlds.is_empty() || default.worlds.len() == 1;
-    guard::suits_a_matrix(&description, &mut worlds, by_name)?;
-    guard::fits_in_a_matrix(&scene, settings.factors, &mut worlds, by_name)?;
+    preflight::suits_a_matrix(&description, &mut worlds, by_name)?;
+    preflight::fits_in_a_matrix(&scene, settings.factors, &mut worlds, by_name)?;
     let estimators = match (
         worlds.contains(&WorldName::Terms),
         default.both_estimators,
@@ -157,21 +157,21 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         )));
     }
     for &estimator in &estimators {
-        guard::tree_can_be_walked(estimator, &settings, description.camera.size)?;
+        preflight::tree_can_be_walked(estimator, &settings, description.camera.size)?;
     }
     if run.strategies && estimators != [Estimator::Bidirectional] {
         let help = "add --estimator bidirectional";
         return Err(Failure::Usage(format!("error: only the bidirectional estimator has strategies\nhelp: {help}")));
     }
     if run.guide != GuideName::Bsdf {
-        guard::can_be_guided(&scene, &estimators, &settings, &worlds)?;
+        preflight::can_be_guided(&scene, &estimators, &settings, &worlds)?;
     }
-    guard::light_is_seen(&scene, &estimators, &settings, &worlds)?;
-    guard::fits_in_memory(&settings, description.camera.size)?;
+    preflight::light_is_seen(&scene, &estimators, &settings, &worlds)?;
+    preflight::fits_in_memory(&settings, description.camera.size)?;
     if worlds.contains(&WorldName::Radiosity) {
-        guard::rows_fit_in_memory(&scene, &settings)?;
+        preflight::rows_fit_in_memory(&scene, &settings)?;
     }
-    guard::light_is_lost(&scene, &settings, &worlds)?;
+    preflight::light_is_lost(&scene, &settings, &worlds)?;
     if default.export == Some(Export::Matrix) && settings.factors != Factors::Dense {
         let help = "use --factors dense (up to 20000 patches), or --export mesh";
         return Err(Failure::Usage(format!("error: stored rays have no matrix to write\nhelp: {help}")));
@@ -278,10 +278,10 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     found.verdicts = verdicts(&found);
     let summary = write::all(&found, default.export)?;
     if run.shared.json {
-        facts::warnings(&found).iter().for_each(|w| super::note(&format!("warning: {w}")));
-        super::say(&serde_json::to_string_pretty(&summary)?)?;
+        notes::warnings(&found).iter().for_each(|w| super::note(&format!("warning: {w}")));
+        super::print(&serde_json::to_string_pretty(&summary)?)?;
     } else {
-        super::say(&people(&found, &summary, run.verbose))?;
+        super::print(&people(&found, &summary, run.verbose))?;
     }
     if stopped() {
         return Ok(Ending::Interrupted);
@@ -353,7 +353,7 @@ fn aside(settings: &Settings) -> Option<u32> {
 /// How far stored rays on the same patches are from the matrix.
 fn apart(run: &Run, found: &Found, progress: &Progress) -> Result<Option<Difference>, Failure> {
     let Some(r) = &found.radiosity else { return Ok(None) };
-    match r.matrix.against_rays(&found.scene, guard::rays(run), found.settings.seed, progress, stop_flag()) {
+    match r.matrix.against_rays(&found.scene, preflight::rays(run), found.settings.seed, progress, stop_flag()) {
         Ok(difference) => Ok(Some(difference)),
         Err(MatrixError::Stopped) => Ok(None),
         Err(e) => Err(e.into()),
@@ -435,7 +435,7 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     }
     if let Some(guide) = &found.guide {
         head += "\n";
-        head += &facts::guide(guide);
+        head += &notes::guide(guide);
     }
     let mut blocks = vec![head];
     let world = |s: &Sampled, rays: &[u64]| table::series(&s.series.label, s.series.image(), rays);
@@ -445,20 +445,20 @@ fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
     }
     blocks.extend(found.path.iter().map(|p| world(p, &[])));
     blocks.extend(found.radiosity.iter().map(|r| world(&r.fine, &[])));
-    let mut lines: Vec<String> = found.radiosity.iter().map(|r| facts::matrix_facts(r, verbose)).collect();
-    lines.extend(found.radiosity.as_ref().and_then(|r| facts::unlit(&r.matrix.unlit, &found.description)));
-    lines.extend(found.by_rays.iter().map(facts::difference));
-    lines.extend(facts::decay_facts(found));
-    lines.extend(facts::orders(&found.orders));
+    let mut lines: Vec<String> = found.radiosity.iter().map(|r| notes::matrix_facts(r, verbose)).collect();
+    lines.extend(found.radiosity.as_ref().and_then(|r| notes::unlit(&r.matrix.unlit, &found.description)));
+    lines.extend(found.by_rays.iter().map(notes::difference));
+    lines.extend(notes::decay_facts(found));
+    lines.extend(notes::orders(&found.orders));
     blocks.push(lines.join("\n"));
-    blocks.extend(facts::extrapolated(found));
+    blocks.extend(notes::extrapolated(found));
     blocks.push(fredholm::report::pixel_errors::words(&summary.pixel_errors));
     if !found.verdicts.is_empty() {
         blocks.push(table::verdicts(&found.verdicts));
         let why = found.terms.first().and_then(|t| t.series.undecided.as_deref());
-        blocks.extend(why.map(facts::undecided));
+        blocks.extend(why.map(notes::undecided));
     }
-    blocks.push(facts::warnings(found).iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n"));
+    blocks.push(notes::warnings(found).iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n"));
     blocks.push(format!(
         "{} files after {:.1} s; open {}",
         summary.files.len(),

@@ -5,7 +5,7 @@
 
 use super::args::{self, EstimatorName, Over, WorldName};
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, guard, output, solve};
+use super::{Ending, Failure, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::report::sweep::{self, Row, Sweep};
@@ -45,10 +45,10 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let mut cases = cases(args)?;
     let Opened { command, description, scene, hash } = open::run(run)?;
     for case in &cases {
-        guard::tree_can_be_walked(case.estimator, &case.settings, description.camera.size)?;
-        guard::fits_in_memory(&case.settings, description.camera.size)?;
-        guard::light_is_seen(&scene, &[case.estimator], &case.settings, &[])?;
-        guard::light_is_lost(&scene, &case.settings, &[WorldName::Terms])?;
+        preflight::tree_can_be_walked(case.estimator, &case.settings, description.camera.size)?;
+        preflight::fits_in_memory(&case.settings, description.camera.size)?;
+        preflight::light_is_seen(&scene, &[case.estimator], &case.settings, &[])?;
+        preflight::light_is_lost(&scene, &case.settings, &[WorldName::Terms])?;
     }
     let folder =
         output::folder(run.shared.out.as_deref(), &format!("{}-{over}", description.name), &command, run.shared.force)?;
@@ -62,7 +62,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     if args.equal_rays {
         share_rays(&mut cases, &scene);
         for case in &cases {
-            guard::tree_can_be_walked(case.estimator, &case.settings, description.camera.size)?;
+            preflight::tree_can_be_walked(case.estimator, &case.settings, description.camera.size)?;
         }
     }
 
@@ -103,9 +103,9 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     record.seconds = started.elapsed().as_secs_f64();
     write(&folder, &sweep, &mut record)?;
     if run.shared.json {
-        super::say(&serde_json::to_string_pretty(&record)?)?;
+        super::print(&serde_json::to_string_pretty(&record)?)?;
     } else {
-        super::say(&people(&sweep, &record, &description, &cases[0].settings, &folder))?;
+        super::print(&people(&sweep, &record, &description, &cases[0].settings, &folder))?;
     }
     Ok(if stopped { Ending::Interrupted } else { Ending::Ok })
 }

@@ -1,13 +1,13 @@
 //! `fredholm sweep [SCENE] --over patches`: the matrix on finer and finer meshes against the truth from rays.
 
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, args, guard, output, solve};
+use super::{Ending, Failure, args, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::report::typeset::Caption;
 use fredholm::report::{drift, refine as report, summary, write_atomically};
 use fredholm::terms::TermFilm;
-use fredholm::worlds::{Settings, realisation::Factors, refine};
+use fredholm::worlds::{Settings, discretisation::Factors, refine};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -35,8 +35,8 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     sizes.dedup();
     let Opened { command, description, scene, hash } = open::run(run)?;
     let mut worlds = vec![args::WorldName::Radiosity];
-    guard::suits_a_matrix(&description, &mut worlds, true)?;
-    guard::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
+    preflight::suits_a_matrix(&description, &mut worlds, true)?;
+    preflight::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
     let max_bounces = usize::from(run.max_bounces.unwrap_or(8));
     let settings = Settings {
         spp: run.spp.unwrap_or(256),
@@ -50,8 +50,8 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         grading: run.grading,
         ..Settings::default()
     };
-    guard::fits_in_memory(&settings, description.camera.size)?;
-    guard::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
+    preflight::fits_in_memory(&settings, description.camera.size)?;
+    preflight::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
     let folder = output::folder(
         run.shared.out.as_deref(),
         &format!("{}-patches", description.name),
@@ -104,7 +104,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     summary::write(&folder.join("summary.json"), &record)?;
     output::remove_stale(&folder, &old, &record.files);
     if run.shared.json {
-        super::say(&serde_json::to_string_pretty(&record)?)?;
+        super::print(&serde_json::to_string_pretty(&record)?)?;
     } else {
         let head = format!(
             "{command}\nseed {}, {w}×{h} pixels, {} spp for the truth and for every mesh, k ≤ {max_bounces}",
@@ -118,7 +118,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         let mut blocks = vec![head, report::table(&found, max_bounces), foot];
         blocks.extend(channel.map(|c| drift::table(&found, c)));
         blocks.push(files);
-        super::say(&super::paragraphs(&blocks))?;
+        super::print(&super::paragraphs(&blocks))?;
     }
     Ok(if stopped { Ending::Interrupted } else { Ending::Ok })
 }

@@ -3,7 +3,7 @@
 use super::args::{self, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::sweep::usage;
-use super::{Ending, Failure, guard, output, solve};
+use super::{Ending, Failure, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::report::{split as report, summary, typeset::Caption, write_atomically};
@@ -35,9 +35,9 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         return Err(usage(&format!("{spp} samples are fewer than the 16 replicates"), "choose at least --spp 16"));
     }
     let Opened { command, description, scene, hash } = open::run(run)?;
-    guard::fits_in_memory(&settings, description.camera.size)?;
-    guard::light_is_seen(&scene, &[Estimator::Prefix], &settings, &[])?;
-    guard::light_is_lost(&scene, &settings, &[WorldName::Terms])?;
+    preflight::fits_in_memory(&settings, description.camera.size)?;
+    preflight::light_is_seen(&scene, &[Estimator::Prefix], &settings, &[])?;
+    preflight::light_is_lost(&scene, &settings, &[WorldName::Terms])?;
     let folder =
         output::folder(run.shared.out.as_deref(), &format!("{}-split", description.name), &command, run.shared.force)?;
     let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
@@ -75,13 +75,13 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     summary::write(&folder.join("summary.json"), &record)?;
     output::remove_stale(&folder, &old, &record.files);
     if run.shared.json {
-        return super::say(&serde_json::to_string_pretty(&record)?).map(|()| Ending::Ok);
+        return super::print(&serde_json::to_string_pretty(&record)?).map(|()| Ending::Ok);
     }
     let head = format!(
         "{}\nseed {}, {}×{} pixels, k ≤ {max_bounces}, technique {}, {} threads; cost per pixel",
         record.command, run.seed, record.width, record.height, settings.technique, record.threads
     );
     let files = format!("written to {}:\n{}", folder.display(), record.files.join(", "));
-    super::say(&super::paragraphs(&[head, report::table(&study), files]))?;
+    super::print(&super::paragraphs(&[head, report::table(&study), files]))?;
     Ok(Ending::Ok)
 }

@@ -4,7 +4,7 @@
 use super::args::{self, EstimatorName, Schedule, WorldName};
 use super::progress::{Progress, stop_flag};
 use super::sweep::{number, usage, values};
-use super::{Ending, Failure, guard, output, solve};
+use super::{Ending, Failure, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
 use fredholm::estimator::{Roulette, Technique};
@@ -15,10 +15,10 @@ use fredholm::report::{exr, summary, write_atomically};
 use fredholm::scene::{Description, Scene};
 use fredholm::stats::Evidence;
 use fredholm::terms::{TermFilm, TermImage};
-use fredholm::worlds::falling::{Recorder, Reference};
+use fredholm::worlds::convergence::{Recorder, Reference};
 use fredholm::worlds::sampled::{self, Estimator};
 use fredholm::worlds::stages::reference_seed;
-use fredholm::worlds::{Observer, Settings, roulette, unseen::unseen};
+use fredholm::worlds::{Observer, Settings, roulette, unsampled::unsampled};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -203,10 +203,10 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     for case in &cases {
         let of_terms: Vec<Estimator> = case.estimator.into_iter().collect();
         let world = if of_terms.is_empty() { WorldName::Path } else { WorldName::Terms };
-        of_terms.iter().try_for_each(|&e| guard::tree_can_be_walked(e, &case.settings, description.camera.size))?;
-        guard::fits_in_memory(&case.settings, description.camera.size)?;
-        guard::light_is_seen(&scene, &of_terms, &case.settings, &[world])?;
-        guard::light_is_lost(&scene, &case.settings, &[world])?;
+        of_terms.iter().try_for_each(|&e| preflight::tree_can_be_walked(e, &case.settings, description.camera.size))?;
+        preflight::fits_in_memory(&case.settings, description.camera.size)?;
+        preflight::light_is_seen(&scene, &of_terms, &case.settings, &[world])?;
+        preflight::light_is_lost(&scene, &case.settings, &[world])?;
     }
     let planned = plan_reference(args, &scene, &description, &cases[0].settings)?;
     let folder =
@@ -272,9 +272,9 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     };
     write(&folder, &falls, &mut record)?;
     if run.shared.json {
-        super::say(&serde_json::to_string_pretty(&record)?)?;
+        super::print(&serde_json::to_string_pretty(&record)?)?;
     } else {
-        super::say(&people(&falls, &record, reference.as_ref(), &folder))?;
+        super::print(&people(&falls, &record, reference.as_ref(), &folder))?;
     }
     Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })
 }
@@ -345,9 +345,9 @@ fn plan_reference(
             roulette,
             ..settings.clone()
         };
-        guard::light_is_lost(scene, &settings, &[WorldName::Terms])?;
+        preflight::light_is_lost(scene, &settings, &[WorldName::Terms])?;
         let all = [Estimator::Prefix, Estimator::Bidirectional, Estimator::Light];
-        let sees = all.into_iter().find(|&e| unseen(scene, Some(e), settings.technique).is_empty());
+        let sees = all.into_iter().find(|&e| unsampled(scene, Some(e), settings.technique).is_empty());
         let Some(estimator) = sees else {
             return Err(usage("no estimator sees all light of this scene", "leave --reference out"));
         };

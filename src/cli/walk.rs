@@ -1,7 +1,7 @@
 //! `fredholm walk [SCENE]`: the estimators on the radiosity matrix, where the terms are known to rounding.
 
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, args, facts, guard, output};
+use super::{Ending, Failure, args, notes, output, preflight};
 use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
 use fredholm::estimator::{Roulette, Technique};
@@ -13,7 +13,7 @@ use fredholm::stats::{Criterion, Outcome, compare};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::{self, Matrix, MatrixError};
-use fredholm::worlds::realisation::Factors;
+use fredholm::worlds::discretisation::Factors;
 use fredholm::worlds::sampled::Estimator;
 use fredholm::worlds::walk::{self, Walked, Walker};
 use fredholm::worlds::zero_variance::{self, ZeroVariance};
@@ -98,8 +98,8 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
     open::threads(args.shared.threads)?;
     let Opened { command, description, scene, hash } = open::scene(&args.scene, &args.shared.changes, None)?;
     let mut worlds = vec![args::WorldName::Radiosity];
-    guard::suits_a_matrix(&description, &mut worlds, true)?;
-    guard::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
+    preflight::suits_a_matrix(&description, &mut worlds, true)?;
+    preflight::fits_in_a_matrix(&scene, Factors::Dense, &mut worlds, true)?;
     let walker = walker(args);
     refuse_lost_light(&description, walker)?;
 
@@ -116,7 +116,7 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
         ..Settings::default()
     };
     if let Some(Walker::Terms(estimator)) = walker {
-        guard::tree_can_be_walked(estimator, &settings, [args.patches, 1])?;
+        preflight::tree_can_be_walked(estimator, &settings, [args.patches, 1])?;
     }
     let folder =
         output::folder(args.shared.out.as_deref(), &format!("{}-walk", description.name), &command, args.shared.force)?;
@@ -178,10 +178,10 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
     summary::write(&folder.join("summary.json"), &record)?;
     output::remove_stale(&folder, &old, &record.files);
     if args.shared.json {
-        super::say(&serde_json::to_string_pretty(&record)?)?;
+        super::print(&serde_json::to_string_pretty(&record)?)?;
     } else {
         let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
-        super::say(&super::paragraphs(&[head, text, files]))?;
+        super::print(&super::paragraphs(&[head, text, files]))?;
     }
     Ok(match (stop_flag().load(Ordering::Relaxed), failed) {
         (true, _) => Ending::Interrupted,
@@ -195,7 +195,7 @@ fn beside_the_powers(walked: &Walked, record: &mut summary::Summary) -> (String,
     let comparison = compare(&walked.sampled.series, &walked.exact, &Criterion::default(), &[]);
     record.verdicts = summary::verdicts("walk − powers", &comparison);
     record.series = vec![walked.sampled.series.clone(), walked.exact.clone()];
-    let text = [report::table(walked), table::verdicts(&record.verdicts), facts::judgement(&comparison)];
+    let text = [report::table(walked), table::verdicts(&record.verdicts), notes::judgement(&comparison)];
     (super::paragraphs(&text), comparison.outcome == Outcome::Differs)
 }
 

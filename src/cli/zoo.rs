@@ -1,11 +1,11 @@
 //! `fredholm zoo`: estimators that are wrong on purpose, each beside the right one.
 
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, output, paragraphs, quiz, say};
+use super::{Ending, Failure, output, paragraphs, print, quiz};
 use clap::Args;
+use fredholm::report::contact_sheet::{self, Cell};
 use fredholm::report::picture::auto_gain_beside_lamps;
 use fredholm::report::plot::Point;
-use fredholm::report::sheet::{self, Cell};
 use fredholm::report::signature::{self, Signature};
 use fredholm::report::table::significant;
 use fredholm::report::typeset::{Caption, superscript};
@@ -71,14 +71,14 @@ pub fn run(args: &Zoo) -> Result<Ending, Failure> {
     match &args.name {
         _ if args.quiz => quiz::run(args),
         None if args.list => {
-            say(&list())?;
+            print(&list())?;
             Ok(Ending::Ok)
         }
         None => everyone(args),
         Some(name) => {
             let bug = zoo::find(name).ok_or_else(|| unknown(name))?;
             if args.list {
-                say(&introduction(bug))?;
+                print(&introduction(bug))?;
                 return Ok(Ending::Ok);
             }
             one(args, bug)
@@ -212,7 +212,7 @@ fn everyone(args: &Zoo) -> Result<Ending, Failure> {
         "rₖ = Tₖ wrong / Tₖ right, mean of the image and the channels; the last digits' 95 % interval in brackets";
     let left =
         format!("{}: NAME.exr seen in cornell, SCENE/NAME.exr seen elsewhere, correct.exr, {MARK}", folder.display());
-    say(&paragraphs(&[table.join("\n"), note.into(), left]))?;
+    print(&paragraphs(&[table.join("\n"), note.into(), left]))?;
     Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })
 }
 
@@ -309,7 +309,7 @@ fn one(args: &Zoo, bug: &'static Bug) -> Result<Ending, Failure> {
         folder.display(),
         n = bug.name
     ));
-    say(&paragraphs(&blocks))?;
+    print(&paragraphs(&blocks))?;
     Ok(if stop_flag().load(Ordering::Relaxed) { Ending::Interrupted } else { Ending::Ok })
 }
 
@@ -362,7 +362,7 @@ fn pictures(
     wrong: &Sampled,
     right: &Sampled,
     caption: &Caption,
-) -> Result<sheet::Sheet, ReportError> {
+) -> Result<contact_sheet::Sheet, ReportError> {
     let black = vec![[0.0; 3]; (w * h) as usize];
     let emitted = right.terms.first().map_or(&black, |t| &t.mean);
     let mut shown = vec![("whole".to_string(), &right.total.mean, &wrong.total.mean)];
@@ -386,5 +386,5 @@ fn pictures(
         cells.push(Cell { label: format!("{name}, wrong"), pixels: b, gain });
         cells.push(Cell { label: "difference: + red, − blue".into(), pixels: difference, gain });
     }
-    sheet::grid_of(3, &format!("{}: {}", bug.name, bug.what), w as usize, h as usize, &cells, caption)
+    contact_sheet::grid_of(3, &format!("{}: {}", bug.name, bug.what), w as usize, h as usize, &cells, caption)
 }

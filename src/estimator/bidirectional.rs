@@ -88,7 +88,7 @@ impl Bidirectional {
             let e = t.emission(&x.state);
             if e != Rgb::ZERO {
                 let weight = PathDensities::new(t, &eye[..=k], &[], None).weight(squared);
-                found(Found { s: 0, k, pixel, value: x.through * e, weight });
+                found(Found { s: 0, k, pixel, value: x.throughput * e, weight });
             }
         }
         // s = 1: it connects to a light, chosen anew
@@ -97,7 +97,7 @@ impl Bidirectional {
             if let Some(c) = t.connect(&x.state, &mut eye_numbers(v, Purpose::Connect)) {
                 let y = Node::new(c.state, Rgb::ONE, t.emit_density(&c.state));
                 let weight = PathDensities::new(t, &eye[..=v], std::slice::from_ref(&y), None).weight(squared);
-                found(Found { s: 1, k: v + 1, pixel, value: x.through * c.weight * t.emission(&c.state), weight });
+                found(Found { s: 1, k: v + 1, pixel, value: x.throughput * c.weight * t.emission(&c.state), weight });
             }
         }
         // s = 2 … k: the walks are linked
@@ -106,7 +106,7 @@ impl Bidirectional {
                 let k = i + j + 1;
                 let here = t.toward(&x.state, &y.state, Role::Radiance).value;
                 let there = t.toward(&y.state, &x.state, Role::Flux).value;
-                let value = x.through * here * there * y.through;
+                let value = x.throughput * here * there * y.throughput;
                 if value != Rgb::ZERO {
                     rays(k);
                     let link = t.link(&x.state, &y.state);
@@ -121,7 +121,7 @@ impl Bidirectional {
         for (k, y) in light.iter().enumerate() {
             let Some(seen) = sensor.project(t, &y.state) else { continue };
             let role = if k == 0 { Role::Emission } else { Role::Flux };
-            let value = y.through * t.toward(&y.state, &seen.eye, role).value * seen.importance;
+            let value = y.throughput * t.toward(&y.state, &seen.eye, role).value * seen.importance;
             if value != Rgb::ZERO {
                 rays(k);
                 if sensor.sees(t, &y.state) {

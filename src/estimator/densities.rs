@@ -23,7 +23,7 @@ pub struct Node<S> {
     /// Where, asked from its predecessor.
     pub state: S,
     /// Throughput before this vertex scatters.
-    pub through: Rgb,
+    pub throughput: Rgb,
     /// Density with which the walk came here.
     pub forward: f32,
     /// Density with which a walk from the other end would come here.
@@ -34,8 +34,8 @@ pub struct Node<S> {
 
 impl<S> Node<S> {
     /// The start of a walk.
-    pub fn new(state: S, through: Rgb, forward: f32) -> Self {
-        Self { state, through, forward, reverse: 0.0, delta: None }
+    pub fn new(state: S, throughput: Rgb, forward: f32) -> Self {
+        Self { state, throughput, forward, reverse: 0.0, delta: None }
     }
 }
 
@@ -51,7 +51,7 @@ pub fn walk<T: Adjoint>(
 ) {
     let (role, other) = opposite(first);
     for v in 0..last {
-        let Node { state, through, .. } = nodes[v];
+        let Node { state, throughput, .. } = nodes[v];
         rays(v + 1);
         let Some(step) = t.walk(&state, if v == 0 { first } else { role }, &mut numbers(v)) else { break };
         nodes[v].delta = step.delta;
@@ -62,7 +62,7 @@ pub fn walk<T: Adjoint>(
                 None => t.density(&step.state, &state, &before, other),
             };
         }
-        nodes.push(Node::new(step.state, through * step.weight, step.density));
+        nodes.push(Node::new(step.state, throughput * step.weight, step.density));
     }
 }
 

@@ -86,7 +86,7 @@ impl<'s> TermEstimator<SceneTransport<'s>> for Gather<'_> {
                     _ if self.read_patches || tail == 1 => self.tail[j],
                     _ => self.tail[j] + self.terms[tail - 1][j],
                 });
-                value.set(i, paths.through.get(i) * radiance.as_vec3());
+                value.set(i, paths.throughput.get(i) * radiance.as_vec3());
             }
             sink.add(slot, &paths.pixel[..paths.n], &paths.sample[..paths.n], &value);
         }

@@ -6,11 +6,11 @@
 //! ```
 //!
 //! y_0 is where light starts and S there is its emission, so that k = 0 is the light seen directly. Loop invariant: before
-//! the step at vertex v, every term k ≤ v has been splatted, and `through` is β_v.
+//! the step at vertex v, every term k ≤ v has been splatted, and `throughput` is β_v.
 //!
 //! There are as many particles as there are camera paths, one for each (pixel, sample), and each may add to any pixel:
 //! a splat is divided by the number of pixels, and errors come from whole replicates. What the eye sees in a mirror or
-//! through glass no particle can reach, because no connection to the eye passes a delta vertex there: `worlds::unseen`.
+//! through glass no particle can reach, because no connection to the eye passes a delta vertex there: `worlds::unsampled`.
 //! Reference: Arvo, *Backward Ray Tracing* (1986); Dutré, Lafortune, Willems, *Monte Carlo Light Tracing* (1993).
 
 use super::{Batch, Paths, Plan, TermEstimator, TermSink};
@@ -37,7 +37,7 @@ impl LightTracer {
         let Plan { max_bounces, ref roulette, .. } = self.0;
         let numbers = |vertex: usize, purpose: Purpose| Rng::at(key, pixel, sample, vertex, purpose);
         let Some((mut y, density)) = t.emit(&mut numbers(0, Purpose::Start)) else { return };
-        let (mut through, mut relative, mut role) = (Rgb::splat(1.0 / density), t.lit(), Role::Emission);
+        let (mut throughput, mut relative, mut role) = (Rgb::splat(1.0 / density), t.lit(), Role::Emission);
         for v in 0.. {
             // term v, seen by the eye
             let slot = v.min(max_bounces + 1);
@@ -46,7 +46,7 @@ impl LightTracer {
                 if value != Rgb::ZERO {
                     rays(slot);
                     if sensor.sees(t, &y) {
-                        splat(slot, seen.pixel, through * value * seen.importance);
+                        splat(slot, seen.pixel, throughput * value * seen.importance);
                     }
                 }
             }
@@ -59,7 +59,7 @@ impl LightTracer {
                 if numbers(v, Purpose::Roulette).one() < q {
                     break;
                 }
-                (through, relative) = (through / (1.0 - q), relative / (1.0 - q));
+                (throughput, relative) = (throughput / (1.0 - q), relative / (1.0 - q));
             }
             // y_v → y_{v+1}
             rays((v + 1).min(max_bounces + 1));
@@ -67,7 +67,7 @@ impl LightTracer {
             if role == Role::Flux {
                 relative *= step.weight;
             }
-            (through, y, role) = (through * step.weight, step.state, Role::Flux);
+            (throughput, y, role) = (throughput * step.weight, step.state, Role::Flux);
         }
     }
 }

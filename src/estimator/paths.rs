@@ -3,7 +3,7 @@
 //! | notation | meaning | place |
 //! |---|---|---|
 //! | x_v | state at vertex v | `state` |
-//! | α | throughput: the product of the weights so far | `through` |
+//! | α | throughput: the product of the weights so far | `throughput` |
 //! | (pixel, sample) | the path's name, and its address for random numbers | `pixel`, `sample` |
 //!
 //! Paths that end are compacted away; the order of those that stay never changes, so sums do not depend on the wave size.
@@ -47,7 +47,7 @@ pub struct Paths<W> {
     /// Their states.
     pub state: W,
     /// Their throughputs α.
-    pub through: Columns,
+    pub throughput: Columns,
     /// Their pixels.
     pub pixel: Vec<u32>,
     /// Their sample numbers.
@@ -73,7 +73,7 @@ impl<W> Paths<W> {
             // whole packets, so that batched methods may run past the end
             let n = n.next_multiple_of(64);
             self.state.resize(n);
-            (self.through, self.samples) = (Columns::new(n), Samples::new(n));
+            (self.throughput, self.samples) = (Columns::new(n), Samples::new(n));
             (self.pixel, self.sample) = (vec![0; n], vec![0; n]);
             (self.expected, self.siblings) = (vec![0.0; n], vec![1; n]);
         }
@@ -93,7 +93,7 @@ impl<W> Paths<W> {
         }
         let streams = streams(batch.key, &self.pixel[..self.n], &self.sample[..self.n], 0, Purpose::Start);
         sensor.start_wave(t, &mut self.state, streams, &mut self.alive);
-        self.through.fill(self.n, t.lit());
+        self.throughput.fill(self.n, t.lit());
         self.siblings.fill(1);
         self.compact();
         for i in 0..self.n {
@@ -114,7 +114,7 @@ impl<W> Paths<W> {
         self.siblings[..self.n].copy_from_slice(&parents.siblings[..self.n]);
         for i in 0..self.n {
             self.state.set(i, parents.state.get(i));
-            self.through.set(i, parents.through.get(i) * share);
+            self.throughput.set(i, parents.throughput.get(i) * share);
         }
     }
 
@@ -139,7 +139,7 @@ impl<W> Paths<W> {
         if let Some(key) = self.key {
             let streams = streams(key, &self.pixel[..self.n], &self.sample[..self.n], v, Purpose::Scatter);
             t.scatter_wave(&mut self.state, streams, &mut self.samples, &mut self.alive);
-            self.through.multiply(&self.samples.value, self.n);
+            self.throughput.multiply(&self.samples.value, self.n);
             self.compact();
         }
     }
@@ -171,12 +171,12 @@ impl<W> Paths<W> {
         let Some(key) = self.key else { return };
         for i in 0..self.n {
             let streams = streams(key, &self.pixel[..self.n], &self.sample[..self.n], v, Purpose::Roulette);
-            let through = self.through.get(i);
-            let q = schedule.q(t, v, through, &self.state.get(i), self.expected[i]);
+            let throughput = self.throughput.get(i);
+            let q = schedule.q(t, v, throughput, &self.state.get(i), self.expected[i]);
             let q = if split { q } else { q.max(0.0) };
             let (copies, weight) = Roulette::copies(q, streams.rng(i).one(), self.siblings[i]);
             if copies > 0 {
-                self.through.set(i, through * weight);
+                self.throughput.set(i, throughput * weight);
                 self.siblings[i] *= copies;
                 if copies > 1 {
                     self.splits.push((self.alive.len() as u32, copies));
@@ -198,7 +198,7 @@ impl<W> Paths<W> {
         copy.n = of.len();
         for (to, &from) in of.iter().enumerate() {
             copy.state.set(to, self.state.get(from));
-            copy.through.set(to, self.through.get(from));
+            copy.throughput.set(to, self.throughput.get(from));
             (copy.pixel[to], copy.sample[to]) = (self.pixel[from], self.sample[from]);
             (copy.expected[to], copy.siblings[to]) = (self.expected[from], self.siblings[from]);
         }
@@ -208,14 +208,14 @@ impl<W> Paths<W> {
     /// Scores emission on arrival: weighted by the technique and by the throughput, into a slot.
     pub fn score_hits(&mut self, technique: Technique, slot: usize, sink: &mut impl TermSink) {
         technique.weigh_hits(&mut self.samples, self.n);
-        self.samples.value.multiply(&self.through, self.n);
+        self.samples.value.multiply(&self.throughput, self.n);
         self.add(slot, sink);
     }
 
     /// Scores connections: weighted by the technique and by the throughput, into a slot.
     pub fn score_connections(&mut self, technique: Technique, slot: usize, sink: &mut impl TermSink) {
         technique.weigh_connections(&mut self.samples, self.n);
-        self.samples.value.multiply(&self.through, self.n);
+        self.samples.value.multiply(&self.throughput, self.n);
         self.add(slot, sink);
     }
 
@@ -231,7 +231,7 @@ impl<W> Paths<W> {
         if self.alive.len() < self.n {
             let alive = &self.alive;
             self.state.keep(alive);
-            self.through.keep(alive);
+            self.throughput.keep(alive);
             columns::keep(&mut self.pixel, alive);
             columns::keep(&mut self.sample, alive);
             columns::keep(&mut self.expected, alive);

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! with w_c, w_s from the [`Technique`](super::Technique). Loop invariant: before the step at vertex v, every term k ≤ v has
-//! been scored, and `through` is α_v.
+//! been scored, and `throughput` is α_v.
 //!
 //! Terms of one path share their prefix, so they are correlated; fits over k must use their covariance.
 //! Reference: Kajiya, *The Rendering Equation* (1986); Veach (1997), ch. 10.

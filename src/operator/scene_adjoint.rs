@@ -14,14 +14,14 @@ use super::scene_transport::SceneTransport;
 use super::transport::Seen;
 use crate::math::direction::{about, cos_sin_turn, cosine_hemisphere, uniform_sphere};
 use crate::math::{Rgb, Rng};
-use crate::scene::bsdf::{Bsdf, Carried};
-use crate::scene::{Camera, ESCAPED, Vertex, emitter::Light, lift};
+use crate::scene::bsdf::{Bsdf, TransportMode};
+use crate::scene::{Camera, ESCAPED, Vertex, emitter::Light, offset_origin};
 use glam::{DVec3, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
 impl Role {
-    fn carried(self) -> Carried {
-        if self == Self::Radiance { Carried::Radiance } else { Carried::Flux }
+    fn carried(self) -> TransportMode {
+        if self == Self::Radiance { TransportMode::Radiance } else { TransportMode::Flux }
     }
 }
 
@@ -74,7 +74,7 @@ impl Adjoint for SceneTransport<'_> {
             return self.shine(at, u);
         }
         let d = self.depart(at, role.carried(), u)?;
-        let o = lift(at.p, d.normal);
+        let o = offset_origin(at.p, d.normal);
         let seen =
             if role == Role::Radiance { self.scene.look(o, d.direction) } else { self.scene.trace(o, d.direction) };
         let state = seen?;
@@ -160,7 +160,7 @@ impl SceneTransport<'_> {
         let (o, d, weight) = match self.scene.light_of(at) {
             None if at.on_surface() => {
                 let (d, _) = cosine_hemisphere(at.n, [u[0], u[1]]);
-                (lift(at.p, at.n), d, light * PI)
+                (offset_origin(at.p, at.n), d, light * PI)
             }
             Some(Light::Point { .. }) => (at.p, uniform_sphere([u[0], u[1]]), light * (4.0 * PI)),
             _ => {

@@ -18,9 +18,9 @@ use super::patches::SurfacePoint;
 use super::transport::{self, Samples, Seen, Sensor, Step, Transport, Wave};
 use crate::math::direction::Frame;
 use crate::math::{Columns, Rgb, Rng, Streams};
-use crate::scene::bsdf::{Bsdf, Carried, Sampling, diffuse, diffuse::Diffuse};
+use crate::scene::bsdf::{Bsdf, Sampling, TransportMode, diffuse, diffuse::Diffuse};
 use crate::scene::{Camera, Rays, Scene, SurfaceSensor, Vertex, VertexWave, cosine_directions, numbers};
-use crate::scene::{connection, lift, segment, solid_angle};
+use crate::scene::{connection, offset_origin, segment, solid_angle};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
@@ -73,7 +73,7 @@ pub(super) struct Departure {
 impl SceneTransport<'_> {
     /// A direction at a vertex: nothing where the sample is zero.
     #[inline(always)]
-    pub(super) fn depart(&self, at: &Vertex, carried: Carried, u: [f32; 4]) -> Option<Departure> {
+    pub(super) fn depart(&self, at: &Vertex, carried: TransportMode, u: [f32; 4]) -> Option<Departure> {
         match self.scene.bsdf(at) {
             Bsdf::Black => None,
             Bsdf::Diffuse(Diffuse { reflectance }) => (reflectance != Rgb::ZERO).then(|| {
@@ -91,7 +91,7 @@ impl SceneTransport<'_> {
 
     /// f cos θ and the density of scattering, towards unit direction `to`; the normal on that side.
     #[inline(always)]
-    pub(super) fn towards(&self, at: &Vertex, to: Vec3, carried: Carried) -> Option<(Rgb, f32, Vec3)> {
+    pub(super) fn towards(&self, at: &Vertex, to: Vec3, carried: TransportMode) -> Option<(Rgb, f32, Vec3)> {
         let cos = at.n.dot(to);
         match self.scene.bsdf(at) {
             Bsdf::Black => None,
@@ -120,7 +120,7 @@ impl SceneTransport<'_> {
         let (to, ..) = connection(at.p, Vec3::ZERO, found.p, Vec3::ZERO);
         let scatter = match self.scene.bsdf(at) {
             Bsdf::Diffuse(_) => Some(to.dot(at.n)).filter(|cos| *cos > 0.0).map(|cos| self.sampling.pdf(cos)),
-            _ => self.towards(at, to, Carried::Radiance).map(|(_, pdf, _)| pdf),
+            _ => self.towards(at, to, TransportMode::Radiance).map(|(_, pdf, _)| pdf),
         };
         (scatter.unwrap_or(drawn), light)
     }
@@ -147,7 +147,7 @@ impl SceneTransport<'_> {
                 (cos > 0.0 && reflectance != Rgb::ZERO).then(|| (weight, self.sampling.pdf(cos), at.n))?
             }
             _ => {
-                let (f, pdf, normal) = self.towards(at, light.to, Carried::Radiance)?;
+                let (f, pdf, normal) = self.towards(at, light.to, TransportMode::Radiance)?;
                 (f * (1.0 / light.pdf), pdf, normal)
             }
         };
@@ -195,8 +195,8 @@ impl Transport for SceneTransport<'_> {
 
     #[inline(always)]
     fn scatter(&self, at: &Vertex, rng: &mut Rng) -> Option<Step<Vertex>> {
-        let d = self.depart(at, Carried::Radiance, rng.four())?;
-        let state = self.scene.look(lift(at.p, d.normal), d.direction)?;
+        let d = self.depart(at, TransportMode::Radiance, rng.four())?;
+        let state = self.scene.look(offset_origin(at.p, d.normal), d.direction)?;
         Some(self.step(at, state, d.weight, d.pdf, d.delta))
     }
 
@@ -297,7 +297,7 @@ impl SceneTransport<'_> {
         let VertexWave { p, n: normals, omega, side, rays } = wave;
         cosine_directions(normals, &rays.u, &mut rays.d, &mut rays.cosine, n);
         for i in 0..n {
-            rays.o.set(i, lift(p.get(i), normals.get(i)));
+            rays.o.set(i, offset_origin(p.get(i), normals.get(i)));
         }
         let cosine = std::mem::take(&mut rays.cosine);
         self.scene.trace_packets(rays, n, |i, state| {

@@ -29,6 +29,7 @@
 mod axis;
 mod base64;
 mod canvas;
+pub mod contact_sheet;
 pub mod decay;
 pub mod diagnosis;
 pub mod drift;
@@ -50,7 +51,6 @@ pub mod pyramid;
 mod rate;
 pub mod refine;
 pub mod roulette;
-pub mod sheet;
 pub mod signature;
 pub mod solvers;
 pub mod split;

@@ -8,9 +8,9 @@ use super::{
     ReportError,
     axis::Axis,
     canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    contact_sheet::{self, Cell, Sheet},
     panel::Panel,
     plot::{Curve, Figure, GREY, Look, Point, figure},
-    sheet::{self, Cell, Sheet},
     table::{Side, aligned, significant},
     typeset::{Caption, superscript},
 };
@@ -234,7 +234,7 @@ pub fn places(r: &Refinement, [w, h]: [usize; 2], range: f64, caption: &Caption)
         100.0 * range
     );
     let notes: Vec<Vec<String>> = r.meshes.iter().map(|m| vec![format!("h = {:.3} m", m.h)]).collect();
-    sheet::annotated(&title, 2 * w, 2 * h, &cells, &notes, caption)
+    contact_sheet::annotated(&title, 2 * w, 2 * h, &cells, &notes, caption)
 }
 
 /// White at 0, red at 1, blue at −1, in linear light.

@@ -3,9 +3,10 @@
 //! Symbols: [`worlds::stages`](crate::worlds::stages). One gain for all images, that of the reference where no lamp is seen.
 
 use super::{
-    ReportError, half_width_95,
+    ReportError,
+    contact_sheet::{Cell, Sheet, annotated},
+    half_width_95,
     picture::{auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shown_mean},
-    sheet::{Cell, Sheet, annotated},
     table::{Side, aligned, average, significant},
     typeset::Caption,
 };
@@ -109,7 +110,7 @@ pub fn csv(grown: &Grown) -> String {
 /// The contact sheet: every stage and the reference, at one gain.
 ///
 /// # Errors
-/// As for [`sheet::grid`](super::sheet::grid).
+/// As for [`contact_sheet::grid`](super::sheet::grid).
 pub fn sheet(title: &str, [w, h]: [usize; 2], grown: &Grown, caption: &Caption) -> Result<Sheet, ReportError> {
     let g = gain(grown);
     let images = grown.stages.iter().map(|s| s.pixels.as_slice()).chain([grown.reference.total.mean.as_slice()]);

@@ -24,7 +24,7 @@
 //! | `pixel_errors` | per layer of `terms.exr` with a `_se`: `layer`, `trusted`, `events` (half the pixels rest on fewer), `why` |
 //! | `verdicts` | list of `name`, `effect`, `interval`, `p`, `min_detectable`, `outcome` (`agrees`, `differs`, `inconclusive`) |
 //! | `files` | names of the files of this run, relative to this one |
-//! | `series` | per world: `world`, `label`, `functionals` (`name`, `terms`, `tail`, `sum`, `total` as estimates; the image mean first, then regions and projections), `cost` (`paths`, `rays`, `non_finite`, `seconds`), `unseen`, `doubts` (`what`, `from`, `per_path`: events to be expected of a path), `variance` of tail and total (`finite`, `infinite`, `unknown`; unless it is finite their `std_error` is `null`) |
+//! | `series` | per world: `world`, `label`, `functionals` (`name`, `terms`, `tail`, `sum`, `total` as estimates; the image mean first, then regions and projections), `cost` (`paths`, `rays`, `non_finite`, `seconds`), `unsampled`, `doubts` (`what`, `from`, `per_path`: events to be expected of a path), `variance` of tail and total (`finite`, `infinite`, `unknown`; unless it is finite their `std_error` is `null`) |
 
 use std::path::Path;
 

@@ -46,7 +46,7 @@ use description::{BsdfDescription, LightDescription, Sides};
 pub use emitter::Selection;
 use emitter::{Light, Lights};
 use glam::{DVec3, Vec3};
-pub(crate) use rounding::{error, lift, segment};
+pub(crate) use rounding::{error, offset_origin, segment};
 use shape::Shape;
 use textures::Textures;
 pub(crate) use vertex::Rays;
@@ -388,8 +388,8 @@ impl Scene {
 
     /// Where a ray that leaves `p` on the side of `n` starts: off the surface by the bound on its error.
     #[inline(always)]
-    pub fn lift(p: Vec3, n: Vec3) -> Vec3 {
-        lift(p, n)
+    pub fn offset_origin(p: Vec3, n: Vec3) -> Vec3 {
+        offset_origin(p, n)
     }
 
     /// Whether the segment from `p` to `q` is blocked; both ends are lifted off their surfaces.

@@ -48,7 +48,7 @@ pub(crate) fn error(x: Vec3, n: Vec3) -> f32 {
 
 /// Where a ray that leaves x on the side of n starts.
 #[inline(always)]
-pub(crate) fn lift(x: Vec3, n: Vec3) -> Vec3 {
+pub(crate) fn offset_origin(x: Vec3, n: Vec3) -> Vec3 {
     x + n * error(x, n)
 }
 
@@ -56,7 +56,7 @@ pub(crate) fn lift(x: Vec3, n: Vec3) -> Vec3 {
 /// costs when it is evaluated at x.
 #[inline(always)]
 pub(crate) fn segment(x: Vec3, n: Vec3, y: Vec3, m: Vec3) -> (Vec3, Vec3) {
-    let o = lift(x, n);
+    let o = offset_origin(x, n);
     let both = Vec3::new(x.x.abs() + y.x.abs(), x.y.abs() + y.y.abs(), x.z.abs() + y.z.abs());
     (o, y + m * error(both, m) - o)
 }
@@ -99,7 +99,7 @@ mod tests {
             let height = |p: Vec3| n32.as_dvec3().dot(p.as_dvec3()) - f64::from(h);
             let unit = f64::from(error(on, n32)) / 16.0;
             assert!(height(on).abs() <= 5.0 * unit, "{i}: {} units off", height(on) / unit);
-            let lifted = height(lift(on, n32));
+            let lifted = height(offset_origin(on, n32));
             assert!((lifted - 16.0 * unit).abs() <= 6.0 * unit, "{i}: {} units", lifted / unit);
         }
     }

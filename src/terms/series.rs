@@ -128,7 +128,7 @@ impl Functional {
 
 /// A kind of paths that a way of sampling cannot find.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Unseen {
+pub struct UnsampledPaths {
     /// In words, after "does not see".
     pub what: String,
     /// The first term that has such paths.
@@ -159,7 +159,8 @@ pub struct Series {
     pub cost: Cost,
     /// Kinds of paths that this way of sampling cannot find in this scene; empty if it finds all light.
     #[serde(default)]
-    pub unseen: Vec<Unseen>,
+    #[serde(alias = "unseen")]
+    pub unsampled: Vec<UnsampledPaths>,
     /// What its samples cannot know: kinds of paths that they meet only by chance. Until enough have been met error bars are too
     /// small, and nothing in the samples says so; the events of the estimates are therefore no more than are to be expected.
     #[serde(default)]
@@ -177,7 +178,7 @@ impl Series {
     /// paths that the other finds.
     pub fn gap(&self, other: &Self) -> Option<(usize, String)> {
         let only = |a: &Self, b: &Self| -> Vec<(usize, String)> {
-            let missing = a.unseen.iter().filter(|p| !b.unseen.contains(p));
+            let missing = a.unsampled.iter().filter(|p| !b.unsampled.contains(p));
             missing.map(|p| (p.from, format!("{} does not see {}", a.label, p.what))).collect()
         };
         only(self, other).into_iter().chain(only(other, self)).min()

@@ -7,7 +7,7 @@ use super::Settings;
 use super::coplanar::undecided;
 use super::doubts::doubts;
 use super::sampled::{Estimator, doubt, film};
-use super::unseen::unseen;
+use super::unsampled::unsampled;
 use crate::estimator::render::{Amount, Unwatched, render};
 use crate::estimator::{PathTracer, Plan};
 use crate::operator::SceneTransport;
@@ -85,7 +85,7 @@ impl Side {
     /// A result without numbers that says what this way cannot see in a scene, and what its samples cannot know; its cost is that of one
     /// batch.
     pub fn limits(&self, scene: &Scene) -> Series {
-        let unseen = unseen(scene, self.estimator, self.settings.technique);
+        let unsampled = unsampled(scene, self.estimator, self.settings.technique);
         let [w, h] = scene.camera.size.map(u64::from);
         let paths = w * h * u64::from(self.settings.spp);
         Series {
@@ -93,7 +93,7 @@ impl Side {
             label: self.label(),
             functionals: vec![],
             cost: Cost { paths, ..Cost::default() },
-            unseen,
+            unsampled,
             doubts: doubts(scene, self.estimator, &self.settings),
             undecided: undecided(scene),
             variance: doubt(

@@ -123,9 +123,9 @@ fn connects(scene: &Scene, c: &Relation, scatters: &[Vertex], points: usize, key
             // other vertices for every point
             let Some(y) = scatters.get((i + k * points) * 7919 % scatters.len().max(1)) else { return false };
             let d = y.p - x;
-            let (to, through) = (d.dot(n) > 0.0, d.dot(y.n) < 0.0);
-            let faces = to && (through || scene.bsdf(y).transmits());
-            faces && !scene.blocked(x, n, y.p, if through { y.n } else { -y.n })
+            let (to, throughput) = (d.dot(n) > 0.0, d.dot(y.n) < 0.0);
+            let faces = to && (throughput || scene.bsdf(y).transmits());
+            faces && !scene.blocked(x, n, y.p, if throughput { y.n } else { -y.n })
         })
     })
 }

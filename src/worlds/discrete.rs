@@ -1,11 +1,11 @@
 //! The discrete world: patches, form factors, terms, solve, and the picture of them through the camera.
 //!
-//! `T_h = diag(ρ) F` as a matrix or as stored rays ([`realisation`](super::realisation)), `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
+//! `T_h = diag(ρ) F` as a matrix or as stored rays ([`discretisation`](super::realisation)), `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
 //! same camera rays, gives the discretisation error |R_h − R_2h| that stands beside the Monte Carlo error in every verdict.
 
 use super::coplanar::undecided;
+use super::discretisation::{Difference, Discretisation, Factors, Sampling as RaySampling, Stored};
 use super::radius::{Radius, radii, sampled_noise};
-use super::realisation::{Difference, Factors, Realisation, Sampling as RaySampling, Stored};
 use super::{Observer, Settings, sampled, sampled::Sampled};
 use crate::estimator::Gather;
 use crate::operator::SceneTransport;
@@ -21,7 +21,7 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 /// A scene as a matrix, with everything that is printed about it.
-pub struct Matrix<R = Realisation> {
+pub struct Matrix<R = Discretisation> {
     /// Patches and form factors.
     pub radiosity: R,
     /// `T_h^k E` per patch, k = 0..=K.
@@ -126,10 +126,10 @@ pub fn matrix(
     Ok(match settings.factors {
         Factors::Dense => {
             let (k, grading) = (settings.max_bounces, settings.grading);
-            dense_matrix(description, scene, patches, grading, k, observer, stop)?.held_as(Realisation::from)
+            dense_matrix(description, scene, patches, grading, k, observer, stop)?.held_as(Discretisation::from)
         }
         Factors::Rays(n) => {
-            sampled_matrix(description, scene, patches, n, settings, observer, stop)?.held_as(Realisation::from)
+            sampled_matrix(description, scene, patches, n, settings, observer, stop)?.held_as(Discretisation::from)
         }
     })
 }

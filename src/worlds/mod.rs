@@ -22,17 +22,17 @@
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 
 pub mod batches;
+pub mod convergence;
 pub mod coplanar;
 pub mod discrete;
+pub mod discretisation;
 pub mod doubts;
 pub mod equilibrium;
-pub mod falling;
 pub mod growth;
 pub mod guided;
 pub mod length;
 pub mod pyramid;
 pub mod radius;
-pub mod realisation;
 pub mod refine;
 pub mod resort;
 pub mod roulette;
@@ -41,7 +41,7 @@ pub mod split;
 pub mod stages;
 pub mod surface;
 pub mod trap;
-pub mod unseen;
+pub mod unsampled;
 pub mod walk;
 pub mod zero_variance;
 
@@ -78,7 +78,7 @@ pub struct Settings {
     /// How much narrower its patches get towards edges; 1: not at all ([`Patches::graded`](crate::operator::patches::Patches::graded)).
     pub grading: f64,
     /// How its form factors are held.
-    pub factors: realisation::Factors,
+    pub factors: discretisation::Factors,
     /// Read the patch under the pixel instead of gathering.
     pub read_patches: bool,
 }
@@ -99,7 +99,7 @@ impl Default for Settings {
             path_roulette: end,
             patches: 600,
             grading: 1.0,
-            factors: realisation::Factors::Dense,
+            factors: discretisation::Factors::Dense,
             read_patches: false,
         }
     }

@@ -5,7 +5,7 @@ use super::{
     coplanar::undecided,
     doubts::doubts,
     growth::{self, Growth},
-    unseen::unseen,
+    unsampled::unsampled,
 };
 use crate::estimator::render::{Amount, Watch, render};
 use crate::estimator::{
@@ -152,7 +152,7 @@ pub(super) fn annotated(
     estimator: Option<Estimator>,
     settings: &Settings,
 ) -> Sampled {
-    result.series.unseen = unseen(scene, estimator, settings.technique);
+    result.series.unsampled = unsampled(scene, estimator, settings.technique);
     result.series = result.series.doubted(doubts(scene, estimator, settings));
     result.series.undecided = undecided(scene);
     if !settings.roulette_of(estimator).ends() {
@@ -263,7 +263,7 @@ impl<'a> Run<'a> {
                 label,
                 functionals: functionals(film),
                 cost,
-                unseen: vec![],
+                unsampled: vec![],
                 doubts: vec![],
                 undecided: None,
                 variance: Variance::Finite,

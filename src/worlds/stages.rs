@@ -15,7 +15,7 @@
 //!
 //! Reference: Kajiya, *The Rendering Equation* (1986); Pharr, Jakob and Humphreys, *Physically Based Rendering*, on fireflies.
 
-use super::falling::Reference;
+use super::convergence::Reference;
 use super::sampled::{self, Estimator};
 use super::{Advance, Observer, Settings};
 use crate::estimator::render::{Amount, Watch, render};

@@ -117,7 +117,7 @@ pub fn walk(
         label: format!("powers of the matrix, {n} patches"),
         functionals,
         cost: Cost::default(),
-        unseen: vec![],
+        unsampled: vec![],
         doubts: vec![],
         undecided: None,
         variance: Default::default(),

@@ -22,7 +22,7 @@ use crate::estimator::Technique;
 use crate::math::Rgb;
 use crate::math::direction::{cosine_hemisphere, uniform_hemisphere};
 use crate::scene::bsdf::dielectric::Dielectric;
-use crate::scene::bsdf::{BsdfSample, Carried, Sampling};
+use crate::scene::bsdf::{BsdfSample, Sampling, TransportMode};
 use crate::scene::{LightSample, Scene, Vertex};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
@@ -122,7 +122,7 @@ pub trait Mistake: Sync {
 
     /// Reflection or refraction at smooth glass, with its weight.
     fn glass(&self, glass: &Dielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
-        Some(glass.sample(wo, Carried::Radiance, u))
+        Some(glass.sample(wo, TransportMode::Radiance, u))
     }
 
     /// Whether roulette is tested before the light is sampled, and its weight applied after: it is not.

@@ -33,9 +33,9 @@ pub mod directions;
 pub mod judge;
 pub mod lights;
 pub mod measures;
+pub mod mis_weights;
 pub mod mistake;
 pub mod roulette;
-pub mod shares;
 pub mod signature;
 pub mod specular;
 pub mod stage;
@@ -102,7 +102,7 @@ pub fn all() -> Vec<&'static Bug> {
         &roulette::BUGS,
         &measures::BUGS,
         &directions::BUGS,
-        &shares::BUGS,
+        &mis_weights::BUGS,
         &lights::BUGS,
         &specular::BUGS,
         &bookkeeping::BUGS,

@@ -11,7 +11,7 @@ use super::signature::{per_reflection, unknown};
 use super::{Bug, Ends, Mistake, Stage};
 use crate::estimator::Technique;
 use crate::scene::bsdf::dielectric::{Dielectric, Odds};
-use crate::scene::bsdf::{BsdfSample, Carried};
+use crate::scene::bsdf::{BsdfSample, TransportMode};
 use glam::Vec3;
 
 /// The members.
@@ -84,7 +84,7 @@ impl Mistake for NoEmissionAfterMirror {
 struct GlassWithoutChoice;
 impl Mistake for GlassWithoutChoice {
     fn glass(&self, glass: &Dielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
-        let s = Dielectric { odds: Odds::Constant(0.5), ..*glass }.sample(wo, Carried::Radiance, u);
+        let s = Dielectric { odds: Odds::Constant(0.5), ..*glass }.sample(wo, TransportMode::Radiance, u);
         Some(BsdfSample { weight: s.weight * s.pdf, ..s })
     }
 }
@@ -92,7 +92,7 @@ impl Mistake for GlassWithoutChoice {
 struct EtaSquaredOnce;
 impl Mistake for EtaSquaredOnce {
     fn glass(&self, glass: &Dielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
-        let s = glass.sample(wo, Carried::Radiance, u);
+        let s = glass.sample(wo, TransportMode::Radiance, u);
         let out = s.wi.z < 0.0 && glass.interface.eta < 1.0;
         Some(if out { BsdfSample { weight: s.weight * glass.interface.eta2(), ..s } } else { s })
     }
@@ -102,6 +102,6 @@ struct TotalReflectionDropped;
 impl Mistake for TotalReflectionDropped {
     fn glass(&self, glass: &Dielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
         glass.interface.refracted(wo.z)?;
-        Some(glass.sample(wo, Carried::Radiance, u))
+        Some(glass.sample(wo, TransportMode::Radiance, u))
     }
 }

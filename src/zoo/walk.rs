@@ -18,8 +18,8 @@ use crate::estimator::{Batch, Paths, Plan, TermEstimator, TermSink};
 use crate::math::direction::Frame;
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};
-use crate::scene::bsdf::{Bsdf, Carried, diffuse::Diffuse};
-use crate::scene::{LightSample, Vertex, VertexWave, connection, lift};
+use crate::scene::bsdf::{Bsdf, TransportMode, diffuse::Diffuse};
+use crate::scene::{LightSample, Vertex, VertexWave, connection, offset_origin};
 use glam::Vec3;
 
 /// The walk with a mistake in it.
@@ -97,7 +97,7 @@ impl Walk<'_> {
             // the next vertex, whose emission counts if hits do
             rays[slot] += 1;
             let Some(s) = self.scatter(t, &x, numbers(v, Purpose::Scatter).four()) else { break };
-            let Some(next) = t.scene.look(lift(x.p, s.normal), s.to) else { break };
+            let Some(next) = t.scene.look(offset_origin(x.p, s.normal), s.to) else { break };
             alpha *= s.value;
             if hits {
                 let (pdf, other) = if s.delta { (s.pdf, 0.0) } else { t.densities(&x, &next, s.pdf) };
@@ -147,7 +147,7 @@ impl Walk<'_> {
             bsdf => {
                 let frame = Frame::new(at.n);
                 let (wo, wi) = (frame.local(at.omega), frame.local(to));
-                (bsdf.eval(wo, wi, Carried::Radiance), bsdf.pdf(wo, wi, t.sampling))
+                (bsdf.eval(wo, wi, TransportMode::Radiance), bsdf.pdf(wo, wi, t.sampling))
             }
         };
         let normal = if cosine > 0.0 { at.n } else { -at.n };
@@ -164,7 +164,7 @@ impl Walk<'_> {
                 return (value != Rgb::ZERO).then_some(Scattered { to, normal: at.n, value, pdf, delta: false });
             }
             Bsdf::Dielectric(glass) => self.mistake.glass(&glass, frame.local(at.omega), u[2])?,
-            bsdf => bsdf.sample(frame.local(at.omega), t.sampling, Carried::Radiance, [u[0], u[1], u[2]])?,
+            bsdf => bsdf.sample(frame.local(at.omega), t.sampling, TransportMode::Radiance, [u[0], u[1], u[2]])?,
         };
         let normal = if s.wi.z > 0.0 { at.n } else { -at.n };
         Some(Scattered { to: frame.world(s.wi), normal, value: s.weight, pdf: s.pdf, delta: s.delta })

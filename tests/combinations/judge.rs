@@ -18,7 +18,7 @@
 //! the upper side, which is where anything counted twice shows, is always judged. The lower side is judged where
 //!
 //! 1. no path is hidden that this combination finds by luck only ([`Case::steady`]), and it finds all paths
-//!    ([`unseen`](fredholm::worlds::unseen)); and
+//!    ([`unsampled`](fredholm::worlds::unseen)); and
 //! 2. an independent pilot run of the same size found 2 t* s ≤ the term, both as it and as the reference have it. Of equal rare
 //!    events that asks for (2t*)² ≈ 350, whose Poisson tail at t* is about as thin as the level. A pilot run that found nothing
 //!    at all says that a walk without connections had no luck, and of any other that something is wrong: that is judged.
@@ -52,9 +52,9 @@ pub struct Findings {
     pub equivalent: u32,
     pub consistent: u32,
     /// Of only the upper side: by luck only, too noisy in the pilot run, or not supported.
-    pub luck: u32,
+    pub rare_paths: u32,
     pub noisy: u32,
-    pub unseen: u32,
+    pub unsampled: u32,
     /// Image means from k = 1 on: judged from both sides, and proved.
     pub image: (u32, u32, u32),
     /// Least and largest effect in standard errors, of what was judged from both sides; and largest of all.
@@ -68,7 +68,7 @@ pub struct Findings {
 
 impl Findings {
     pub fn scalars(&self) -> u32 {
-        self.equivalent + self.consistent + self.luck + self.noisy + self.unseen
+        self.equivalent + self.consistent + self.rare_paths + self.noisy + self.unsampled
     }
     pub fn both_sides(&self) -> u32 {
         self.equivalent + self.consistent
@@ -78,7 +78,7 @@ impl Findings {
         let (all, judged, proved) = self.image;
         match () {
             () if !self.wrong.is_empty() => "DIFFERS",
-            () if self.unseen > 0 => "not supported",
+            () if self.unsampled > 0 => "not supported",
             () if proved == all => "agrees",
             () if judged > 0 => "consistent",
             () => "too noisy",
@@ -149,8 +149,8 @@ pub fn compare(
                 found.image.0 += u32::from(is_image);
                 found.highest = found.highest.max(if signed && !both { 0.0 } else { z });
                 match () {
-                    () if !supported => found.unseen += 1,
-                    () if !steady => found.luck += 1,
+                    () if !supported => found.unsampled += 1,
+                    () if !steady => found.rare_paths += 1,
                     () if !heard => found.noisy += 1,
                     () => {
                         let proved = d.mean.abs() + half <= delta;

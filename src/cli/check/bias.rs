@@ -5,7 +5,7 @@
 
 use super::super::args;
 use super::super::progress::stop_flag;
-use super::super::{Ending, Failure, facts, note, output, paragraphs, say};
+use super::super::{Ending, Failure, note, notes, output, paragraphs, print};
 use super::sides::{Against, check_sides, finished, side};
 use super::{Common, fraction, usage};
 use crate::cli::open::Opened;
@@ -222,10 +222,10 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
     };
     write(&folder, args, &loaded, &record, &curve, spp, started)?;
     if args.common.shared.json {
-        say(&serde_json::to_string_pretty(&record)?)?;
+        print(&serde_json::to_string_pretty(&record)?)?;
     } else {
         let judged = watch::judgement(outcome, &findings, args.alpha, criterion.beta);
-        let mut foot = why.map_or(judged, facts::undecided);
+        let mut foot = why.map_or(judged, notes::undecided);
         if let Some((from, why)) = &gap {
             foot += &format!("\nT{from} and everything longer: not compared, {why}");
         }
@@ -243,7 +243,7 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
             args.alpha
         );
         let files = format!("written to {}: bias.png, bias.svg, summary.json", folder.display());
-        say(&paragraphs(&[head, watch::table(&findings), foot, files]))?;
+        print(&paragraphs(&[head, watch::table(&findings), foot, files]))?;
     }
     Ok(match outcome {
         Outcome::Differs => Ending::Failed,
@@ -260,7 +260,7 @@ fn cut(functionals: Vec<Functional>, gap: Option<&(usize, String)>) -> Vec<Funct
         label: String::new(),
         functionals,
         cost: fredholm::terms::Cost::default(),
-        unseen: vec![],
+        unsampled: vec![],
         doubts: vec![],
         undecided: None,
         variance: Default::default(),

@@ -2,13 +2,13 @@
 
 use super::super::args;
 use super::super::progress::{Progress, stop_flag};
-use super::super::{Ending, Failure, facts, guard, note, output, paragraphs, say, write};
+use super::super::{Ending, Failure, note, notes, output, paragraphs, preflight, print, write};
 use super::{Common, fraction, usage};
 use crate::cli::open::Opened;
 use clap::Args;
 use fredholm::estimator::{Roulette, Technique};
+use fredholm::report::contact_sheet::{self, Cell};
 use fredholm::report::equilibrium::{self as figure, Dot};
-use fredholm::report::sheet::{self, Cell};
 use fredholm::report::table::significant;
 use fredholm::report::{picture, summary, table, typeset::Caption, zmap};
 use fredholm::scene::bsdf::Sampling;
@@ -106,7 +106,7 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
     if !(args.factor.is_finite() && args.factor > 0.0) {
         return Err(usage("--break takes a factor above 0", "1.02 makes the step 2 % too heavy"));
     }
-    guard::light_is_lost(&loaded.scene, &settings, &[args::WorldName::Path])?;
+    preflight::light_is_lost(&loaded.scene, &settings, &[args::WorldName::Path])?;
     let name = format!("equilibrium-{}", loaded.description.name);
     let folder = output::folder(args.common.shared.out.as_deref(), &name, &loaded.command, args.common.shared.force)?;
 
@@ -133,9 +133,9 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
     let found = Found { args, loaded, groups, judgement, undecided, images, spp: seen.spp };
     let files = write_all(&folder, &found, started)?;
     if args.common.shared.json {
-        say(&serde_json::to_string_pretty(&record(&found))?)?;
+        print(&serde_json::to_string_pretty(&record(&found))?)?;
     } else {
-        say(&people(&found, &folder, &files))?;
+        print(&people(&found, &folder, &files))?;
     }
     if stop.load(Ordering::Relaxed) {
         note("interrupted: some points have fewer samples than asked for");
@@ -205,7 +205,7 @@ fn people(found: &Found, folder: &Path, files: &[String]) -> String {
     };
     let files = format!("written to {}: {}", folder.display(), files.join(", "));
     let verdict = match (&found.undecided, endless) {
-        (Some(why), _) => facts::undecided(why),
+        (Some(why), _) => notes::undecided(why),
         (None, Some(reason)) => format!("Nothing is decided: {reason}."),
         (None, None) => verdict.to_owned(),
     };
@@ -271,7 +271,7 @@ fn write_all(folder: &Path, found: &Found, started: Instant) -> Result<Vec<Strin
     let gain = Some(picture::auto_gain(&l.mean));
     let cells = [("L", l), ("E + T L", r)].map(|(label, i)| Cell { label: label.into(), pixels: &i.mean, gain });
     let title = format!("Both sides of the equation, {} spp", found.spp);
-    sheet::grid(&title, w, h, &cells, &caption)?.picture.write(&folder.join("sides.png"))?;
+    contact_sheet::grid(&title, w, h, &cells, &caption)?.picture.write(&folder.join("sides.png"))?;
     let z = write::z_values((&l.mean, &l.std_error), (&r.mean, &r.std_error));
     zmap::draw("z of L − (E + T L)", w, h, &z, &caption)?.picture.write(&folder.join("z.png"))?;
 

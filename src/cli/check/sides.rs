@@ -1,7 +1,7 @@
 //! The two sides of `check bias`: what is asked for by name, and what is refused.
 
 use super::super::args::{self, EstimatorName};
-use super::super::{Failure, guard, solve};
+use super::super::{Failure, preflight, solve};
 use super::bias::Bias;
 use super::usage;
 use crate::cli::open::Opened;
@@ -112,11 +112,11 @@ pub(super) fn check_sides(loaded: &Opened, first: &Side, against: &Against) -> R
         let worlds = [if side.estimator.is_some() { args::WorldName::Terms } else { args::WorldName::Path }];
         let estimators: Vec<_> = side.estimator.into_iter().collect();
         for &e in &estimators {
-            guard::tree_can_be_walked(e, &side.settings, size)?;
+            preflight::tree_can_be_walked(e, &side.settings, size)?;
         }
-        guard::light_is_seen(&loaded.scene, &estimators, &side.settings, &worlds)?;
-        guard::light_is_lost(&loaded.scene, &side.settings, &worlds)?;
-        guard::fits_in_memory(&side.settings, size)?;
+        preflight::light_is_seen(&loaded.scene, &estimators, &side.settings, &worlds)?;
+        preflight::light_is_lost(&loaded.scene, &side.settings, &worlds)?;
+        preflight::fits_in_memory(&side.settings, size)?;
     }
     Ok(())
 }

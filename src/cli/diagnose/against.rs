@@ -40,7 +40,7 @@ pub struct Right {
     /// How it was made.
     pub label: String,
     /// What is found by rare and bright events only.
-    pub luck: Option<String>,
+    pub rare_paths: Option<String>,
 }
 
 /// Loads what `--against` names.
@@ -175,7 +175,7 @@ impl Source {
         if let Some((label, pictures, samples)) = &self.run {
             let pictures = pictures.shrunk(factor);
             let spp = *samples * (factor * factor) as f64;
-            return Ok(Right { pictures, factor, spp, seen, scene, label: label.clone(), luck: None });
+            return Ok(Right { pictures, factor, spp, seen, scene, label: label.clone(), rare_paths: None });
         }
         let scene = scene.ok_or_else(|| Failure::Input("error: no scene\nhelp: give one to --against".into()))?;
         let pixels = u64::from(small[0]) * u64::from(small[1]);
@@ -183,21 +183,21 @@ impl Source {
         let usual = Settings::default();
         let roulette = usual.path_roulette.clone().after(max_bounces);
         let settings = Settings { spp, seed: own_seed(args.seed), max_bounces, roulette, ..usual };
-        super::super::guard::fits_in_memory(&settings, small)?;
-        super::super::guard::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
+        super::super::preflight::fits_in_memory(&settings, small)?;
+        super::super::preflight::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
         let observer: &dyn fredholm::worlds::Observer = if args.shared.quiet { &Unobserved } else { progress };
         let result = sampled::terms(&scene, Estimator::Prefix, &settings, observer, stop_flag());
-        let missing = result.series.unseen.iter().map(|u| format!("from k = {} on: {}", u.from, u.what));
+        let missing = result.series.unsampled.iter().map(|u| format!("from k = {} on: {}", u.from, u.what));
         for missing in missing {
             super::super::note(&format!("note: not supported by the reference, {missing}"));
         }
-        let luck = super::super::facts::doubts(std::iter::once(&result.series)).into_iter().next();
+        let rare_paths = super::super::notes::doubts(std::iter::once(&result.series)).into_iter().next();
         let label = format!(
             "{}, {}, k ≤ {max_bounces}, {spp} spp at {}×{}",
             self.name, result.series.label, small[0], small[1]
         );
         let spp = f64::from(result.spp);
-        Ok(Right { pictures: Pictures::of(&result, small), factor, spp, seen, scene: Some(scene), label, luck })
+        Ok(Right { pictures: Pictures::of(&result, small), factor, spp, seen, scene: Some(scene), label, rare_paths })
     }
 }
 

@@ -125,10 +125,10 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
         groups.entry((s.file.pictures.size, last_term(args, &s.file))).or_default().push((i, s));
     }
     let mut found: BTreeMap<usize, Found> = BTreeMap::new();
-    let (mut luck, mut label) = (None, String::new());
+    let (mut rare_paths, mut label) = (None, String::new());
     for ((size, max_bounces), members) in &groups {
         let right = source.right(args, *size, *max_bounces, &progress)?;
-        luck = luck.or(right.luck.clone());
+        rare_paths = rare_paths.or(right.rare_paths.clone());
         label.clone_from(&right.label);
         if scaled.is_some() && right.scene.as_ref().is_some_and(|s| s.lights.any_delta()) {
             return Err(Failure::Usage(
@@ -152,12 +152,13 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     progress.finish();
     let stopped = stop_flag().load(Ordering::SeqCst);
     let found: Vec<Found> = found.into_values().collect();
-    let page = text::Page { args, how, label: &label, luck: luck.as_deref(), command: &command, folder: &folder };
+    let page =
+        text::Page { args, how, label: &label, rare_paths: rare_paths.as_deref(), command: &command, folder: &folder };
     let files = write(&page, &found, &source)?;
     if args.shared.json {
-        super::say(&serde_json::to_string_pretty(&text::json(&found))?)?;
+        super::print(&serde_json::to_string_pretty(&text::json(&found))?)?;
     } else {
-        super::say(&page.people(&found, &files))?;
+        super::print(&page.people(&found, &files))?;
     }
     let wrong = found.iter().any(|f| f.diagnosis.verdict == Verdict::Wrong);
     Ok(match (stopped, wrong) {

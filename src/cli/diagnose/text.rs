@@ -12,7 +12,7 @@ pub struct Page<'a> {
     pub args: &'a Diagnose,
     pub how: Grouping,
     pub label: &'a str,
-    pub luck: Option<&'a str>,
+    pub rare_paths: Option<&'a str>,
     pub command: &'a str,
     pub folder: &'a Path,
 }
@@ -73,9 +73,12 @@ impl Page<'_> {
         let head = format!("against {}", self.label);
         let mut blocks: Vec<String> = if let [one] = found { vec![self.one(one)] } else { vec![table(found)] };
         blocks.insert(1.min(blocks.len()), wrapped(&head, "") + if how.is_empty() { "" } else { "\n" } + how);
-        if let (Some(luck), true) = (self.luck, found.iter().any(|f| f.diagnosis.verdict == Verdict::Wrong)) {
+        if let (Some(rare_paths), true) = (self.rare_paths, found.iter().any(|f| f.diagnosis.verdict == Verdict::Wrong))
+        {
             blocks.push(wrapped(
-                &format!("warning: of the reference: {luck}. A difference may be light that it has not found yet."),
+                &format!(
+                    "warning: of the reference: {rare_paths}. A difference may be light that it has not found yet."
+                ),
                 "",
             ));
         }

@@ -6,7 +6,7 @@ mod solvers;
 
 use super::args::Run;
 use super::progress::{Progress, stop_flag};
-use super::{Ending, Failure, args::WorldName, facts, guard, output, solve};
+use super::{Ending, Failure, args::WorldName, notes, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
 use fredholm::report::summary;
@@ -15,7 +15,7 @@ use fredholm::solver::{self, study::Solver};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::{self, Matrix, MatrixError};
-use fredholm::worlds::realisation::{Factors, Stored};
+use fredholm::worlds::discretisation::{Factors, Stored};
 use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -177,12 +177,12 @@ impl<R> Laboratory<R> {
     ) -> Result<Option<Self>, Failure> {
         let opened = open::run(run)?;
         let mut worlds = vec![WorldName::Radiosity];
-        guard::suits_a_matrix(&opened.description, &mut worlds, true)?;
-        guard::fits_in_a_matrix(&opened.scene, factors, &mut worlds, true)?;
+        preflight::suits_a_matrix(&opened.description, &mut worlds, true)?;
+        preflight::fits_in_a_matrix(&opened.scene, factors, &mut worlds, true)?;
         let patches = run.patches.unwrap_or(600) as usize;
         let settings =
             Settings { patches, factors, grading: run.grading, max_bounces: 0, seed: run.seed, ..Settings::default() };
-        guard::rows_fit_in_memory(&opened.scene, &settings)?;
+        preflight::rows_fit_in_memory(&opened.scene, &settings)?;
         let name = format!("{}-{what}", opened.description.name);
         let folder = output::folder(run.shared.out.as_deref(), &name, &opened.command, run.shared.force)?;
         let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
@@ -190,7 +190,7 @@ impl<R> Laboratory<R> {
         progress.finish();
         match made {
             Ok((patches, matrix)) => {
-                if let Some(what) = facts::unlit(&matrix.unlit, &opened.description) {
+                if let Some(what) = notes::unlit(&matrix.unlit, &opened.description) {
                     super::note(&format!("note: {what}"));
                 }
                 Ok(Some(Self { opened, matrix, patches, folder }))

@@ -1,7 +1,7 @@
 //! `--modes`: the spectrum of T, what bounds it, and its modes through the camera.
 
 use super::super::progress::{Progress, stop_flag};
-use super::super::{Ending, Failure, guard, paragraphs, say};
+use super::super::{Ending, Failure, paragraphs, preflight, print};
 use super::{Laboratory, NAMES, Radiosity};
 use fredholm::operator::edges::{Band, essential_band};
 use fredholm::operator::matrix::LinearOperator;
@@ -24,7 +24,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     let settings =
         Settings { spp: run.spp.unwrap_or(64), seed: run.seed, max_bounces: count + 1, ..Settings::default() };
     let size = lab.opened.description.camera.size;
-    guard::fits_in_memory(&settings, size)?;
+    preflight::fits_in_memory(&settings, size)?;
     let stopped = || stop_flag().load(Ordering::Relaxed);
     let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
 
@@ -86,7 +86,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     write_atomically(&lab.folder.join("modes.json"), serde_json::to_string_pretty(&record)?.as_bytes())?;
     lab.sign(run, &files)?;
     if run.shared.json {
-        say(&serde_json::to_string_pretty(&record)?)?;
+        print(&serde_json::to_string_pretty(&record)?)?;
     } else {
         let mut blocks = vec![
             format!(
@@ -112,7 +112,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
         let s = &spectra[channel];
         blocks.push(format!("{}: ‖Tᵏ⁺¹E‖/‖TᵏE‖ in two norms\n{}", s.channel, modes::ratio_table(s)));
         blocks.push(format!("written to {}:\n{}", lab.folder.display(), files.join(", ")));
-        say(&paragraphs(&blocks))?;
+        print(&paragraphs(&blocks))?;
     }
     Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })
 }

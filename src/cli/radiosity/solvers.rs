@@ -6,7 +6,7 @@
 //! | reference | LU | GMRES to rounding |
 
 use super::super::progress::{Progress, stop_flag};
-use super::super::{Ending, Failure, args::FactorsName, guard, paragraphs, say};
+use super::super::{Ending, Failure, args::FactorsName, paragraphs, preflight, print};
 use super::{Laboratory, NAMES, Radiosity, SolverName};
 use fredholm::operator::matrix::Transposed;
 use fredholm::report::solvers::{self, Extrapolated};
@@ -16,7 +16,7 @@ use fredholm::solver::study::{History, Limits, Reference, Solver, System};
 use fredholm::terms::TermFilm;
 use fredholm::worlds::Observer;
 use fredholm::worlds::discrete::MatrixError;
-use fredholm::worlds::realisation::{Factors, Stored};
+use fredholm::worlds::discretisation::{Factors, Stored};
 use serde_json::{Value, json};
 use std::sync::atomic::Ordering;
 
@@ -51,7 +51,7 @@ fn factors(args: &Radiosity, name: SolverName) -> Result<Factors, Failure> {
     if args.run.factors == Some(FactorsName::Both) {
         return wrong("solvers work on one matrix at a time", "use --factors dense or --factors rays");
     }
-    let factors = guard::factors(&args.run, args.run.patches.unwrap_or(600))?;
+    let factors = preflight::factors(&args.run, args.run.patches.unwrap_or(600))?;
     match (factors, name) {
         (Factors::Rays(_), SolverName::Cg) => wrong(
             "conjugate gradients need a self-adjoint T, and that of stored rays is so only within its noise",
@@ -101,7 +101,7 @@ impl<'a, R> Study<'a, R> {
         let record = self.record(system, &histories, &series);
         write_atomically(&lab.folder.join("solvers.json"), serde_json::to_string_pretty(&record)?.as_bytes())?;
         if args.run.shared.json {
-            say(&serde_json::to_string_pretty(&record)?)?;
+            print(&serde_json::to_string_pretty(&record)?)?;
         } else {
             let extrapolated = format!(
                 "the series itself, Σ Aᵢ xᵢ/A of the first terms: error ×noise gain,\n\
@@ -110,7 +110,7 @@ impl<'a, R> Study<'a, R> {
             );
             let written = format!("written to {}:\n{}", lab.folder.display(), files.join(", "));
             let head = self.head(system, informed(&histories));
-            say(&paragraphs(&[head, solvers::table(&histories), extrapolated, written]))?;
+            print(&paragraphs(&[head, solvers::table(&histories), extrapolated, written]))?;
         }
         Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })
     }

@@ -2,8 +2,8 @@
 
 use super::{Files, Pixels, attributes};
 use crate::cli::{Failure, solve::Found};
+use fredholm::report::contact_sheet::{self, Cell, Sheet, direct_and_indirect, single};
 use fredholm::report::pixel_errors::{self, PixelErrors};
-use fredholm::report::sheet::{self, Cell, Sheet, direct_and_indirect, single};
 use fredholm::report::typeset::{Caption, superscript};
 use fredholm::report::{exr, picture, zmap};
 use fredholm::terms::{Estimate, TermImage};
@@ -117,7 +117,7 @@ pub(super) fn write_pictures(found: &Found, out: &mut Files, size: [u32; 2], cap
         let gain = Some(whole_gain(&p.total.mean, t.terms.first()));
         let answers = [("the series: Σ TᵏE", t), ("the path tracer", p), ("the matrix: (I − T)⁻¹E", &r.fine)];
         let cells = answers.map(|(label, s)| Cell { label: label.into(), pixels: &s.total.mean, gain });
-        sheet::grid("One scene, three answers", w, h, &cells, caption)?.picture.write(&out.add("three.png"))?;
+        contact_sheet::grid("One scene, three answers", w, h, &cells, caption)?.picture.write(&out.add("three.png"))?;
     }
     Ok(())
 }
@@ -146,7 +146,7 @@ pub(super) fn terms_sheet(
     note: &str,
 ) -> Result<Sheet, Failure> {
     let images: Vec<&[[f32; 3]]> = images.iter().map(Vec::as_slice).collect();
-    Ok(sheet::terms(w as usize, h as usize, &images, whole.map(Vec::as_slice), note, caption)?)
+    Ok(contact_sheet::terms(w as usize, h as usize, &images, whole.map(Vec::as_slice), note, caption)?)
 }
 
 /// z per pixel of the mean over channels of a − b; its error takes the channels as fully correlated, which they nearly are.

@@ -8,8 +8,8 @@ use fredholm::report::typeset::{Caption, superscript};
 use fredholm::report::variance::{self, Falling, Variance};
 use fredholm::stats::{TermMeans, observed_rate};
 use fredholm::terms::{scatter::Scatter, variance::Snapshot};
+use fredholm::worlds::convergence::Part;
 use fredholm::worlds::discrete::Discrete;
-use fredholm::worlds::falling::Part;
 use fredholm::worlds::sampled::{Estimator, Sampled};
 use std::path::Path;
 

@@ -20,7 +20,7 @@ use crate::math::direction::cosine_hemisphere;
 use crate::math::{Key, Purpose, Rgb, Rng};
 use crate::operator::patches::{Patch, Patches, polygon};
 use crate::operator::{SceneTransport, Transport};
-use crate::scene::{Side, Vertex, lift};
+use crate::scene::{Side, Vertex, offset_origin};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -75,7 +75,7 @@ impl Incident {
                 let cell = ray / rays;
                 let place = |cell: usize, u: f32| (cell as f32 + u).min(((cell + 1) as f32).next_down()) / CELLS as f32;
                 let (direction, _) = cosine_hemisphere(at.n, [place(cell % CELLS, u[0]), place(cell / CELLS, u[1])]);
-                let seen = scene.scene.trace(lift(at.p, at.n), direction);
+                let seen = scene.scene.trace(offset_origin(at.p, at.n), direction);
                 let patch = seen.and_then(|v| locate(patches, v.p, v.side));
                 *hit = patch.map_or(NOTHING, |j| j as u32);
             }

@@ -38,7 +38,7 @@ use super::transport::{self, Expected, Samples, Seen, Sensor, Step, Transport};
 use crate::math::{Columns, Key, Rgb, Rng, Streams};
 use crate::operator::patches::Patches;
 use crate::scene::bsdf::{Bsdf, Sampling, diffuse, diffuse::Diffuse};
-use crate::scene::{Camera, Scene, SceneError, Side, Vertex, VertexWave, lift, numbers, stand_in};
+use crate::scene::{Camera, Scene, SceneError, Side, Vertex, VertexWave, numbers, offset_origin, stand_in};
 use glam::Vec3;
 use incident::{Fineness, Incident};
 use lamps::Lamps;
@@ -224,7 +224,7 @@ impl Transport for GuidedTransport<'_> {
                 let (u, ratio) = warp.sample([u[0], u[1]]);
                 let (direction, weight, pdf) = diffuse::sample(reflectance, at.n, self.scene.sampling, u);
                 let scene = self.scene.scene;
-                let state = scene.look(lift(at.p, at.n), direction)?;
+                let state = scene.look(offset_origin(at.p, at.n), direction)?;
                 self.scene.step(at, state, weight * (1.0 / ratio), pdf, false)
             }
             None => self.scene.scatter(at, rng)?,

@@ -43,7 +43,7 @@ use super::form_factor::{Stopped, Watch};
 use super::patches::{Lookup, Patches};
 use crate::math::direction::cosine_hemisphere;
 use crate::math::{Key, Purpose};
-use crate::scene::{Scene, Vertex, VertexWave, error, lift};
+use crate::scene::{Scene, Vertex, VertexWave, error, offset_origin};
 use direct::Lamps;
 use glam::{DVec3, Vec3};
 use lattice::Lattice;
@@ -175,7 +175,7 @@ impl Caster<'_> {
         for k in 0..row.len() {
             let (at, [u, v, ..]) = origins.next(|s| points.at(s));
             let normal = at.normal.as_vec3();
-            rays.o.set(k, lift(at.position.as_vec3(), normal));
+            rays.o.set(k, offset_origin(at.position.as_vec3(), normal));
             rays.d.set(k, cosine_hemisphere(normal, [u, v]).0);
         }
         met.clear();

@@ -20,7 +20,7 @@ use super::super::{
 use super::quoted;
 use crate::stats::Slope;
 use crate::terms::{Variance, scatter::Scatter};
-use crate::worlds::falling::{Part, Stand};
+use crate::worlds::convergence::{Part, Stand};
 
 /// One render as its noise falls.
 #[derive(Clone, Debug, PartialEq)]

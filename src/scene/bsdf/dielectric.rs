@@ -17,7 +17,7 @@
 
 use super::fresnel::Interface;
 use super::mirror::reflection;
-use super::{BsdfSample, Carried};
+use super::{BsdfSample, TransportMode};
 use crate::math::Rgb;
 use crate::scene::description::Choice;
 use glam::Vec3;
@@ -62,7 +62,7 @@ pub struct Dielectric {
 impl Dielectric {
     /// Reflects if `u` < p, refracts otherwise.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3, carried: Carried, u: f32) -> BsdfSample {
+    pub fn sample(&self, wo: Vec3, carried: TransportMode, u: f32) -> BsdfSample {
         let f = self.interface.reflectance(wo.z);
         let p = self.odds.of_reflection(f);
         match self.interface.refracted(wo.z) {

@@ -51,7 +51,7 @@ use mirror::Mirror;
 use phong::Phong;
 use plastic::Plastic;
 use rough_dielectric::RoughDielectric;
-pub use sampling::{BsdfSample, Carried, Sampling};
+pub use sampling::{BsdfSample, Sampling, TransportMode};
 
 /// How one side of a surface scatters at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +126,7 @@ impl Bsdf {
     }
 
     /// f(ω_o, ω_i), sr⁻¹, without its delta part.
-    pub fn eval(&self, wo: Vec3, wi: Vec3, carried: Carried) -> Rgb {
+    pub fn eval(&self, wo: Vec3, wi: Vec3, carried: TransportMode) -> Rgb {
         match self {
             Self::Black | Self::Mirror(_) | Self::Dielectric(_) => Rgb::ZERO,
             Self::Diffuse(f) => f.eval(wi),
@@ -139,7 +139,7 @@ impl Bsdf {
 
     /// A direction; none where there is none to go to. `u[0]`, `u[1]` choose it, `u[2]` chooses between parts. The weight
     /// may be zero where `sampling` does not follow f.
-    pub fn sample(&self, wo: Vec3, sampling: Sampling, carried: Carried, u: [f32; 3]) -> Option<BsdfSample> {
+    pub fn sample(&self, wo: Vec3, sampling: Sampling, carried: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
         let at = [u[0], u[1]];
         match self {
             Self::Black => None,

@@ -19,7 +19,7 @@
 use super::dielectric::Odds;
 use super::fresnel::Interface;
 use super::ggx::{Microfacets, half, reflect};
-use super::{BsdfSample, Carried};
+use super::{BsdfSample, TransportMode};
 use crate::math::Rgb;
 use glam::Vec3;
 
@@ -75,13 +75,13 @@ impl RoughDielectric {
 
     /// e for this pair.
     #[inline(always)]
-    fn squeezed(&self, wi: Vec3, carried: Carried) -> f32 {
+    fn squeezed(&self, wi: Vec3, carried: TransportMode) -> f32 {
         if wi.z > 0.0 { 1.0 } else { carried.squeezed(self.interface.eta2()) }
     }
 
     /// f, sr⁻¹.
     #[inline(always)]
-    pub fn eval(&self, wo: Vec3, wi: Vec3, carried: Carried) -> Rgb {
+    pub fn eval(&self, wo: Vec3, wi: Vec3, carried: TransportMode) -> Rgb {
         let Some(m) = self.facet(wo, wi) else { return Rgb::ZERO };
         let seen = 4.0 * self.facets.seen(wo.z, wi.z.abs()) * m.cosine;
         Rgb::splat(m.share * self.facets.d(m.h) * seen * m.jacobian * self.squeezed(wi, carried))
@@ -100,7 +100,7 @@ impl RoughDielectric {
 
     /// A normal seen from ω_o; reflects there if `u[2]` < p, refracts otherwise. None where that leads to the wrong side.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3, carried: Carried, u: [f32; 3]) -> Option<BsdfSample> {
+    pub fn sample(&self, wo: Vec3, carried: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
         let h = self.facets.sample(wo, [u[0], u[1]]);
         let c = wo.dot(h);
         if c <= 0.0 {

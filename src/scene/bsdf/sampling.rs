@@ -5,7 +5,7 @@
 //! | notation | meaning | place |
 //! |---|---|---|
 //! | p | density that was asked for | [`Sampling`] |
-//! | f(ω_i → ω_o), f(ω_o → ω_i) | the way light takes | [`Carried`] |
+//! | f(ω_i → ω_o), f(ω_o → ω_i) | the way light takes | [`TransportMode`] |
 //! | ω_i, f·cos θ_i/p, p | a draw | [`BsdfSample`] |
 //!
 //! Reference: Veach, *Robust Monte Carlo Methods for Light Transport Simulation* (PhD thesis, Stanford, 1997), chapter 5
@@ -52,14 +52,14 @@ impl Sampling {
 
 /// What is carried along the walk. Differs where refraction squeezes a beam: radiance grows by η², flux does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Carried {
+pub enum TransportMode {
     /// Radiance, from the eye: f(ω_i → ω_o).
     Radiance,
     /// Flux, from the light: f(ω_o → ω_i).
     Flux,
 }
 
-impl Carried {
+impl TransportMode {
     /// Factor on what crosses to the side with η² times the squared index.
     #[inline(always)]
     pub(super) fn squeezed(self, eta2: f32) -> f32 {

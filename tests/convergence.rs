@@ -15,7 +15,7 @@ use fredholm::scene::load::{self, Options};
 use fredholm::stats::{Measured, critical, two_sided_p};
 use fredholm::terms::scatter::Scatter;
 use fredholm::terms::{TermFilm, TermImage, Variance};
-use fredholm::worlds::falling::Part;
+use fredholm::worlds::convergence::Part;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 

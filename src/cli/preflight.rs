@@ -6,9 +6,9 @@ use fredholm::estimator::{Roulette, Technique};
 use fredholm::scene::{Description, Scene, bsdf::Sampling};
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::MatrixError;
+use fredholm::worlds::discretisation::Factors;
 use fredholm::worlds::length::{Length, length};
-use fredholm::worlds::realisation::Factors;
-use fredholm::worlds::{sampled::Estimator, trap::trapped, unseen::unseen};
+use fredholm::worlds::{sampled::Estimator, trap::trapped, unsampled::unsampled};
 
 /// The sums of all terms, pixels and replicates are held at once: better refused now than killed later.
 pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
@@ -111,7 +111,7 @@ pub fn light_is_seen(
         ));
     }
     for walk in walks {
-        for missing in unseen(scene, walk, settings.technique) {
+        for missing in unsampled(scene, walk, settings.technique) {
             let who = walk.map_or("the path tracer".into(), |e| e.to_string());
             let who = if walk == Some(Estimator::Light) { who } else { format!("{who}, {}", settings.technique) };
             let (from, what) = (missing.from, missing.what);

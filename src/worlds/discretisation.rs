@@ -25,7 +25,7 @@ pub enum Factors {
 
 /// T_h with its mesh.
 #[derive(Clone, Debug)]
-pub enum Realisation {
+pub enum Discretisation {
     /// The matrix.
     Dense(Radiosity),
     /// The mesh that rays were traced on, and how many. They are three quarters of the memory, and nothing reads them after
@@ -42,20 +42,20 @@ pub struct Stored {
     pub rays: Rays,
 }
 
-impl From<Radiosity> for Realisation {
+impl From<Radiosity> for Discretisation {
     fn from(matrix: Radiosity) -> Self {
         Self::Dense(matrix)
     }
 }
 
 /// Lets the rays go.
-impl From<Stored> for Realisation {
+impl From<Stored> for Discretisation {
     fn from(Stored { patches, rays }: Stored) -> Self {
         Self::Rays(patches, (rays.n * rays.per_row) as u64)
     }
 }
 
-impl Realisation {
+impl Discretisation {
     /// The mesh.
     pub fn patches(&self) -> &Patches {
         match self {

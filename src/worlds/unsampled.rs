@@ -16,10 +16,10 @@
 use super::sampled::Estimator;
 use crate::estimator::Technique;
 use crate::scene::Scene;
-use crate::terms::Unseen;
+use crate::terms::UnsampledPaths;
 
 /// The kinds of paths that an estimator (`None` for the path tracer) cannot find in a scene; empty if it finds all.
-pub fn unseen(scene: &Scene, estimator: Option<Estimator>, technique: Technique) -> Vec<Unseen> {
+pub fn unsampled(scene: &Scene, estimator: Option<Estimator>, technique: Technique) -> Vec<UnsampledPaths> {
     let (no_area, delta) = (scene.lights.any_delta(), scene.any_delta_surface());
     let missing = match estimator {
         Some(Estimator::Light) => delta.then_some((1, "what the eye sees in mirrors or glass")),
@@ -29,5 +29,5 @@ pub fn unseen(scene: &Scene, estimator: Option<Estimator>, technique: Technique)
         _ if technique == Technique::Scatter => no_area.then_some((1, "light of a point or a direction")),
         _ => (delta && no_area).then_some((2, "light of a point or a direction through mirrors or glass")),
     };
-    missing.map(|(from, what)| Unseen { what: what.to_owned(), from }).into_iter().collect()
+    missing.map(|(from, what)| UnsampledPaths { what: what.to_owned(), from }).into_iter().collect()
 }
