@@ -8,7 +8,7 @@
 //! u = L − E is the reflected light, red channel; its error is the area-weighted relative L² norm.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
-use fredholm::operator::form_factor::{FormFactors, Sampling, Watch, polygon_to_polygon};
+use fredholm::operator::form_factor::{FormFactors, VisibilitySampling, Watch, polygon_to_polygon};
 use fredholm::operator::patches::Patches;
 use fredholm::operator::rays::{Half, Light, Rays};
 use fredholm::scene::description::*;
@@ -216,7 +216,7 @@ fn cube(n: usize) {
     let scene = Scene::new(&description);
     let patches = Patches::new(&description, n).unwrap();
     println!("cube, {} patches", patches.len());
-    let f = timed("form factors", || dense(&patches, &scene, Sampling::default()));
+    let f = timed("form factors", || dense(&patches, &scene, VisibilitySampling::default()));
     let invariants = f.invariants();
     // the closed contour of 4×4 parts of each patch: the far rule is the only approximation
     let (mut worst, mut square, mut whole) = (0.0f64, 0.0, 0.0);
@@ -247,7 +247,7 @@ fn in_parts(a: &[DVec3], b: &[DVec3]) -> f64 {
     parts(a).iter().map(|p| b.iter().map(|q| polygon_to_polygon(p, q)).sum::<f64>()).sum::<f64>() / 16.0
 }
 
-fn dense(patches: &Patches, scene: &Scene, sampling: Sampling) -> FormFactors {
+fn dense(patches: &Patches, scene: &Scene, sampling: VisibilitySampling) -> FormFactors {
     FormFactors::new(patches, scene, sampling, Watch::default()).unwrap()
 }
 
@@ -256,12 +256,12 @@ fn cornell(n: usize, with_reference: bool) {
     let scene = Scene::new(&description);
     let patches = timed("patches", || Patches::new(&description, n).unwrap());
     println!("cornell, {} patches", patches.len());
-    let f = timed("form factors", || dense(&patches, &scene, Sampling::default()));
+    let f = timed("form factors", || dense(&patches, &scene, VisibilitySampling::default()));
     println!("  {} visibility rays, {:?}", f.rays, f.invariants());
     if !with_reference {
         return;
     }
-    let exact = timed("reference", || dense(&patches, &scene, Sampling { rays: 256, refined: 6400 }));
+    let exact = timed("reference", || dense(&patches, &scene, VisibilitySampling { rays: 256, refined: 6400 }));
     let (mut square, mut whole) = (0.0, 0.0);
     for i in 0..patches.len() {
         for j in 0..patches.len() {

@@ -8,7 +8,7 @@
 //! `fredholm chapter 1`, or `cargo run --release --example 01_one_box_three_answers -- --out DIR`.
 #![allow(clippy::print_stdout)] // a program, not the library
 
-use fredholm::report::decay::{self, Decay, Rate};
+use fredholm::report::decay::{self, Decay, RateLine};
 use fredholm::report::plot::{Curve, Look};
 use fredholm::report::table::{average, significant};
 use fredholm::report::{
@@ -157,7 +157,7 @@ fn figures(out: &Path, scene: &Scene, a: &Answers, settings: &Settings) -> Resul
     let curve = |label: &str, terms: &TermMeans, look| Curve { label: label.into(), points: decay::norms(terms), look };
     let surface =
         vec![curve("series", &series, Look::SINGLE), curve("matrix", &TermMeans::exact(&matrix), Look::MATRIX)];
-    let lines = [Some(Rate::guaranteed(g, matrix[0])), Rate::tail_bound(g, k, series.mean[k])];
+    let lines = [Some(RateLine::guaranteed(g, matrix[0])), RateLine::tail_bound(g, k, series.mean[k])];
     let lines = lines.into_iter().flatten().collect();
     let figure = Decay { title: "How the terms decay".into(), surface, lines, ..Decay::default() };
     decay::draw(&figure, &caption)?.write(out, "decay")?;

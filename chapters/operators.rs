@@ -11,7 +11,7 @@
 #![allow(clippy::print_stdout)] // a program, not the library
 
 use fredholm::operator::algebra::{AlgebraError, Expression};
-use fredholm::operator::form_factor::{FormFactors, Sampling, Watch};
+use fredholm::operator::form_factor::{FormFactors, VisibilitySampling, Watch};
 use fredholm::operator::matrix::LinearOperator;
 use fredholm::operator::patches::Patches;
 use fredholm::scene::{Scene, load};
@@ -48,7 +48,7 @@ impl Equation {
 pub fn room() -> Result<Radiosity, Box<dyn Error>> {
     let room = load::scene("cornell", &load::Options::default())?.description;
     let patches = Patches::new(&room, 600)?;
-    let factors = FormFactors::new(&patches, &Scene::new(&room), Sampling::default(), Watch::default())?;
+    let factors = FormFactors::new(&patches, &Scene::new(&room), VisibilitySampling::default(), Watch::default())?;
     Ok(Radiosity::new(patches, factors))
 }
 

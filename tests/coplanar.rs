@@ -626,7 +626,7 @@ fn commands_name_what_coincides() {
     assert!(code == 0 && err.contains(words) && out.contains(&format!("Undecided: {words}")), "{code} {out} {err}");
     assert!(out.lines().all(|l| l.chars().count() <= 100), "{out}");
     let summary = fredholm::report::summary::read(&desk.path().join("a/summary.json")).unwrap();
-    assert!(summary.verdicts.iter().all(|v| v.outcome == fredholm::report::summary::Outcome::Inconclusive));
+    assert!(summary.verdicts.iter().all(|v| v.outcome == fredholm::stats::Outcome::Inconclusive));
     assert!(summary.series.iter().all(|s| s.undecided.as_deref() == Some(words)));
     let (code, out, _) = run("check bias --scene flush.toml --spp 4096 --batch 64 -q -o b");
     assert!(code == 0 && out.contains("Undecided"), "{code} {out}");

@@ -217,18 +217,18 @@ fn visibility_samples_leave_the_reflected_light_right() {
     // the same mesh with 6400 instead of 576 rays per pair that is partly hidden; without any, the error is 0.8
     let scene = cornell();
     let patches = Patches::new(&scene, 600).unwrap();
-    let reflected = |sampling: Sampling| {
+    let reflected = |sampling: VisibilitySampling| {
         let f = FormFactors::new(&patches, &BruteForce::new(&scene), sampling, Watch::default()).unwrap();
         let lit = Radiosity::new(patches.clone(), f).solve().unwrap().radiance;
         lit.iter().zip(patches.iter()).map(|(l, p)| l.x - p.emission.x).collect::<Vec<_>>()
     };
     let norm = |x: &[f64]| x.iter().zip(patches.iter()).map(|(x, p)| p.area * x * x).sum::<f64>().sqrt();
-    let exact = reflected(Sampling { rays: 512, refined: 6400 });
-    let error = |sampling: Sampling| {
+    let exact = reflected(VisibilitySampling { rays: 512, refined: 6400 });
+    let error = |sampling: VisibilitySampling| {
         let u = reflected(sampling);
         norm(&u.iter().zip(&exact).map(|(u, x)| u - x).collect::<Vec<_>>()) / norm(&exact)
     };
-    let (usual, few) = (error(Sampling::default()), error(Sampling { rays: 8, refined: 8 }));
+    let (usual, few) = (error(VisibilitySampling::default()), error(VisibilitySampling { rays: 8, refined: 8 }));
     assert!(usual < 1e-3 && few > 4.0 * usual, "{usual:e} {few:e}");
 }
 

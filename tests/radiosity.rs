@@ -348,7 +348,7 @@ fn timings() {
         let (wall, cpu) = (std::time::Instant::now(), cpu_seconds());
         let patches = Patches::new(scene, n).unwrap();
         let mesh = cpu_seconds() - cpu;
-        let f = FormFactors::new(&patches, visibility, Sampling::default(), Watch::default()).unwrap();
+        let f = FormFactors::new(&patches, visibility, VisibilitySampling::default(), Watch::default()).unwrap();
         println!(
             "{name} n = {}: mesh {mesh:.2}, all {:.2} CPU-s, {:.2} s wall, {:.1} M rays, {:?}",
             f.n,

@@ -10,17 +10,18 @@ use exr::prelude::{
 use fredholm::{
     report::{
         contact_sheet::{self, Cell},
-        decay::{self, Decay, Rate, RateKind, independent_ratios},
+        decay::{self, Decay, RateKind, RateLine, independent_ratios},
         exr as layers,
         html::{self, Plate},
         picture::{NON_FINITE, auto_gain, develop, gain_label, srgb},
         plot::{Curve, Figure, Look, Point},
-        summary::{self, Bounds, Outcome, Radiosity, Summary, Verdict},
+        summary::{self, Bounds, Radiosity, Summary, VerdictRecord},
         table,
         typeset::Caption,
         variance::{self, Falling, Variance},
         zmap,
     },
+    stats::Outcome,
     terms::{Cost, Estimate, Functional, Series, World},
 };
 use glam::DVec3;
@@ -271,7 +272,7 @@ fn nothing_is_drawn_outside_a_frame() {
         at(7.0, 0.1, f64::INFINITY),
         at(8.0, 0.02, 0.001),
     ];
-    let line = |value, ratio| Rate { label: "line".into(), k0: 0.0, value, ratio, kind: RateKind::Guaranteed };
+    let line = |value, ratio| RateLine { label: "line".into(), k0: 0.0, value, ratio, kind: RateKind::Guaranteed };
     let decay = Decay {
         title: "hard".into(),
         ratios: vec![curve(independent_ratios(&points))],
@@ -346,7 +347,7 @@ fn full_summary() -> Summary {
         undecided: None,
         variance: Default::default(),
     };
-    let verdict = Verdict {
+    let verdict = VerdictRecord {
         name: "T1: terms − radiosity".into(),
         effect: 1e-300,
         interval: (f64::NEG_INFINITY, 0.1),
@@ -479,7 +480,7 @@ fn tables_are_aligned_and_narrow() {
     let text = table::series("terms", series.image(), &rays);
     let lines: Vec<_> = text.lines().collect();
     assert_eq!(lines.len(), 1 + 2 + 3 + 3, "{text}");
-    let verdict = Verdict {
+    let verdict = VerdictRecord {
         name: "a very long name of a comparison, longer than any".into(),
         ..full_summary().verdicts[0].clone()
     };

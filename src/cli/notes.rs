@@ -1,6 +1,6 @@
 //! What a run says beside its tables: the judgement, facts about the matrix and the decay, warnings.
 
-use super::solve::Found;
+use super::solve::Solved;
 use fredholm::estimator::Roulette;
 use fredholm::operator::guided::warp::CELLS;
 use fredholm::report::extrapolation::{self, Measured};
@@ -11,7 +11,7 @@ use fredholm::stats::{self, Comparison, Evidence, TermMeans, observed_rate};
 use fredholm::terms::Series;
 use fredholm::terms::functional::Replicates;
 use fredholm::worlds::discrete::{Discrete, Unlit};
-use fredholm::worlds::discretisation::{Difference, Sampling};
+use fredholm::worlds::discretisation::{Difference, SampledRows};
 use fredholm::worlds::growth;
 use fredholm::worlds::guided::Prepared;
 use fredholm::worlds::sampled::Estimator;
@@ -96,7 +96,7 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
 }
 
 /// What stored rays are worth.
-fn sampling(s: &Sampling) -> String {
+fn sampling(s: &SampledRows) -> String {
     let mut out = format!(
         "{} rays a row: relative L² error bar of L − E over the patches {:.1e}; {} steps",
         s.per_row,
@@ -133,7 +133,7 @@ pub fn guide(g: &Prepared) -> String {
 }
 
 /// What is printed about the decay.
-pub fn decay_facts(found: &Found) -> Vec<String> {
+pub fn decay_facts(found: &Solved) -> Vec<String> {
     let mut out = vec![];
     if let Some((_, r)) = found.surface.iter().find(|s| s.0 == Estimator::Single) {
         let means = TermMeans::from(r);
@@ -156,7 +156,7 @@ pub fn decay_facts(found: &Found) -> Vec<String> {
 }
 
 /// What the first half of the terms says about the whole, in the slowest channel.
-pub fn extrapolated(found: &Found) -> Option<String> {
+pub fn extrapolated(found: &Solved) -> Option<String> {
     let last = found.settings.max_bounces / 2 + 1;
     // two terms are too few for what is shown, and without a tail there is no whole
     // and where the tail has no error bar, nothing is known of how far off anything is
@@ -229,7 +229,7 @@ pub fn doubts<'a>(results: impl Iterator<Item = &'a Series>) -> Vec<String> {
 }
 
 /// Where a whole picture is black: that nothing was found, and what there is to be seen.
-pub fn black(found: &Found) -> Option<String> {
+pub fn black(found: &Solved) -> Option<String> {
     let mut all = found.terms.iter().chain(&found.path).peekable();
     all.peek()?;
     let paths: u64 = found.terms.iter().chain(&found.path).map(|s| s.series.cost.paths).sum();
@@ -252,7 +252,7 @@ pub fn black(found: &Found) -> Option<String> {
 }
 
 /// What the reader must know before trusting an error bar.
-pub fn warnings(found: &Found) -> Vec<String> {
+pub fn warnings(found: &Solved) -> Vec<String> {
     let mut out = vec![];
     out.extend(black(found));
     out.extend(doubts(found.terms.iter().chain(&found.path).map(|s| &s.series)));
@@ -274,7 +274,7 @@ pub fn warnings(found: &Found) -> Vec<String> {
 }
 
 /// What has no error bar because its variance is infinite or not known, and what would have one.
-fn variances(found: &Found) -> Vec<String> {
+fn variances(found: &Solved) -> Vec<String> {
     let s = &found.settings;
     let safe = if found.guide.is_some() {
         "leave --guide out"

@@ -26,7 +26,7 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Everything a run found.
-pub struct Found {
+pub struct Solved {
     pub command: String,
     pub folder: PathBuf,
     pub description: Description,
@@ -53,7 +53,7 @@ pub struct Found {
     pub radii: Option<Radii>,
     /// Moments of paths without roulette, where the terms are estimated by prefixes.
     pub moments: Option<Recorded>,
-    pub verdicts: Vec<summary::Verdict>,
+    pub verdicts: Vec<summary::VerdictRecord>,
 }
 
 /// What a command computes unless told otherwise.
@@ -182,7 +182,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     let progress = Progress::new(run.shared.quiet, preview);
     let stopped = || stop.load(Ordering::Relaxed);
 
-    let mut found = Found {
+    let mut found = Solved {
         hash,
         threads: rayon::current_num_threads(),
         command,
@@ -286,14 +286,14 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     if stopped() {
         return Ok(Ending::Interrupted);
     }
-    let differs = found.verdicts.iter().any(|v| v.outcome == summary::Outcome::Differs);
+    let differs = found.verdicts.iter().any(|v| v.outcome == fredholm::stats::Outcome::Differs);
     let worlds = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
     let broken = worlds.map(|s| s.series.cost.non_finite).sum::<u64>() > 0;
     Ok(if differs || broken { Ending::Failed } else { Ending::Ok })
 }
 
 /// Interrupted before anything was found.
-fn nothing_to_save(found: &Found) -> Ending {
+fn nothing_to_save(found: &Solved) -> Ending {
     super::note("nothing to save yet");
     let _ = std::fs::remove_dir(&found.folder); // only if it is empty
     Ending::Interrupted
@@ -301,7 +301,7 @@ fn nothing_to_save(found: &Found) -> Ending {
 
 /// Whether the variance of the path tracer is finite can be known from the matrix; a coarse one will do. Where there is none,
 /// the largest albedo gives a bound.
-fn radii(found: &Found) -> Option<Radii> {
+fn radii(found: &Solved) -> Option<Radii> {
     let q = match &found.settings.path_roulette {
         Roulette::Constant { q, .. } => *q,
         Roulette::Table(q) => *q.last()?,
@@ -351,7 +351,7 @@ fn aside(settings: &Settings) -> Option<u32> {
 }
 
 /// How far stored rays on the same patches are from the matrix.
-fn apart(run: &Run, found: &Found, progress: &Progress) -> Result<Option<Difference>, Failure> {
+fn apart(run: &Run, found: &Solved, progress: &Progress) -> Result<Option<Difference>, Failure> {
     let Some(r) = &found.radiosity else { return Ok(None) };
     match r.matrix.against_rays(&found.scene, preflight::rays(run), found.settings.seed, progress, stop_flag()) {
         Ok(difference) => Ok(Some(difference)),
@@ -361,7 +361,7 @@ fn apart(run: &Run, found: &Found, progress: &Progress) -> Result<Option<Differe
 }
 
 /// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.
-fn orders(found: &Found, progress: &Progress) -> Result<Vec<Series>, Failure> {
+fn orders(found: &Solved, progress: &Progress) -> Result<Vec<Series>, Failure> {
     let coarsest = (found.settings.patches / 16).max(1);
     let matrix = discrete::matrix(&found.description, &found.scene, coarsest, &found.settings, progress, stop_flag());
     let picture = match matrix {
@@ -389,7 +389,7 @@ pub fn scene_hash(canonical: &str) -> String {
     format!("{:016x}", fredholm::math::fnv1a(canonical.bytes()))
 }
 
-fn verdicts(found: &Found) -> Vec<summary::Verdict> {
+fn verdicts(found: &Solved) -> Vec<summary::VerdictRecord> {
     let criterion = Criterion::default();
     let mut all = vec![];
     let mut judge = |name: &str, a: &Series, b: &Series, allowance: &[fredholm::terms::Functional]| {
@@ -414,7 +414,7 @@ fn verdicts(found: &Found) -> Vec<summary::Verdict> {
 }
 
 /// What a run prints: the settings, a table per world, what is known about the decay, the verdicts, the folder.
-fn people(found: &Found, summary: &summary::Summary, verbose: bool) -> String {
+fn people(found: &Solved, summary: &summary::Summary, verbose: bool) -> String {
     let s = &found.settings;
     let spp = if s.time.is_none() && summary.spp < s.spp.into() {
         format!("{} of {}", summary.spp, s.spp)

@@ -6,7 +6,7 @@ mod pictures;
 mod plots;
 
 use super::radiosity::Export;
-use super::solve::Found;
+use super::solve::Solved;
 use super::{Failure, output, strategies};
 use fredholm::report::summary;
 use fredholm::report::typeset::Caption;
@@ -41,7 +41,7 @@ pub fn preview(folder: &Path, d: &Description, command: &str, seed: u64) -> impl
 }
 
 /// Writes everything and returns the summary that was written.
-pub fn all(found: &Found, export: Option<Export>) -> Result<summary::Summary, Failure> {
+pub fn all(found: &Solved, export: Option<Export>) -> Result<summary::Summary, Failure> {
     let mut out = Files { folder: found.folder.clone(), names: vec![] };
     let caption =
         Caption { command: found.command.clone(), seed: found.settings.seed, scene: found.description.name.clone() };
@@ -86,7 +86,7 @@ impl Files {
 }
 
 /// What an EXR says of how it was made; nothing that differs between two equal runs.
-fn attributes(found: &Found) -> [(&'static str, String); 5] {
+fn attributes(found: &Solved) -> [(&'static str, String); 5] {
     [
         ("fredholm.command", found.command.clone()),
         ("fredholm.seed", found.settings.seed.to_string()),
@@ -97,12 +97,12 @@ fn attributes(found: &Found) -> [(&'static str, String); 5] {
 }
 
 /// Samples per pixel that every world has: fewer than asked for when interrupted.
-fn spp(found: &Found) -> u32 {
+fn spp(found: &Solved) -> u32 {
     let all = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
     all.map(|s| s.spp).min().unwrap_or(0)
 }
 
-fn summarise(found: &Found, files: &[String]) -> summary::Summary {
+fn summarise(found: &Solved, files: &[String]) -> summary::Summary {
     let size = found.description.camera.size;
     let first = found.terms.first();
     let image = first.map(|t| t.series.image());

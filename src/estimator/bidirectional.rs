@@ -31,7 +31,7 @@ pub struct Bidirectional(pub Plan);
 
 /// One way to find one path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found {
+pub struct StrategyValue {
     /// Vertices walked from the light.
     pub s: usize,
     /// The term.
@@ -51,7 +51,7 @@ impl Bidirectional {
         t: &T,
         sensor: &impl Sensor<T>,
         (key, pixel, sample): (Key, u32, u32),
-        mut found: impl FnMut(Found),
+        mut found: impl FnMut(StrategyValue),
         mut rays: impl FnMut(usize),
     ) {
         let last = self.0.max_bounces;
@@ -88,7 +88,7 @@ impl Bidirectional {
             let e = t.emission(&x.state);
             if e != Rgb::ZERO {
                 let weight = PathDensities::new(t, &eye[..=k], &[], None).weight(squared);
-                found(Found { s: 0, k, pixel, value: x.throughput * e, weight });
+                found(StrategyValue { s: 0, k, pixel, value: x.throughput * e, weight });
             }
         }
         // s = 1: it connects to a light, chosen anew
@@ -97,7 +97,13 @@ impl Bidirectional {
             if let Some(c) = t.connect(&x.state, &mut eye_numbers(v, Purpose::Connect)) {
                 let y = Node::new(c.state, Rgb::ONE, t.emit_density(&c.state));
                 let weight = PathDensities::new(t, &eye[..=v], std::slice::from_ref(&y), None).weight(squared);
-                found(Found { s: 1, k: v + 1, pixel, value: x.throughput * c.weight * t.emission(&c.state), weight });
+                found(StrategyValue {
+                    s: 1,
+                    k: v + 1,
+                    pixel,
+                    value: x.throughput * c.weight * t.emission(&c.state),
+                    weight,
+                });
             }
         }
         // s = 2 … k: the walks are linked
@@ -112,7 +118,7 @@ impl Bidirectional {
                     let link = t.link(&x.state, &y.state);
                     if link > 0.0 {
                         let weight = PathDensities::new(t, &eye[..=i], &light[..=j], None).weight(squared);
-                        found(Found { s: j + 1, k, pixel, value: value * link, weight });
+                        found(StrategyValue { s: j + 1, k, pixel, value: value * link, weight });
                     }
                 }
             }
@@ -127,7 +133,7 @@ impl Bidirectional {
                 if sensor.sees(t, &y.state) {
                     let first = (seen.eye, seen.density * share);
                     let weight = PathDensities::new(t, &[], &light[..=k], Some(first)).weight(squared);
-                    found(Found { s: k + 1, k, pixel: seen.pixel, value: value * share, weight });
+                    found(StrategyValue { s: k + 1, k, pixel: seen.pixel, value: value * share, weight });
                 }
             }
         }
@@ -139,7 +145,7 @@ impl Bidirectional {
         t: &T,
         sensor: &impl Sensor<T>,
         batch: &Batch,
-        mut found: impl FnMut(Found, u32),
+        mut found: impl FnMut(StrategyValue, u32),
     ) -> Vec<usize> {
         let mut rays = vec![0; self.0.max_bounces + 1];
         for sample in batch.samples.clone() {

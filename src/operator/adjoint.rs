@@ -35,7 +35,7 @@ pub enum Role {
 
 /// One step of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Walk<S> {
+pub struct AdjointStep<S> {
     /// Where it arrived, asked from where it left.
     pub state: S,
     /// Kernel over density.
@@ -64,7 +64,7 @@ pub trait Adjoint: Transport {
     /// The density with which [`Transport::connect`] chooses `at` from `from`, in the measure of `at`.
     fn connect_density(&self, from: &Self::State, at: &Self::State) -> f32;
     /// One step: scattering for [`Role::Radiance`], its adjoint for the others. Light does not walk into the sky.
-    fn walk(&self, at: &Self::State, role: Role, rng: &mut Rng) -> Option<Walk<Self::State>>;
+    fn walk(&self, at: &Self::State, role: Role, rng: &mut Rng) -> Option<AdjointStep<Self::State>>;
     /// What goes from `at` to `to`; `at` has been asked from where its walk came from.
     fn toward(&self, at: &Self::State, to: &Self::State, role: Role) -> Toward;
     /// Stands for the density of a delta step from `at` to `to` chosen with probability `choice`; `at` has been asked from

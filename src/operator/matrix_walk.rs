@@ -13,7 +13,7 @@
 //! | E | `emission` | one per row and channel |
 //! | c_j | `1/(number of emitting rows)` | density of next-event estimation |
 
-use super::adjoint::{Adjoint, Role, Toward, Walk};
+use super::adjoint::{Adjoint, AdjointStep, Role, Toward};
 use super::transport::{Seen, Sensor, Step, Transport};
 use crate::math::{Rgb, Rng};
 
@@ -147,17 +147,22 @@ impl Adjoint for MatrixWalk {
         self.emit_density(at)
     }
 
-    fn walk(&self, at: &u32, role: Role, rng: &mut Rng) -> Option<Walk<u32>> {
+    fn walk(&self, at: &u32, role: Role, rng: &mut Rng) -> Option<AdjointStep<u32>> {
         if role == Role::Radiance {
             let s = self.scatter(at, rng)?;
-            return Some(Walk { state: s.state, weight: s.weight, density: s.pdf, delta: None });
+            return Some(AdjointStep { state: s.state, weight: s.weight, density: s.pdf, delta: None });
         }
         let (u, column) = (rng.four(), self.column(*at));
         let sum = *column.last()?;
         let u = (f64::from(u[0]) + f64::from(u[1]) / 16_777_216.0) * sum;
         let i = column.partition_point(|&c| c <= u);
         let go = self.toward(at, &(i as u32), role);
-        (i < self.n).then(|| Walk { state: i as u32, weight: go.value * sum as f32, density: go.density, delta: None })
+        (i < self.n).then(|| AdjointStep {
+            state: i as u32,
+            weight: go.value * sum as f32,
+            density: go.density,
+            delta: None,
+        })
     }
 
     fn toward(&self, &at: &u32, &to: &u32, role: Role) -> Toward {

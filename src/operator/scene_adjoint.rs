@@ -9,7 +9,7 @@
 //!
 //! Reference: Veach (1997), ch. 8; Pharr, Jakob, Humphreys, *Physically Based Rendering* (3rd ed. 2016), ch. 16.
 
-use super::adjoint::{Adjoint, Role, Toward, Walk};
+use super::adjoint::{Adjoint, AdjointStep, Role, Toward};
 use super::scene_transport::SceneTransport;
 use super::transport::Seen;
 use crate::math::direction::{about, cos_sin_turn, cosine_hemisphere, uniform_sphere};
@@ -68,7 +68,7 @@ impl Adjoint for SceneTransport<'_> {
         }
     }
 
-    fn walk(&self, at: &Vertex, role: Role, rng: &mut Rng) -> Option<Walk<Vertex>> {
+    fn walk(&self, at: &Vertex, role: Role, rng: &mut Rng) -> Option<AdjointStep<Vertex>> {
         let u = rng.four();
         if role == Role::Emission {
             return self.shine(at, u);
@@ -86,7 +86,7 @@ impl Adjoint for SceneTransport<'_> {
                 .filter(|density| *density > 0.0)
                 .unwrap_or_else(|| d.pdf * self.angle(at, &state, d.direction)),
         };
-        Some(Walk { state, weight: d.weight, density, delta })
+        Some(AdjointStep { state, weight: d.weight, density, delta })
     }
 
     fn toward(&self, at: &Vertex, to: &Vertex, role: Role) -> Toward {
@@ -155,7 +155,7 @@ impl SceneTransport<'_> {
     }
 
     /// Light leaves its source: E cos θ/p is π E, 4π I, or πR² times what is parallel.
-    fn shine(&self, at: &Vertex, u: [f32; 4]) -> Option<Walk<Vertex>> {
+    fn shine(&self, at: &Vertex, u: [f32; 4]) -> Option<AdjointStep<Vertex>> {
         let light = self.scene.light(at);
         let (o, d, weight) = match self.scene.light_of(at) {
             None if at.on_surface() => {
@@ -172,7 +172,7 @@ impl SceneTransport<'_> {
         };
         let state = self.scene.trace(o, d)?;
         let density = self.toward(&Vertex { omega: at.omega, ..*at }, &state, Role::Emission).density;
-        (weight != Rgb::ZERO).then_some(Walk { state, weight, density, delta: None })
+        (weight != Rgb::ZERO).then_some(AdjointStep { state, weight, density, delta: None })
     }
 }
 

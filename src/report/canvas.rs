@@ -24,7 +24,7 @@ pub(super) type Drawn = Result<(), Box<dyn std::error::Error>>;
 pub(super) type Place = (f64, f64);
 
 /// The sheet a figure is drawn on; all lengths are CSS pixels.
-pub(super) struct Page<'a>(pub(super) DrawingArea<SVGBackend<'a>, Shift>);
+pub(super) struct Canvas<'a>(pub(super) DrawingArea<SVGBackend<'a>, Shift>);
 
 /// How a piece of text looks.
 #[derive(Clone, Copy)]
@@ -66,7 +66,7 @@ fn unit((x, y): Place) -> (i32, i32) {
     ((x * SCALE).round() as i32, (y * SCALE).round() as i32)
 }
 
-impl Page<'_> {
+impl Canvas<'_> {
     /// A line of text, vertically centred on `at`.
     pub(super) fn text(&self, text: &str, at: Place, words: Words) -> Drawn {
         // The plot crate divides font sizes by 1.24 when it writes SVG.

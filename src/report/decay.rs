@@ -17,14 +17,14 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Words},
     panel::Panel,
     plot::{BLACK, Curve, Figure, Point, figure},
     typeset::Caption,
 };
 use crate::stats::{self, TermMeans};
 
-pub use super::rate::{Rate, RateKind};
+pub use super::rate::{RateKind, RateLine};
 
 /// What the figure shows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,7 +34,7 @@ pub struct Decay {
     /// Surface L1 norms against k.
     pub surface: Vec<Curve>,
     /// Geometric lines in the surface panel; those that are rates of the terms stand in the ratio panel, too.
-    pub lines: Vec<Rate>,
+    pub lines: Vec<RateLine>,
     /// Image L2 norms against k; empty: no such panel.
     pub image: Vec<Curve>,
     /// Ratios at k = 1, 2, …; empty: no such panel. See [`independent_ratios`].
@@ -97,7 +97,7 @@ pub fn draw(decay: &Decay, caption: &Caption) -> Result<Figure, ReportError> {
     figure("decay", WIDTH, if below { 780 } else { 490 }, caption, |page| panels(page, decay))
 }
 
-fn panels(page: &Page, decay: &Decay) -> Drawn {
+fn panels(page: &Canvas, decay: &Decay) -> Drawn {
     let last = [&decay.surface, &decay.image].into_iter().flatten().flat_map(|c| &c.points).map(|p| p.x);
     let last = last.filter(|x| x.is_finite()).fold(1.0, f64::max) as usize;
     page.text(&decay.title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;

@@ -8,7 +8,7 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Stroke, Words},
     panel::Panel,
     plot::{BLACK, Curve, Figure, GREY, Look, Point, figure},
     table::significant,
@@ -42,7 +42,7 @@ pub fn draw(d: &Diagnosis, title: &str, caption: &Caption) -> Result<Figure, Rep
     })
 }
 
-fn ratios(page: &Page, d: &Diagnosis) -> Drawn {
+fn ratios(page: &Canvas, d: &Diagnosis) -> Drawn {
     let point = |r: &Ratio| {
         let Slot::Term(k) = r.slot else { return None };
         // a 95 % interval of a normal deviate, as every bar of the figure
@@ -87,7 +87,7 @@ fn ratios(page: &Page, d: &Diagnosis) -> Drawn {
     Ok(())
 }
 
-fn map(page: &Page, d: &Diagnosis, left: f64) -> Drawn {
+fn map(page: &Canvas, d: &Diagnosis, left: f64) -> Drawn {
     let e = &d.evidence;
     let direct = e.ratio(Slot::Term(1)).filter(|r| r.value.is_finite());
     let Some(r) = direct.or(e.ratio(Slot::Whole)).or(e.ratios.first()) else { return Ok(()) };

@@ -11,7 +11,7 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Stroke, Words},
     panel::Panel,
     plot::{Curve, Figure, GREY, Look, Mark, Point, figure},
     table::{Side, aligned},
@@ -113,7 +113,7 @@ pub fn draw(r: &Refinement, title: &str, caption: &Caption) -> Result<Figure, Re
     figure("eigenvalues", 1240, 620, caption, |page| panels(page, r, title))
 }
 
-fn panels(page: &Page, r: &Refinement, title: &str) -> Drawn {
+fn panels(page: &Canvas, r: &Refinement, title: &str) -> Drawn {
     page.text(title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
     let all = tracks(r);
     let band = all.first().map_or(0.0, |t| t.band);

@@ -7,7 +7,7 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Stroke, Words},
     panel::Panel,
     plot::{Curve, Figure, GREY, Look, Point, VERMILION, figure},
     typeset::Caption,
@@ -44,7 +44,7 @@ pub fn draw(groups: &[(String, Vec<Dot>)], caption: &Caption) -> Result<Figure, 
     })
 }
 
-fn diagonal(page: &Page, groups: &[(String, Vec<Dot>)]) -> Drawn {
+fn diagonal(page: &Canvas, groups: &[(String, Vec<Dot>)]) -> Drawn {
     let dots = || groups.iter().flat_map(|g| &g.1).filter(|d| d.left > 0.0 && d.right > 0.0);
     let both = || dots().flat_map(|d| [d.left, d.right]);
     let name = "radiance   (W sr⁻¹ m⁻²)";
@@ -72,7 +72,7 @@ fn diagonal(page: &Page, groups: &[(String, Vec<Dot>)]) -> Drawn {
     Ok(())
 }
 
-fn p_values(page: &Page, groups: &[(String, Vec<Dot>)]) -> Drawn {
+fn p_values(page: &Canvas, groups: &[(String, Vec<Dot>)]) -> Drawn {
     let mut p: Vec<f64> = groups.iter().flat_map(|g| &g.1).map(|d| d.p).filter(|p| !p.is_nan()).collect();
     p.sort_by(f64::total_cmp);
     let n = p.len();

@@ -32,7 +32,7 @@ pub struct Measured {
 
 /// What an extrapolation has come to, in units of the whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
+pub struct Extrapolated {
     /// Standard error of A.
     pub noise: f64,
     /// How much noisier than the sum of the same terms.
@@ -43,7 +43,7 @@ pub struct Outcome {
 
 impl Measured {
     /// The outcome of every method of [`METHODS`]; `rate` is held to be known. None where a method has nothing to work with.
-    pub fn outcomes(&self, rate: f64) -> [Option<Outcome>; 5] {
+    pub fn outcomes(&self, rate: f64) -> [Option<Extrapolated>; 5] {
         let whole: f64 = self.mean.iter().sum();
         let c = self.covariance.view((0, 0), (self.used, self.used)).into_owned();
         accelerate::all(&self.mean[..self.used], rate).map(|a| {
@@ -52,7 +52,7 @@ impl Measured {
             let d = DVector::from_iterator(self.mean.len(), (0..self.mean.len()).map(d));
             // rounding of a sum that cancels may be below 0
             let error = (&self.covariance * &d).dot(&d).max(0.0).sqrt();
-            Some(Outcome {
+            Some(Extrapolated {
                 noise: a.std_error(&c) / whole,
                 gain: a.amplification(&c),
                 off: [a.value / whole - 1.0, error / whole],
@@ -78,7 +78,7 @@ pub fn table(measured: &[Measured], rate: f64) -> String {
     let mut rows = vec![header];
     for (m, name) in METHODS.into_iter().enumerate() {
         let cells = outcomes.iter().flat_map(|o| match o[m] {
-            Some(Outcome { noise, gain, off: [off, error] }) => [
+            Some(Extrapolated { noise, gain, off: [off, error] }) => [
                 format!("{} %", plus_minus(100.0 * off, 100.0 * error, 2)),
                 format!("{} %", significant(100.0 * noise, 2)),
                 format!("×{}", significant(gain, 2)),

@@ -9,11 +9,12 @@ use super::{
     ReportError,
     base64::encode,
     files,
-    summary::{Outcome, Verdict},
+    summary::VerdictRecord,
     table::{average, error, known, mark, outcome, p_value, signed, significant},
     typeset::escape,
     write_atomically,
 };
+use crate::stats::Outcome;
 use crate::terms::{Estimate, Functional};
 
 /// Everything on the page.
@@ -26,7 +27,7 @@ pub struct Page<'a> {
     /// Short facts beside it: seed, samples, size, time.
     pub facts: Vec<(String, String)>,
     /// What was compared, and the results.
-    pub verdicts: &'a [Verdict],
+    pub verdicts: &'a [VerdictRecord],
     /// Pictures and plots in the order of the page.
     pub plates: Vec<Plate<'a>>,
     /// Label and image means of each world.
@@ -133,7 +134,7 @@ pub fn render(page: &Page) -> Result<String, ReportError> {
     ))
 }
 
-fn verdict_section(verdicts: &[Verdict]) -> String {
+fn verdict_section(verdicts: &[VerdictRecord]) -> String {
     if verdicts.is_empty() {
         return String::new();
     }

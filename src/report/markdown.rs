@@ -65,7 +65,7 @@ pub fn verdicts(name: &str, comparison: &Comparison) -> String {
         let [effect, low, high, delta] = [v.effect, v.interval.0, v.interval.1, v.delta].map(|x| significant(x, 2));
         let samples = v.needed_factor.map(|f| format!("{} times the samples", significant(f, 2)));
         let cure = v.reason.as_deref().and_then(|r| r.rsplit(": ").next()).map(String::from);
-        let judged = format!("{} {}", mark(v.outcome.into()), outcome(v.outcome.into()));
+        let judged = format!("{} {}", mark(v.outcome), outcome(v.outcome));
         let interval = format!("{low} to {high}").replace('-', "−").replace("e−", "e-");
         [v.name.clone(), effect, interval, delta, judged, samples.or(cure).unwrap_or_default()]
     };

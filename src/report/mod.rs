@@ -6,7 +6,7 @@
 //! | file | module |
 //! |---|---|
 //! | `terms.exr` | [`exr`] |
-//! | `T00.png`, `terms.png`, `partial_00.png` | [`picture`], [`sheet`] |
+//! | `T00.png`, `terms.png`, `partial_00.png` | [`picture`], [`contact_sheet`] |
 //! | z maps of `compare` | [`zmap`] |
 //! | `decay.svg`, `variance.svg` and their PNGs | [`plot`], [`decay`], [`variance`] |
 //! | `bias.svg`, `equilibrium.svg` and their PNGs | [`watch`], [`equilibrium`] |

@@ -10,7 +10,7 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Stroke, Words},
     panel::Panel,
     picture::Picture,
     plot::{BLACK, Curve, Figure, GREY, Look, Point, figure},
@@ -151,7 +151,7 @@ pub fn draw(s: &Spectrum, title: &str, caption: &Caption) -> Result<Figure, Repo
     figure("modes", 1120, 860, caption, |page| panels(page, s, title))
 }
 
-fn panels(page: &Page, s: &Spectrum, title: &str) -> Drawn {
+fn panels(page: &Canvas, s: &Spectrum, title: &str) -> Drawn {
     page.text(title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
     // every eigenvalue: one outside the band is a mark, those inside are small change
     let last = s.values.len().min(60);

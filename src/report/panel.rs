@@ -5,13 +5,13 @@ use plotters::{prelude::RGBColor, style::text_anchor::HPos};
 
 use super::{
     axis::Axis,
-    canvas::{Drawn, Page, Place, Stroke, Words},
+    canvas::{Canvas, Drawn, Place, Stroke, Words},
     plot::{Curve, FAINT, GREY, GRID, Look, Point},
 };
 
 /// A frame with two axes.
 pub(super) struct Panel<'a, 'b> {
-    page: &'a Page<'b>,
+    page: &'a Canvas<'b>,
     left: f64,
     top: f64,
     width: f64,
@@ -23,7 +23,7 @@ pub(super) struct Panel<'a, 'b> {
 impl<'a, 'b> Panel<'a, 'b> {
     /// Draws grid, frame, labels and title. `frame` is left, top, width, height; labels stand outside it.
     pub(super) fn draw(
-        page: &'a Page<'b>,
+        page: &'a Canvas<'b>,
         title: &str,
         [left, top, width, height]: [f64; 4],
         x: Axis,

@@ -13,7 +13,7 @@ use plotters::prelude::{IntoDrawingArea, RGBColor, SVGBackend};
 
 use super::{
     ReportError,
-    canvas::{Drawn, Page, SCALE, Words},
+    canvas::{Canvas, Drawn, SCALE, Words},
     half_width_95,
     typeset::{self, Caption, LINE, MONO, SANS},
     write_atomically,
@@ -135,7 +135,7 @@ pub(super) fn figure(
     width: u32,
     height: u32,
     caption: &Caption,
-    draw: impl FnOnce(&Page) -> Drawn,
+    draw: impl FnOnce(&Canvas) -> Drawn,
 ) -> Result<Figure, ReportError> {
     const SIZE: f64 = 11.0;
     const MARGIN: f64 = 16.0;
@@ -147,7 +147,7 @@ pub(super) fn figure(
     let render = || -> Drawn {
         let area = SVGBackend::with_string(&mut svg, (large(width), large(total))).into_drawing_area();
         area.fill(&RGBColor(255, 255, 255))?;
-        let page = Page(area);
+        let page = Canvas(area);
         draw(&page)?;
         for (i, line) in lines.iter().enumerate() {
             let y = f64::from(height) + (i as f64 + 0.5) * SIZE * LINE;

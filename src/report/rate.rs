@@ -6,9 +6,9 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | γ | fitted to the terms; claims nothing beyond them | [`Rate::observed`] |
-//! | r(T_h) | spectral radius of the matrix | [`Rate::spectral`] |
-//! | g | ‖T‖₁ ≤ g = max albedo | [`Rate::guaranteed`], [`Rate::tail_bound`] |
+//! | γ | fitted to the terms; claims nothing beyond them | [`RateLine::observed`] |
+//! | r(T_h) | spectral radius of the matrix | [`RateLine::spectral`] |
+//! | g | ‖T‖₁ ≤ g = max albedo | [`RateLine::guaranteed`], [`RateLine::tail_bound`] |
 
 use super::{
     canvas::Stroke,
@@ -19,7 +19,7 @@ use crate::stats;
 
 /// The line `value · ratio^(k − k0)` for k ≥ k0.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rate {
+pub struct RateLine {
     /// Its words in the legend.
     pub label: String,
     /// Where it starts.
@@ -56,7 +56,7 @@ impl RateKind {
     }
 }
 
-impl Rate {
+impl RateLine {
     /// A fit, from the first term it used.
     pub fn observed(fit: &stats::Rate) -> Self {
         let start = fit.window.start;

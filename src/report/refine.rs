@@ -7,7 +7,7 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Stroke, Words},
     contact_sheet::{self, Cell, Sheet},
     panel::Panel,
     plot::{Curve, Figure, GREY, Look, Point, figure},
@@ -135,7 +135,7 @@ fn shown(max_bounces: usize) -> Vec<Quantity> {
     (2..=max_bounces.min(5)).map(Quantity::Term).chain([Quantity::Indirect]).collect()
 }
 
-fn panels(page: &Page, r: &Refinement, max_bounces: usize) -> Drawn {
+fn panels(page: &Canvas, r: &Refinement, max_bounces: usize) -> Drawn {
     page.text(
         "Finer meshes: how fast the matrix comes near the truth",
         (24.0, 24.0),

@@ -10,7 +10,7 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Words},
     panel::Panel,
     plot::{Curve, Figure, Look, Point, figure},
     table::{Side, aligned, significant},
@@ -159,7 +159,7 @@ pub fn draw(rows: &[Row], title: &str, caption: &Caption) -> Result<Figure, Repo
 /// A number of a schedule.
 type Reading = fn(&Noise) -> Value;
 
-fn panels(page: &Page, rows: &[Row], title: &str) -> Drawn {
+fn panels(page: &Canvas, rows: &[Row], title: &str) -> Drawn {
     page.text(title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
     let curves = |of: Reading| -> [Curve; 2] {
         let points = |noise: &dyn Fn(&Row) -> Option<Noise>| -> Vec<Point> {

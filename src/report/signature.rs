@@ -12,7 +12,7 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Stroke, Words},
     panel::Panel,
     plot::{Curve, Figure, GREY, Look, Point, figure},
     typeset::Caption,
@@ -37,7 +37,7 @@ pub fn draw(signature: &Signature, caption: &Caption) -> Result<Figure, ReportEr
     figure("signature", 960, 490, caption, |page| panel(page, signature))
 }
 
-fn panel(page: &Page, signature: &Signature) -> Drawn {
+fn panel(page: &Canvas, signature: &Signature) -> Drawn {
     page.text(&signature.title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
     let all = || signature.measured.iter().chain(&signature.predicted).filter(|p| p.value.is_finite());
     let last = all().map(|p| p.x).fold(1.0, f64::max) as usize;

@@ -11,7 +11,7 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Stroke, Words},
     panel::Panel,
     plot::{Curve, Figure, GREY, Look, Mark, Point, figure},
     table::{Side, aligned, significant},
@@ -155,7 +155,7 @@ fn look(solver: Solver) -> Look {
     }
 }
 
-fn panels(page: &Page, histories: &[History], radius: f64, title: &str) -> Drawn {
+fn panels(page: &Canvas, histories: &[History], radius: f64, title: &str) -> Drawn {
     page.text(title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
     // LU has no steps to draw
     let drawn: Vec<(usize, &History)> = histories.iter().enumerate().filter(|(_, h)| h.points.len() > 1).collect();

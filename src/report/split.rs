@@ -8,7 +8,7 @@
 
 use super::{
     ReportError,
-    canvas::{Drawn, Page, Words},
+    canvas::{Canvas, Drawn, Words},
     half_width_95,
     plot::{BLACK, BLUE, Figure, GREY, VERMILION, figure},
     table::{Side, aligned, significant},
@@ -206,7 +206,7 @@ fn signed(text: String) -> String {
 }
 
 fn matrix(
-    page: &Page,
+    page: &Canvas,
     left: f64,
     slots: usize,
     tail: bool,

@@ -110,7 +110,7 @@ pub fn csv(grown: &Grown) -> String {
 /// The contact sheet: every stage and the reference, at one gain.
 ///
 /// # Errors
-/// As for [`contact_sheet::grid`](super::sheet::grid).
+/// As for [`contact_sheet::grid`](super::contact_sheet::grid).
 pub fn sheet(title: &str, [w, h]: [usize; 2], grown: &Grown, caption: &Caption) -> Result<Sheet, ReportError> {
     let g = gain(grown);
     let images = grown.stages.iter().map(|s| s.pixels.as_slice()).chain([grown.reference.total.mean.as_slice()]);

@@ -34,7 +34,7 @@ use serde::{Deserialize, Serialize};
 use super::{ReportError, files, null_as_nan::NullAsNan, pixel_errors::PixelErrors, write_atomically};
 use crate::estimator::Vertices;
 use crate::operator::patches::{Patch, Patches};
-use crate::stats;
+use crate::stats::{self, Outcome};
 use crate::terms::{Estimate, Recorded, Series};
 
 /// Name of the schema.
@@ -67,7 +67,7 @@ pub struct Summary {
     pub cross_moments: Option<serde_json::Value>,
     #[serde(default)]
     pub pixel_errors: Vec<PixelErrors>,
-    pub verdicts: Vec<Verdict>,
+    pub verdicts: Vec<VerdictRecord>,
     pub files: Vec<String>,
     pub series: Vec<Series>,
 }
@@ -242,7 +242,7 @@ pub fn cross_moments(recorded: &Recorded, beyond: f64) -> serde_json::Value {
 
 /// One comparison and its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Verdict {
+pub struct VerdictRecord {
     /// What was compared: `T3: terms − radiosity`.
     pub name: String,
     /// The difference found.
@@ -257,37 +257,15 @@ pub struct Verdict {
     pub outcome: Outcome,
 }
 
-/// Result of a comparison.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Outcome {
-    /// The interval holds 0 and lies within the margin.
-    Agrees,
-    /// The interval excludes 0.
-    Differs,
-    /// Neither: more samples are needed.
-    Inconclusive,
-}
-
-impl From<stats::Outcome> for Outcome {
-    fn from(outcome: stats::Outcome) -> Self {
-        match outcome {
-            stats::Outcome::Agrees => Self::Agrees,
-            stats::Outcome::Differs => Self::Differs,
-            stats::Outcome::Inconclusive => Self::Inconclusive,
-        }
-    }
-}
-
 /// The rows of a comparison of that name; without a name, the rows say which functional they speak of.
-pub fn verdicts(name: &str, comparison: &stats::Comparison) -> Vec<Verdict> {
-    let row = |v: &stats::Verdict| Verdict {
+pub fn verdicts(name: &str, comparison: &stats::Comparison) -> Vec<VerdictRecord> {
+    let row = |v: &stats::Verdict| VerdictRecord {
         name: if name.is_empty() { format!("{} ({})", v.name, v.functional) } else { format!("{}: {name}", v.name) },
         effect: v.effect,
         interval: v.interval,
         p: v.p,
         min_detectable: v.min_detectable,
-        outcome: v.outcome.into(),
+        outcome: v.outcome,
     };
     comparison.rows.iter().map(row).collect()
 }

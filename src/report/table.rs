@@ -5,8 +5,8 @@
 //! A dash means "not known", never zero; where the [evidence](crate::stats::evidence) is too thin for an error, the column of errors
 //! says what there is: `3 events`, `no event`, `k̂ 0.9`.
 
-use super::summary::{Outcome, Verdict};
-use crate::stats::{Evidence, half_width_95};
+use super::summary::VerdictRecord;
+use crate::stats::{Evidence, Outcome, half_width_95};
 use crate::terms::{Estimate, Functional};
 
 /// The series of one world: a row per term, then the tail and the sums.
@@ -53,7 +53,7 @@ pub fn series(label: &str, functional: &Functional, rays: &[u64]) -> String {
 }
 
 /// The verdicts of a comparison.
-pub fn verdicts(verdicts: &[Verdict]) -> String {
+pub fn verdicts(verdicts: &[VerdictRecord]) -> String {
     let header = ["what", "difference", "interval at 1 − α", "p", "detectable", "verdict"];
     let mut rows = vec![header.map(String::from).to_vec()];
     rows.extend(verdicts.iter().map(|v| {

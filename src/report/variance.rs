@@ -15,7 +15,7 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Stroke, Words},
     panel::Panel,
     plot::{Curve, Figure, GREY, figure},
     table::plus_minus,
@@ -48,7 +48,7 @@ pub fn draw(variance: &Variance, caption: &Caption) -> Result<Figure, ReportErro
     figure("variance", 960, 490, caption, |page| panel(page, variance))
 }
 
-fn panel(page: &Page, variance: &Variance) -> Drawn {
+fn panel(page: &Canvas, variance: &Variance) -> Drawn {
     page.text(&variance.title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
     let points = || variance.curves.iter().flat_map(|c| &c.curve.points);
     let x = Axis::powers_of_two("samples per pixel n", points().map(|p| p.x), 9);

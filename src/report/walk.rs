@@ -12,7 +12,7 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Stroke, Words},
     panel::Panel,
     plot::{Curve, Figure, GREY, Look, Point, figure},
     table::{Side, aligned, average, error, significant},
@@ -107,7 +107,7 @@ pub fn draw(all: &[ZeroVariance], caption: &Caption) -> Result<Figure, ReportErr
     figure("walk", 960, 490, caption, |page| panel(page, all))
 }
 
-fn panel(page: &Page, all: &[ZeroVariance]) -> Drawn {
+fn panel(page: &Canvas, all: &[ZeroVariance]) -> Drawn {
     page.text(
         "The better the guide, the less is left to chance",
         (24.0, 24.0),

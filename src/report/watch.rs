@@ -9,7 +9,7 @@
 use super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Stroke, Words},
     panel::Panel,
     plot::{BLACK, BLUE, Figure, GREEN, GREY, VERMILION, figure},
     table::{Side, aligned, known, mark, outcome, p_value, significant},
@@ -65,7 +65,7 @@ pub fn table(findings: &[Finding]) -> String {
             e_value(f.log_e),
             p_value(f.p),
             detectable,
-            format!("{} {}", mark(f.outcome.into()), outcome(f.outcome.into())),
+            format!("{} {}", mark(f.outcome), outcome(f.outcome)),
         ]
     }));
     let right = Side::Right;
@@ -146,7 +146,7 @@ fn margin() -> Stroke {
     Stroke { color: GREY, width: 1.4, dash: Some((7.0, 5.0)) }
 }
 
-fn narrowing(page: &Page, curve: &[Glimpse], paths: u64, delta: f64) -> Drawn {
+fn narrowing(page: &Canvas, curve: &[Glimpse], paths: u64, delta: f64) -> Drawn {
     let x = |g: &Glimpse| (g.batches * paths) as f64;
     let known = || curve.iter().filter(|g| g.image.iter().any(|f| relative(f).is_some()));
     let last = known().next_back().map_or(0.0, |g| {
@@ -181,7 +181,7 @@ fn narrowing(page: &Page, curve: &[Glimpse], paths: u64, delta: f64) -> Drawn {
     Ok(())
 }
 
-fn terms(page: &Page, findings: &[Finding], delta: f64) -> Drawn {
+fn terms(page: &Canvas, findings: &[Finding], delta: f64) -> Drawn {
     let bounds: Vec<Option<[f64; 3]>> = findings.iter().map(relative).collect();
     let widest = bounds.iter().flatten().flat_map(|b| [b[0].abs(), b[2].abs()]).fold(0.0, f64::max);
     let reach = (150.0 * delta).max(1.1 * widest);

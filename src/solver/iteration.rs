@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | x | the iterate | [`Iteration::iterate`] |
 //! | applications | products with T so far, n² multiplications each | [`Iteration::applications`] |
-//! | ‖x‖, ‖r‖ | in the area inner product | [`Step`] |
+//! | ‖x‖, ‖r‖ | in the area inner product | [`IterationStep`] |
 //!
 //! Every iteration starts at x₀ = E, so that patches that reflect nothing are right from the start. [`Watched`] runs one and
 //! measures it from outside: the residual of a step is computed afresh from its iterate, by a product of its own which
@@ -31,7 +31,7 @@ pub trait Iteration {
 
 /// What one step has come to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+pub struct IterationStep {
     /// Steps so far; 0 is the start.
     pub step: usize,
     /// Products with T so far.
@@ -79,10 +79,10 @@ impl<'a, T: LinearOperator + ?Sized, I: Iteration> Watched<'a, T, I> {
         &self.iteration
     }
 
-    fn measure(&self) -> Step {
+    fn measure(&self) -> IterationStep {
         let x = self.iteration.iterate();
         let r = residual(self.operator, self.emission, x);
-        Step {
+        IterationStep {
             step: self.steps,
             applications: self.iteration.applications(),
             norm: self.operator.norm(x),
@@ -93,9 +93,9 @@ impl<'a, T: LinearOperator + ?Sized, I: Iteration> Watched<'a, T, I> {
 }
 
 impl<T: LinearOperator + ?Sized, I: Iteration> Iterator for Watched<'_, T, I> {
-    type Item = Step;
+    type Item = IterationStep;
 
-    fn next(&mut self) -> Option<Step> {
+    fn next(&mut self) -> Option<IterationStep> {
         // the first call shows the start; a step is taken only when it is asked for, so that `iteration` shows the last
         if std::mem::replace(&mut self.started, true) {
             let clock = Instant::now();

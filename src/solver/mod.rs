@@ -26,7 +26,7 @@ mod stationary;
 pub mod study;
 
 pub use chebyshev::Chebyshev;
-pub use iteration::{Iteration, Step, Watched, residual};
+pub use iteration::{Iteration, IterationStep, Watched, residual};
 pub use krylov::{ConjugateGradients, Gmres};
 pub use neumann::Neumann;
 pub use radiosity::{Radiosity, Solution};

@@ -14,7 +14,7 @@
 //! | of a picture, whose noise n pixels carry | – | n ≥ 10 | [`JUDGED_PIXELS`] |
 //! | of a pixel, where half the pixels rest on n events | n ≥ 12 and k̂ < 0.7, 8 replicates | – | [`SHOWN_PIXEL`] |
 //! | of one replicate | never | never | |
-//! | whose variance is infinite, or not known to be finite | never | never | [`Variance`](crate::terms::Variance) |
+//! | whose variance is infinite, or not known to be finite | never | never | [`Variance`] |
 //! | that is not finite | never | never | |
 //!
 //! **What it knows.** The replicates' means with their scatter; the film's Σ x, Σ x² and its largest contributions; and of what

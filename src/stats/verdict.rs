@@ -28,10 +28,10 @@ use super::hypothesis::{Measured, ROUNDING, critical, difference, holm, two_side
 use super::power;
 use crate::terms::{Doubt, Estimate, Functional, Series, World};
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a comparison found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
     /// Equal within δ, proved.

@@ -1,15 +1,15 @@
 //! The discrete world: patches, form factors, terms, solve, and the picture of them through the camera.
 //!
-//! `T_h = diag(ρ) F` as a matrix or as stored rays ([`discretisation`](super::realisation)), `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
+//! `T_h = diag(ρ) F` as a matrix or as stored rays ([`discretisation`](super::discretisation)), `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
 //! same camera rays, gives the discretisation error |R_h − R_2h| that stands beside the Monte Carlo error in every verdict.
 
 use super::coplanar::undecided;
-use super::discretisation::{Difference, Discretisation, Factors, Sampling as RaySampling, Stored};
+use super::discretisation::{Difference, Discretisation, Factors, SampledRows, Stored};
 use super::radius::{Radius, radii, sampled_noise};
 use super::{Observer, Settings, sampled, sampled::Sampled};
 use crate::estimator::Gather;
 use crate::operator::SceneTransport;
-use crate::operator::form_factor::{FormFactors, Invariants, Sampling, Watch};
+use crate::operator::form_factor::{FormFactors, Invariants, VisibilitySampling, Watch};
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
 use crate::operator::rays::{Half, Hit, Light, Rays, Record, Solved, record};
@@ -37,7 +37,7 @@ pub struct Matrix<R = Discretisation> {
     /// ‖T_h‖₁ and ‖T_h‖∞ per channel of a dense matrix; columns of stored rays are too noisy for the first.
     pub norms: Option<[(f64, f64); 3]>,
     /// The error bar of stored rays.
-    pub sampling: Option<RaySampling>,
+    pub sampling: Option<SampledRows>,
     /// Surface means `Σ A_i (T_h^k E)_i / A`.
     pub surface: Vec<DVec3>,
     /// What light never reaches, and what all of the above leaves out.
@@ -190,7 +190,8 @@ fn dense(
     observer.begin(&format!("form factors, {} patches", patches.len()), patches.len() as u64);
     let progress = rows(observer);
     let watch = Watch { progress: Some(&progress), stop: Some(stop) };
-    let factors = FormFactors::new(&patches, scene, Sampling::default(), watch).map_err(|_| MatrixError::Stopped)?;
+    let factors =
+        FormFactors::new(&patches, scene, VisibilitySampling::default(), watch).map_err(|_| MatrixError::Stopped)?;
     let invariants = factors.invariants();
     let mut radiosity = Radiosity::new(patches, factors);
     let lit = radiosity.reached();
@@ -284,7 +285,7 @@ fn by_rays(mut stored: Stored, max_bounces: usize) -> Result<Matrix<Stored>, Mat
     })
 }
 
-fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], RaySampling), MatrixError> {
+fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], SampledRows), MatrixError> {
     let solved = light.solve(LEFT, MOST_STEPS);
     // the last term is close to the top mode; where the series has died out, start from ρ
     let died = (0..3).any(|c| solved.last.iter().all(|x| x[c] == 0.0));
@@ -294,7 +295,7 @@ fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], RaySampl
     let solved = settled(light, solved)?;
     let u: Vec<DVec3> = solved.radiance.iter().zip(light.patches.iter()).map(|(l, p)| *l - p.emission).collect();
     let noise = light.norm(&light.noise(&solved.radiance)) / light.norm(&u);
-    let sampling = RaySampling { per_row: light.rays.per_row, noise, checks: light.checks(), steps: solved.steps };
+    let sampling = SampledRows { per_row: light.rays.per_row, noise, checks: light.checks(), steps: solved.steps };
     Ok((Solution { radiance: solved.radiance, residual: solved.residual }, spectral, sampling))
 }
 

@@ -83,7 +83,7 @@ impl Discretisation {
 
 /// What is known about the sampling of stored rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sampling {
+pub struct SampledRows {
     /// N.
     pub per_row: usize,
     /// Relative L² error bar of the reflected light u, per channel, from the halves of the rows.
@@ -102,5 +102,5 @@ pub struct Difference {
     /// Spectral radii of the rays, per channel.
     pub spectral: [Spectral; 3],
     /// The rays.
-    pub sampling: Sampling,
+    pub sampling: SampledRows,
 }

@@ -77,7 +77,7 @@ impl Growth {
 }
 
 /// A walk that can be followed step by step.
-pub trait Walk: Sync {
+pub trait WeightedWalk: Sync {
     /// Where it stands.
     type State: Copy + Send;
     /// Where walker `i` of so many starts, and what is expected of it there.
@@ -100,7 +100,7 @@ pub struct FromEye<'a, T, S> {
     pub roulette: &'a Roulette,
 }
 
-impl<T: Transport, S: Sensor<T>> Walk for FromEye<'_, T, S>
+impl<T: Transport, S: Sensor<T>> WeightedWalk for FromEye<'_, T, S>
 where
     T::State: Send,
 {
@@ -130,7 +130,7 @@ pub struct FromLight<'a, T> {
     pub roulette: &'a Roulette,
 }
 
-impl<T: Adjoint> Walk for FromLight<'_, T>
+impl<T: Adjoint> WeightedWalk for FromLight<'_, T>
 where
     T::State: Send,
 {
@@ -151,7 +151,7 @@ where
 }
 
 /// How fast the moment of that order (2 for the variance) grows from vertex `from` on: in the channel where it grows fastest.
-pub fn growth(walk: &impl Walk, from: usize, order: i32, seed: u64) -> Growth {
+pub fn growth(walk: &impl WeightedWalk, from: usize, order: i32, seed: u64) -> Growth {
     let channels = (0..3).filter(|&c| walk.lit()[c] > 0.0);
     let all = channels.map(|c| in_channel(walk, from, order, c, Key::new(seed, "growth of moments")));
     let nothing = Growth { rate: 0.0, std_error: 0.0, largest: 0.0 };
@@ -162,7 +162,7 @@ pub fn growth(walk: &impl Walk, from: usize, order: i32, seed: u64) -> Growth {
     .unwrap_or(nothing)
 }
 
-fn in_channel(walk: &impl Walk, from: usize, order: i32, channel: usize, key: Key) -> Growth {
+fn in_channel(walk: &impl WeightedWalk, from: usize, order: i32, channel: usize, key: Key) -> Growth {
     let runs: Vec<(f64, f32)> =
         (0..POPULATIONS).into_par_iter().map(|p| population(walk, from, order, channel, key.branch(p))).collect();
     let largest = runs.iter().fold(0.0, |a: f32, r| a.max(r.1));
@@ -185,7 +185,7 @@ struct Walker<S> {
 }
 
 /// The mean of ln g, and the largest throughput.
-fn population<W: Walk>(walk: &W, from: usize, order: i32, channel: usize, key: Key) -> (f64, f32) {
+fn population<W: WeightedWalk>(walk: &W, from: usize, order: i32, channel: usize, key: Key) -> (f64, f32) {
     let rng = |i: usize, step: usize, purpose: Purpose| Rng::at(key, i as u32, 0, step, purpose);
     let begin = |i: usize| {
         let (x, start) = walk.start(i, &mut rng(i, 0, Purpose::Start))?;

@@ -10,7 +10,7 @@
 //! | batches | the same, small and one after another, for what is watched while it grows | [`batches::Side`] |
 //! | coplanar | where surfaces coincide and differ, and are seen | [`coplanar::seen`] |
 //! | equilibrium | both sides of L = E + T L, point by point and through the camera | [`equilibrium`] |
-//! | falling | how variance and squared error fall in one render | [`falling::Recorder`] |
+//! | convergence | how variance and squared error fall in one render | [`convergence::Recorder`] |
 //! | split | the terms with so many samples each | [`split::measure`] |
 //! | stages | one image as it grows | [`stages::render_stages`] |
 //! | strategies | every way to find every term from both ends | [`pyramid::strategies`] |

@@ -18,7 +18,7 @@
 //! | Russian roulette | [`roulette`] |
 //! | densities in the wrong measure | [`measures`] |
 //! | directions | [`directions`] |
-//! | shares of two techniques | [`shares`] |
+//! | shares of two techniques | [`mis_weights`] |
 //! | lights | [`lights`] |
 //! | mirrors and glass | [`specular`] |
 //! | bookkeeping and display | [`bookkeeping`] |

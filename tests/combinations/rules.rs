@@ -8,7 +8,7 @@
 
 use fredholm::estimator::{Batch, Paths, Technique, TermEstimator, TermSink};
 use fredholm::math::{Columns, Rgb, Rng};
-use fredholm::operator::adjoint::{Toward, Walk};
+use fredholm::operator::adjoint::{AdjointStep, Toward};
 use fredholm::operator::{Adjoint, Role, SceneTransport, Seen, Sensor, Step, Transport};
 use fredholm::scene::{Camera, Vertex};
 
@@ -147,10 +147,10 @@ impl Adjoint for Ruled<'_> {
     fn connect_density(&self, from: &Vertex, at: &Vertex) -> f32 {
         self.inner.connect_density(from, at)
     }
-    fn walk(&self, at: &Vertex, role: Role, rng: &mut Rng) -> Option<Walk<Vertex>> {
+    fn walk(&self, at: &Vertex, role: Role, rng: &mut Rng) -> Option<AdjointStep<Vertex>> {
         let step = self.inner.walk(at, role, rng)?;
         let scale = if role == Role::Flux { self.scale[1] } else { 1.0 };
-        Some(Walk { weight: step.weight * scale, ..step })
+        Some(AdjointStep { weight: step.weight * scale, ..step })
     }
     fn toward(&self, at: &Vertex, to: &Vertex, role: Role) -> Toward {
         self.inner.toward(at, to, role)

@@ -1,7 +1,7 @@
 //! Scenes for the tests of the discrete world, built without any file.
 #![allow(dead_code, unreachable_pub)]
 
-use fredholm::operator::form_factor::{FormFactors, Sampling, Watch};
+use fredholm::operator::form_factor::{FormFactors, VisibilitySampling, Watch};
 use fredholm::operator::patches::{BruteForce, Patches};
 use fredholm::scene::description::*;
 use glam::DVec3;
@@ -62,7 +62,7 @@ pub fn cornell() -> Description {
 }
 
 pub fn factors(scene: &Description, patches: &Patches) -> FormFactors {
-    FormFactors::new(patches, &BruteForce::new(scene), Sampling::default(), Watch::default()).unwrap()
+    FormFactors::new(patches, &BruteForce::new(scene), VisibilitySampling::default(), Watch::default()).unwrap()
 }
 
 /// Mesh and form factors.

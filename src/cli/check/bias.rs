@@ -303,13 +303,13 @@ fn write(
     let title = format!("{} − {}", record.first, record.second);
     let paths = u64::from(spp) * u64::from(w) * u64::from(h);
     watch::draw(&title, curve, record.findings, paths, args.delta, &caption)?.write(folder, "bias")?;
-    let verdict = |f: &Finding| summary::Verdict {
+    let verdict = |f: &Finding| summary::VerdictRecord {
         name: format!("{} ({})", f.name, f.functional),
         effect: f.effect,
         interval: f.interval,
         p: f.p,
         min_detectable: f.min_detectable,
-        outcome: f.outcome.into(),
+        outcome: f.outcome,
     };
     let files = ["bias.png", "bias.svg", "summary.json"].map(String::from).to_vec();
     let summary = summary::Summary {

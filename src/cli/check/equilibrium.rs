@@ -71,7 +71,7 @@ pub struct Equilibrium {
 }
 
 /// Everything that was found.
-struct Found<'a> {
+struct Checked<'a> {
     args: &'a Equilibrium,
     loaded: Opened,
     groups: [(&'static str, Vec<Balance>); 2],
@@ -130,7 +130,7 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
         judgement.outcome = Outcome::Inconclusive;
         judgement.groups.iter_mut().for_each(|g| g.outcome = Outcome::Inconclusive);
     }
-    let found = Found { args, loaded, groups, judgement, undecided, images, spp: seen.spp };
+    let found = Checked { args, loaded, groups, judgement, undecided, images, spp: seen.spp };
     let files = write_all(&folder, &found, started)?;
     if args.common.shared.json {
         print(&serde_json::to_string_pretty(&record(&found))?)?;
@@ -144,7 +144,7 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
     Ok(if found.judgement.outcome == Outcome::Differs { Ending::Failed } else { Ending::Ok })
 }
 
-fn people(found: &Found, folder: &Path, files: &[String]) -> String {
+fn people(found: &Checked, folder: &Path, files: &[String]) -> String {
     let (args, j) = (found.args, &found.judgement);
     let all = found.groups.iter().map(|g| g.1.len()).sum::<usize>();
     let mut head = format!(
@@ -177,7 +177,7 @@ fn people(found: &Found, folder: &Path, files: &[String]) -> String {
             g.points,
             g.name,
             significant(value, 4),
-            table::outcome(g.outcome.into())
+            table::outcome(g.outcome)
         ));
     }
     lines.push(format!(
@@ -218,7 +218,7 @@ fn worst(g: &Group) -> usize {
     (0..3).filter(|&c| reach[c].is_finite()).max_by(|&a, &b| reach[a].total_cmp(&reach[b])).unwrap_or(0)
 }
 
-fn record(found: &Found) -> serde_json::Value {
+fn record(found: &Checked) -> serde_json::Value {
     let j = &found.judgement;
     let group = |g: &Group| {
         json!({
@@ -242,7 +242,7 @@ fn record(found: &Found) -> serde_json::Value {
     })
 }
 
-fn write_all(folder: &Path, found: &Found, started: Instant) -> Result<Vec<String>, Failure> {
+fn write_all(folder: &Path, found: &Checked, started: Instant) -> Result<Vec<String>, Failure> {
     let (args, loaded) = (found.args, &found.loaded);
     let caption =
         Caption { command: loaded.command.clone(), seed: args.common.seed, scene: loaded.description.name.clone() };
@@ -282,7 +282,7 @@ fn write_all(folder: &Path, found: &Found, started: Instant) -> Result<Vec<Strin
     let verdict = |g: &Group| {
         let c = worst(g);
         let (effect, half) = (g.difference.mean[c], g.half[c]);
-        summary::Verdict {
+        summary::VerdictRecord {
             name: format!("L − (E + T L), mean over {} points", g.name),
             effect,
             interval: (effect - half, effect + half),
@@ -293,7 +293,7 @@ fn write_all(folder: &Path, found: &Found, started: Instant) -> Result<Vec<Strin
                 args.alpha / 18.0,
                 1e-3,
             ),
-            outcome: g.outcome.into(),
+            outcome: g.outcome,
         }
     };
     let record = summary::Summary {

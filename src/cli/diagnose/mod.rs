@@ -84,7 +84,7 @@ struct Suspect {
 type Groups<'a> = BTreeMap<([usize; 2], usize), Vec<(usize, &'a Suspect)>>;
 
 /// What came out for one suspect.
-pub struct Found {
+pub struct Diagnosed {
     /// File, or files.
     pub name: String,
     /// Its pictures hold terms.
@@ -124,7 +124,7 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     for (i, s) in suspects.iter().enumerate() {
         groups.entry((s.file.pictures.size, last_term(args, &s.file))).or_default().push((i, s));
     }
-    let mut found: BTreeMap<usize, Found> = BTreeMap::new();
+    let mut found: BTreeMap<usize, Diagnosed> = BTreeMap::new();
     let (mut rare_paths, mut label) = (None, String::new());
     for ((size, max_bounces), members) in &groups {
         let right = source.right(args, *size, *max_bounces, &progress)?;
@@ -151,9 +151,9 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     }
     progress.finish();
     let stopped = stop_flag().load(Ordering::SeqCst);
-    let found: Vec<Found> = found.into_values().collect();
+    let found: Vec<Diagnosed> = found.into_values().collect();
     let page =
-        text::Page { args, how, label: &label, rare_paths: rare_paths.as_deref(), command: &command, folder: &folder };
+        text::Text { args, how, label: &label, rare_paths: rare_paths.as_deref(), command: &command, folder: &folder };
     let files = write(&page, &found, &source)?;
     if args.shared.json {
         super::print(&serde_json::to_string_pretty(&text::json(&found))?)?;
@@ -243,7 +243,7 @@ fn one(
     right: &Right,
     candidates: Option<&Members>,
     watch: &dyn Watch,
-) -> Found {
+) -> Diagnosed {
     let file = &suspect.file;
     let gain = args.gain.unwrap_or(if file.pictures.code == Code::EightBit { 0.0 } else { 1.0 });
     let any_gain = gain == 0.0;
@@ -272,7 +272,7 @@ fn one(
     let terms = pictures.last_term().is_some();
     let told = file.attribute("spp").and_then(|n| n.parse().ok());
     let (name, ignored) = (suspect.name.clone(), file.ignored.clone());
-    Found { name, terms, any_gain, ignored, told, factor: right.factor, diagnosis }
+    Diagnosed { name, terms, any_gain, ignored, told, factor: right.factor, diagnosis }
 }
 
 /// A pixel of the small picture is masked if any of its own or of its neighbours' pixels is: noise decides which of them
@@ -290,7 +290,7 @@ fn shrink_mask(mask: &[bool], width: usize, factor: usize) -> Vec<bool> {
 }
 
 /// Writes the figures, `diagnosis.json` and `summary.json`; the names of the files.
-fn write(page: &text::Page, found: &[Found], source: &against::Source) -> Result<Vec<String>, Failure> {
+fn write(page: &text::Text, found: &[Diagnosed], source: &against::Source) -> Result<Vec<String>, Failure> {
     let caption = Caption { command: page.command.to_owned(), seed: page.args.seed, scene: source.name.clone() };
     let mut files = vec!["summary.json".to_owned(), "diagnosis.json".to_owned()];
     let mut used = std::collections::BTreeSet::new();

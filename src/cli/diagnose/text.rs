@@ -1,14 +1,14 @@
 //! The page of a diagnosis: verdict, evidence, suspects; and the table of many.
 
 use super::read::Grouping;
-use super::{Diagnose, Found};
+use super::{Diagnose, Diagnosed};
 use fredholm::diagnosis::{Basis, Diagnosis, Slot, Suspicion, Verdict};
 use fredholm::report::table::significant;
 use fredholm::zoo;
 use std::path::Path;
 
 /// What all pages of a command share.
-pub struct Page<'a> {
+pub struct Text<'a> {
     pub args: &'a Diagnose,
     pub how: Grouping,
     pub label: &'a str,
@@ -62,9 +62,9 @@ fn percent(x: f64) -> String {
     format!("{} %", significant(100.0 * x, 2))
 }
 
-impl Page<'_> {
+impl Text<'_> {
     /// Everything, for people.
-    pub fn people(&self, found: &[Found], files: &[String]) -> String {
+    pub fn people(&self, found: &[Diagnosed], files: &[String]) -> String {
         let how = match self.how {
             Grouping::Bounces => "files taken for the terms of one render (--as)",
             Grouping::Spp => "files taken for one render at growing samples per pixel (--as)",
@@ -90,7 +90,7 @@ impl Page<'_> {
         super::super::paragraphs(&blocks)
     }
 
-    fn one(&self, f: &Found) -> String {
+    fn one(&self, f: &Diagnosed) -> String {
         let d = &f.diagnosis;
         let mut out = wrapped(&format!("{}: {}", short(&f.name), headline(d)), "") + "\n";
         out += &match d.verdict {
@@ -151,7 +151,7 @@ fn limits(d: &Diagnosis) -> String {
 }
 
 /// The table of the ratios, and single facts below it.
-fn evidence(f: &Found) -> String {
+fn evidence(f: &Diagnosed) -> String {
     let (d, e) = (&f.diagnosis, &f.diagnosis.evidence);
     let mut out = format!("{:<6} {:>10} {:>10} {:>8}  {:>8}   flat in space?\n", "", "mean", "right", "r", "± 95 %");
     out += &format!("{}\n", "─".repeat(66));
@@ -297,7 +297,7 @@ fn brief(d: &Diagnosis) -> String {
 }
 
 /// One line per file.
-fn table(found: &[Found]) -> String {
+fn table(found: &[Diagnosed]) -> String {
     let width = found.iter().map(|f| short(&f.name).chars().count()).max().unwrap_or(4).min(40);
     let mut out = format!("{:<width$}  verdict\n{}\n", "file", "─".repeat((width + 50).min(WIDTH)));
     for f in found {
@@ -321,8 +321,8 @@ fn table(found: &[Found]) -> String {
 }
 
 /// Everything, for programs.
-pub fn json(found: &[Found]) -> serde_json::Value {
-    let one = |f: &Found| {
+pub fn json(found: &[Diagnosed]) -> serde_json::Value {
+    let one = |f: &Diagnosed| {
         serde_json::json!({
             "file": f.name,
             "headline": headline(&f.diagnosis),

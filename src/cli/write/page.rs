@@ -1,11 +1,11 @@
 //! The page that shows a run.
 
 use super::Files;
-use crate::cli::{Failure, solve::Found};
+use crate::cli::{Failure, solve::Solved};
 use fredholm::report::html::{self, Page, Plate};
 use fredholm::report::summary;
 
-pub(super) fn write_page(found: &Found, out: &Files, summary: &summary::Summary) -> Result<(), Failure> {
+pub(super) fn write_page(found: &Solved, out: &Files, summary: &summary::Summary) -> Result<(), Failure> {
     let path = |name: &str| out.path(name);
     let [sheet, direct, decay, variance, z] =
         ["terms.png", "direct.png", "decay.svg", "variance.svg", "z.png"].map(path);

@@ -1,7 +1,7 @@
 //! The images of a run: every one as floats in one EXR, and what a reader looks at as PNG.
 
 use super::{Files, Pixels, attributes};
-use crate::cli::{Failure, solve::Found};
+use crate::cli::{Failure, solve::Solved};
 use fredholm::report::contact_sheet::{self, Cell, Sheet, direct_and_indirect, single};
 use fredholm::report::pixel_errors::{self, PixelErrors};
 use fredholm::report::typeset::{Caption, superscript};
@@ -13,7 +13,7 @@ use fredholm::worlds::sampled::Sampled;
 type Layer<'a> = (String, &'a TermImage, PixelErrors);
 
 /// The layers of a run that have errors.
-fn layers(found: &Found) -> Vec<Layer<'_>> {
+fn layers(found: &Solved) -> Vec<Layer<'_>> {
     let mut layers = vec![];
     let mut push = |name: String, image, s: &Sampled, part: usize, mean: &Estimate| {
         // met by chance only: a pixel rests on no more than its share of what is to be expected
@@ -46,11 +46,11 @@ fn layers(found: &Found) -> Vec<Layer<'_>> {
 }
 
 /// Which of the errors can be trusted.
-pub(super) fn pixel_errors(found: &Found) -> Vec<PixelErrors> {
+pub(super) fn pixel_errors(found: &Solved) -> Vec<PixelErrors> {
     layers(found).into_iter().map(|l| l.2).collect()
 }
 
-pub(super) fn write_exr(found: &Found, trust: &[PixelErrors], out: &mut Files, size: [u32; 2]) -> Result<(), Failure> {
+pub(super) fn write_exr(found: &Solved, trust: &[PixelErrors], out: &mut Files, size: [u32; 2]) -> Result<(), Failure> {
     let all = layers(found);
     let names: Vec<String> = all.iter().map(|l| format!("{}_se", l.0)).collect();
     let mut layers: Vec<(&str, &Pixels)> = vec![];
@@ -74,7 +74,12 @@ pub(super) fn write_exr(found: &Found, trust: &[PixelErrors], out: &mut Files, s
     Ok(())
 }
 
-pub(super) fn write_pictures(found: &Found, out: &mut Files, size: [u32; 2], caption: &Caption) -> Result<(), Failure> {
+pub(super) fn write_pictures(
+    found: &Solved,
+    out: &mut Files,
+    size: [u32; 2],
+    caption: &Caption,
+) -> Result<(), Failure> {
     let [w, h] = size.map(|s| s as usize);
     let shown = found.terms.first().or(found.radiosity.as_ref().map(|r| &r.fine));
     if let Some(s) = shown {

@@ -1,8 +1,8 @@
 //! The figures of a run: how the terms decay, and how the noise falls.
 
 use super::Files;
-use crate::cli::{Failure, solve::Found};
-use fredholm::report::decay::{self, Decay, Rate, independent_ratios};
+use crate::cli::{Failure, solve::Solved};
+use fredholm::report::decay::{self, Decay, RateLine, independent_ratios};
 use fredholm::report::plot::{Curve, Look, Point};
 use fredholm::report::typeset::{Caption, superscript};
 use fredholm::report::variance::{self, Falling, Variance};
@@ -13,7 +13,7 @@ use fredholm::worlds::discrete::Discrete;
 use fredholm::worlds::sampled::{Estimator, Sampled};
 use std::path::Path;
 
-pub(super) fn write_plots(found: &Found, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
+pub(super) fn write_plots(found: &Solved, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
     if found.surface.is_empty() && found.radiosity.is_none() {
         return write_variance(found, out, caption);
     }
@@ -62,19 +62,19 @@ fn name_of(path: &Path) -> String {
 }
 
 /// Observed rate, guarantee, tail bound and spectral radius.
-fn lines(found: &Found) -> Vec<Rate> {
+fn lines(found: &Solved) -> Vec<RateLine> {
     let mut lines = vec![];
     let g = f64::from(found.scene.max_albedo().max_element());
     if let Some((_, r)) = found.surface.iter().find(|s| s.0 == Estimator::Single) {
         let means = TermMeans::from(r);
-        lines.extend(observed_rate(&means).ok().as_ref().map(Rate::observed));
-        lines.push(Rate::guaranteed(g, means.mean[0]));
+        lines.extend(observed_rate(&means).ok().as_ref().map(RateLine::observed));
+        lines.push(RateLine::guaranteed(g, means.mean[0]));
         let k = means.mean.len() - 1;
-        lines.extend(Rate::tail_bound(g, k, means.mean[k]));
+        lines.extend(RateLine::tail_bound(g, k, means.mean[k]));
     }
     if let Some(r) = &found.radiosity {
         let radius = r.matrix.spectral.iter().map(|s| s.radius).fold(0.0, f64::max);
-        lines.extend(Rate::spectral(radius, &matrix_norms(r)));
+        lines.extend(RateLine::spectral(radius, &matrix_norms(r)));
     }
     lines
 }
@@ -84,7 +84,7 @@ fn matrix_norms(r: &Discrete) -> Vec<f64> {
     r.matrix.surface.iter().map(|v| v.element_sum() / 3.0).collect()
 }
 
-fn write_variance(found: &Found, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
+fn write_variance(found: &Solved, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
     let mut figure = Variance { title: "How the noise falls".into(), curves: vec![] };
     // a slot of the snapshots, or their sum
     let mut curve = |label: String, s: &Sampled, slot: Option<usize>| {

@@ -9,7 +9,7 @@
 //! | Fᵢⱼ | share of the diffuse power leaving i that arrives at j | [`FormFactors::f`] |
 //! | Aᵢ | true, uncovered area | [`FormFactors::area`] |
 //! | sᵢ | true over flat area | [`Patch::stretch`] |
-//! | Vᵢⱼ | visible share of the pair | [`Sampling`] |
+//! | Vᵢⱼ | visible share of the pair | [`VisibilitySampling`] |
 //!
 //! Two patches of one sphere, seen from inside, need no facets: there the kernel is the constant 1/4πR², so
 //! AᵢFᵢⱼ = Vᵢⱼ AᵢAⱼ/4πR², i = j included.
@@ -30,7 +30,7 @@ use shaft::{Blocker, End};
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
 use visibility::visible_share;
-pub use visibility::{Sampling, Visibility};
+pub use visibility::{Visibility, VisibilitySampling};
 
 /// The matrix F with the areas that make it symmetric.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +71,7 @@ impl FormFactors {
     pub fn new(
         patches: &Patches,
         visibility: &dyn Visibility,
-        sampling: Sampling,
+        sampling: VisibilitySampling,
         watch: Watch<'_>,
     ) -> Result<Self, Stopped> {
         let n = patches.len();
@@ -141,7 +141,7 @@ struct Pairs<'a> {
     blockers: Vec<Blocker>,
     bodies: BruteForce,
     visibility: &'a dyn Visibility,
-    sampling: Sampling,
+    sampling: VisibilitySampling,
 }
 
 struct Scratch {
@@ -286,7 +286,7 @@ mod tests {
                     .collect();
                 tried += blockers.len();
                 ruled_out += out.len();
-                let fine = Sampling { rays: 40, refined: 40 };
+                let fine = VisibilitySampling { rays: 40, refined: 40 };
                 let pair = (i * patches.len() + j) as u64;
                 let (share, _) = visible_share(fine, (a, pa), (b, pb), true, pair, &mut segments, |segments| {
                     for k in 0..LANES {
@@ -310,7 +310,7 @@ mod tests {
         let patches = Patches::new(&scene, 400).unwrap();
         let caster = BruteForce::new(&scene);
         let mut segments = caster.segments();
-        let (mut hidden, fine) = (0, Sampling { rays: 64, refined: 64 });
+        let (mut hidden, fine) = (0, VisibilitySampling { rays: 64, refined: 64 });
         for (i, a) in patches.iter().enumerate().filter(|(_, p)| p.ball.is_none()) {
             for (j, b) in patches.iter().enumerate().skip(i + 1).filter(|(_, p)| p.ball.is_none()) {
                 let (mut ca, mut cb) = (Vec::new(), Vec::new());
@@ -335,7 +335,7 @@ mod tests {
         let scene = clutter();
         let patches = Patches::new(&scene, 100).unwrap();
         let caster = BruteForce::new(&scene);
-        let make = |watch| FormFactors::new(&patches, &caster, Sampling::default(), watch);
+        let make = |watch| FormFactors::new(&patches, &caster, VisibilitySampling::default(), watch);
         let in_pool = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| make(Watch::default()).unwrap())

@@ -27,14 +27,14 @@ impl Visibility for BruteForce {
 
 /// Samples per pair that is not provably clear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sampling {
+pub struct VisibilitySampling {
     /// First look: 128.
     pub rays: u32,
     /// Total for pairs of which the first look saw a part: 576.
     pub refined: u32,
 }
 
-impl Default for Sampling {
+impl Default for VisibilitySampling {
     fn default() -> Self {
         Self { rays: 128, refined: 576 }
     }
@@ -46,7 +46,7 @@ pub(super) type Part<'a> = (&'a Patch, &'a [DVec3]);
 /// The visible share of the pair (in [0, 1]) and the rays it took. `flat_kernel` is off for pairs on one sphere, where k
 /// is constant; `block` marks the segments that are not free.
 pub(super) fn visible_share(
-    sampling: Sampling,
+    sampling: VisibilitySampling,
     a: Part<'_>,
     b: Part<'_>,
     flat_kernel: bool,

@@ -42,7 +42,7 @@ use crate::scene::{Camera, Scene, SceneError, Side, Vertex, VertexWave, numbers,
 use glam::Vec3;
 use incident::{Fineness, Incident};
 use lamps::Lamps;
-use places::{Found, Places};
+use places::{Place, Places};
 use std::sync::atomic::AtomicBool;
 use warp::Warp;
 
@@ -148,9 +148,9 @@ impl Guide {
     #[inline(always)]
     fn find(&self, p: Vec3, side: Side) -> Option<usize> {
         match self.places.find(p, side) {
-            Found::At(patch) => Some(patch as usize),
-            Found::Nowhere => None,
-            Found::Curved => incident::locate(&self.patches, p, side),
+            Place::At(patch) => Some(patch as usize),
+            Place::Nowhere => None,
+            Place::Curved => incident::locate(&self.patches, p, side),
         }
     }
 }

@@ -38,7 +38,7 @@ struct Grid {
 
 /// What a grid says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Found {
+pub(super) enum Place {
     At(u32),
     /// Covered, or a side that takes no part.
     Nowhere,
@@ -80,15 +80,15 @@ impl Places {
     }
 
     #[inline(always)]
-    pub(super) fn find(&self, p: Vec3, side: Side) -> Found {
-        let Some(grid) = &self.grids[(side / 2) as usize] else { return Found::Curved };
+    pub(super) fn find(&self, p: Vec3, side: Side) -> Place {
+        let Some(grid) = &self.grids[(side / 2) as usize] else { return Place::Curved };
         let d = p - grid.origin;
         // a conversion to unsigned saturates at 0
         let column = (d.dot(grid.across) as u32).min(grid.size[0] - 1);
         let row = (d.dot(grid.down) as u32).min(grid.size[1] - 1);
         match self.cells[(grid.first[(side & 1) as usize] + row * grid.size[0] + column) as usize] {
-            NOWHERE => Found::Nowhere,
-            patch => Found::At(patch),
+            NOWHERE => Place::Nowhere,
+            patch => Place::At(patch),
         }
     }
 }

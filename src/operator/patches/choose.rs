@@ -6,7 +6,7 @@
 
 use super::{
     Chart, Corners, Cover, CoverTest, Finder, Grid, Tree,
-    finder::Walk,
+    finder::Descent,
     polygon::{area_vector, extent},
     sides_of,
     tree::{meeting, share},
@@ -258,15 +258,15 @@ impl Search {
     }
 
     #[inline(always)]
-    pub(super) fn begin(&self, p: DVec3) -> Walk {
+    pub(super) fn begin(&self, p: DVec3) -> Descent {
         match self {
             Self::Flat(finder) => finder.begin(p),
-            Self::Curved(grid) => Walk::arrived(grid.locate(p)),
+            Self::Curved(grid) => Descent::arrived(grid.locate(p)),
         }
     }
 
     #[inline(always)]
-    pub(super) fn step(&self, walk: &mut Walk) {
+    pub(super) fn step(&self, walk: &mut Descent) {
         if let Self::Flat(finder) = self {
             finder.step(walk);
         }

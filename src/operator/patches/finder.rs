@@ -33,12 +33,12 @@ pub(super) struct Finder {
 
 /// A point on its way down to its cell.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Walk {
+pub(super) struct Descent {
     at: u32,
     point: [f32; 2],
 }
 
-impl Walk {
+impl Descent {
     /// Already in a cell.
     pub(super) fn arrived(cell: usize) -> Self {
         Self { at: LEAF | cell as u32, point: [0.0; 2] }
@@ -158,15 +158,15 @@ impl Finder {
 
     /// Where the way down to the cell of a point begins.
     #[inline(always)]
-    pub(super) fn begin(&self, p: DVec3) -> Walk {
+    pub(super) fn begin(&self, p: DVec3) -> Descent {
         let d = p - self.origin;
         let at = self.frame.map(|e| e.dot(d) as f32);
-        Walk { at: self.table.start(at).unwrap_or(self.root), point: at }
+        Descent { at: self.table.start(at).unwrap_or(self.root), point: at }
     }
 
     /// One line further down; the walk must not have arrived.
     #[inline(always)]
-    pub(super) fn step(&self, walk: &mut Walk) {
+    pub(super) fn step(&self, walk: &mut Descent) {
         let line = &self.lines[walk.at as usize];
         let [s, t] = walk.point;
         walk.at = line.children[usize::from(line.axis[0] * s + line.axis[1] * t > line.offset)];

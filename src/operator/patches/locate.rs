@@ -7,7 +7,7 @@
 //! In a mesh of a million patches every read waits for main memory. [`Lookup`] takes all its points one step down before it
 //! takes the next, so that the waits overlap; the answers are those of [`Patches::locate`].
 
-use super::finder::Walk;
+use super::finder::Descent;
 use super::{NONE, Patches};
 use glam::DVec3;
 
@@ -38,7 +38,7 @@ pub(crate) struct Lookup {
 
 #[derive(Debug)]
 struct Asked {
-    walk: Walk,
+    walk: Descent,
     primitive: u32,
     front: bool,
 }

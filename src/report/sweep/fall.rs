@@ -10,7 +10,7 @@
 use super::super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Place, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Place, Sample, Stroke, Words},
     half_width_95,
     panel::Panel,
     plot::{BLACK, Figure, GREY, Look, figure},
@@ -199,7 +199,7 @@ pub fn draw(falls: &[Fall], title: &str, caption: &Caption) -> Result<Figure, Re
     })
 }
 
-fn panel(page: &Page, (left, top): Place, title: &str, lines: &[Line]) -> Drawn {
+fn panel(page: &Canvas, (left, top): Place, title: &str, lines: &[Line]) -> Drawn {
     let points = || lines.iter().flat_map(|l| &l.points);
     let values = points().flat_map(|p| p[1..].to_vec()).chain(lines.iter().flat_map(|l| &l.errors).map(|e| e.1));
     let x = Axis::powers_of_two("samples per pixel n", points().map(|p| p[0]), 9);

@@ -8,7 +8,7 @@
 use super::super::{
     ReportError,
     axis::Axis,
-    canvas::{Drawn, Entry, Page, Sample, Stroke, Words},
+    canvas::{Canvas, Drawn, Entry, Sample, Stroke, Words},
     panel::Panel,
     plot::{Curve, Figure, GREY, Look, Point, figure},
     typeset::Caption,
@@ -28,7 +28,7 @@ const UNIT: &str = "variance   (W² sr⁻² m⁻⁴)";
 const LEFT: [f64; 4] = [84.0, 72.0, 372.0, 350.0];
 const RIGHT: [f64; 4] = [552.0, 72.0, 372.0, 350.0];
 
-fn panels(page: &Page, sweep: &Sweep, title: &str) -> Drawn {
+fn panels(page: &Canvas, sweep: &Sweep, title: &str) -> Drawn {
     page.text(title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
     let by_value = |i: usize, points: Vec<Point>| {
         let r = &sweep.rows[i];
@@ -86,7 +86,7 @@ fn notes(silent: bool) -> Vec<Entry> {
 }
 
 fn against_k<'a, 'b>(
-    page: &'a Page<'b>,
+    page: &'a Canvas<'b>,
     frame: [f64; 4],
     (title, unit): (&str, &str),
     curves: &[Curve],
