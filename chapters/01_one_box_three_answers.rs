@@ -86,7 +86,8 @@ fn claims(scene: &Scene, a: &Answers, [(_, path), (_, matrix)]: &[(&str, Compari
     let claim = |holds: bool, says, found: String| Claim { says, found, holds };
     vec![
         claim(same_as_path.contains("total"), "terms and tail add up to the path tracer's image", same_as_path),
-        claim(same_as_matrix.contains("T1"), "direct light is the matrix's", same_as_matrix.clone()),
+        // T1 through the camera is gathered from E: the first term that the matrix has a part in is T2
+        claim(same_as_matrix.contains("T2"), "light reflected twice is the matrix's", same_as_matrix.clone()),
         claim(same_as_matrix.contains("total"), "and so is the whole", same_as_matrix),
         claim(matrix.outcome != Outcome::Differs, "no term is proved to differ", format!("{:?}", matrix.outcome)),
         claim(term < 1.0, "no term exceeds its bound", format!("at most {} of it", percent(term))),
