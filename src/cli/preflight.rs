@@ -9,13 +9,14 @@ use fredholm::worlds::discrete::MatrixError;
 use fredholm::worlds::discretisation::Factors;
 use fredholm::worlds::length::{Length, length};
 use fredholm::worlds::{sampled::Estimator, trap::trapped, unsampled::unsampled};
+use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 /// The sums of all terms, pixels and replicates are held at once: better refused now than killed later.
 pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
     let replicates = u64::from(settings.spp.min(16));
     let bytes = u64::from(w) * u64::from(h) * (settings.max_bounces as u64 + 2) * (replicates + 2) * 24;
     // where the system does not say what is free, the allocator has the last word
-    let Some(free) = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| available(&text)) else {
+    let Some(free) = available() else {
         return Ok(());
     };
     if bytes <= free {
@@ -196,7 +197,7 @@ pub fn rows_fit_in_memory(scene: &Scene, settings: &Settings) -> Result<(), Fail
         Factors::Rays(rays) => 3 * u64::from(rays),
     };
     let bytes = n * (row + 400 + 24 * (settings.max_bounces as u64 + 12));
-    let Some(free) = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| available(&text)) else {
+    let Some(free) = available() else {
         return Ok(());
     };
     if bytes <= free {
@@ -211,10 +212,11 @@ pub fn rows_fit_in_memory(scene: &Scene, settings: &Settings) -> Result<(), Fail
     )))
 }
 
-/// Bytes that Linux says are available.
-fn available(meminfo: &str) -> Option<u64> {
-    let line = meminfo.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|k| 1024 * k)
+/// Bytes of memory that are free; nothing where the system does not say.
+fn available() -> Option<u64> {
+    let memory = MemoryRefreshKind::nothing().with_ram();
+    let system = System::new_with_specifics(RefreshKind::nothing().with_memory(memory));
+    Some(system.available_memory()).filter(|bytes| *bytes > 0)
 }
 
 /// Refuses a scene in which light never gets out, if anything longer than K is asked for: `L = E + T L` has no solution, and paths

@@ -3,12 +3,11 @@
 //! Pictures are embedded as data URIs and plots as inline SVG, so the page can be mailed or handed in. Colours follow
 //! the reader's light or dark setting; inside the plots, too.
 
+use base64::prelude::{BASE64_STANDARD, Engine};
 use std::{fmt::Write, path::Path};
 
 use super::{
-    ReportError,
-    base64::encode,
-    files,
+    ReportError, files,
     summary::VerdictRecord,
     table::{average, error, known, mark, outcome, p_value, signed, significant},
     typeset::escape,
@@ -172,7 +171,7 @@ fn plate_section(plate: &Plate) -> Result<String, ReportError> {
     let bytes = files::read(plate.path)?;
     let alt = escape(plate.alt);
     let picture = match plate.path.extension().and_then(|e| e.to_str()) {
-        Some("png") => format!("<img alt=\"{alt}\" src=\"data:image/png;base64,{}\">", encode(&bytes)),
+        Some("png") => format!("<img alt=\"{alt}\" src=\"data:image/png;base64,{}\">", BASE64_STANDARD.encode(&bytes)),
         Some("svg") => {
             let svg = String::from_utf8(bytes).map_err(|_| unsuitable("the plot is not UTF-8 text"))?;
             // In HTML the name space is understood; the page then holds no address at all.

@@ -27,7 +27,6 @@
 //! | tables on the terminal, and in the book | [`table`], [`markdown`] |
 
 mod axis;
-mod base64;
 mod canvas;
 pub mod contact_sheet;
 pub mod decay;

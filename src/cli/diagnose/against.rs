@@ -100,35 +100,13 @@ fn finished(path: &Path) -> Result<Source, Failure> {
 
 /// The scene that a command of this program renders.
 fn scene_of(command: &str) -> Option<Description> {
-    let cli = args::Cli::try_parse_from(words(command)).ok()?;
+    let cli = args::Cli::try_parse_from(shlex::split(command)?).ok()?;
     let run = match &cli.command {
         None => &cli.tour,
         Some(args::Command::Tour(run) | args::Command::Series(run) | args::Command::Render(run)) => run,
         Some(_) => return None,
     };
     Some(load::scene(&run.scene, &run.shared.changes.options(None)).ok()?.description)
-}
-
-/// The words of a command line as this program writes them: only single quotes.
-fn words(command: &str) -> Vec<String> {
-    let (mut all, mut word, mut quoted, mut escaped) = (vec![], None::<String>, false, false);
-    for c in command.chars() {
-        match c {
-            _ if escaped => {
-                word.get_or_insert_default().push(c);
-                escaped = false;
-            }
-            '\\' if !quoted => escaped = true,
-            '\'' => {
-                quoted = !quoted;
-                word.get_or_insert_default();
-            }
-            ' ' if !quoted => all.extend(word.take()),
-            c => word.get_or_insert_default().push(c),
-        }
-    }
-    all.extend(word);
-    all
 }
 
 impl Source {
@@ -203,11 +181,15 @@ impl Source {
 
 #[cfg(test)]
 mod tests {
-    use super::words;
+    use shlex::split;
 
+    /// What this program writes as its command is read back as the same words.
     #[test]
     fn quoted_words_stay_together() {
-        assert_eq!(words("fredholm series a --set 'x=[1, 2]'"), ["fredholm", "series", "a", "--set", "x=[1, 2]"]);
-        assert_eq!(words(r"info 'it'\''s'"), ["info", "it's"]);
+        let of = |command, words: &[&str]| {
+            assert_eq!(split(command).as_deref(), Some(&words.iter().map(|w| w.to_string()).collect::<Vec<_>>()[..]))
+        };
+        of("fredholm series a --set 'x=[1, 2]'", &["fredholm", "series", "a", "--set", "x=[1, 2]"]);
+        of(r"info 'it'\''s'", &["info", "it's"]);
     }
 }
