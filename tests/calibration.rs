@@ -15,6 +15,7 @@
 
 mod common;
 
+use common::ledger;
 use common::sampling::{Kind, Start, Starts, collect, film, mean_of, plan};
 use common::scenes::{bands, description, room};
 use common::{assert_rate_at_most, open};
@@ -28,7 +29,7 @@ use fredholm::operator::matrix_walk::Rows;
 use fredholm::operator::{MatrixWalk, SceneTransport, Sensor, Transport};
 use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
-use fredholm::stats::{Measured, difference, ledger, needed_samples, two_sided_p, uniformity};
+use fredholm::stats::{Measured, difference, needed_samples, two_sided_p, uniformity};
 use fredholm::terms::functional::{Replicates, image_replicates};
 use fredholm::terms::{Estimate, TermFilm};
 use glam::{DVec3, Vec3};

@@ -32,11 +32,11 @@ mod scenes;
 
 use array::{Combination, covering, product};
 use common::Account;
+use common::ledger;
 use fredholm::estimator::Technique;
 use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
 use fredholm::scene::Selection;
-use fredholm::stats::ledger;
 use fredholm::worlds::{sampled::Estimator, unsampled::unsampled};
 use judge::{Findings, Sees, compare};
 use measure::{Measurement, measure, scene};

@@ -2,6 +2,9 @@
 //! refused in words.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod common;
+
+use common::ledger;
 use fredholm::diagnosis::candidates::{Members, own_seed};
 use fredholm::diagnosis::{
     Basis, Case, Diagnosis, Effort, Pictures, Region, Simulate, Slot, Unwatched, Verdict, diagnose, evidence, regions,
@@ -9,7 +12,6 @@ use fredholm::diagnosis::{
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
-use fredholm::stats::ledger;
 use fredholm::worlds::sampled::{self, Estimator};
 use fredholm::worlds::{Settings, Unobserved};
 use fredholm::zoo::{self, Bug, Stage};

@@ -81,7 +81,7 @@ fn heads(tail: &str) -> Vec<String> {
 }
 
 /// Every path of `source` from the root of the crate: (line number, first identifier). `depth` is the number of modules
-/// between the root and the file (2 for `src/stats/ledger.rs`), to follow chains of `super`.
+/// between the root and the file (2 for `src/stats/slope.rs`), to follow chains of `super`.
 fn imports(source: &str, depth: usize) -> Vec<(usize, String)> {
     let code = code_only(source);
     let mut found = Vec::new();

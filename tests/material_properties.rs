@@ -10,6 +10,7 @@
 mod common;
 
 use common::judge::Jury;
+use common::ledger;
 use common::random::{cases, draw, glass, items, opaque, schedule, world};
 use common::sampling::{Start, Starts, collect, plan};
 use common::scenes::{description, quad, room, sphere};
@@ -24,7 +25,7 @@ use fredholm::scene::bsdf::{Bsdf, Sampling, TransportMode};
 use fredholm::scene::description::{BsdfDescription, Description, Geometry, LightDescription, Shape, Sides};
 use fredholm::scene::emitter::environment::Environment;
 use fredholm::scene::{ESCAPED, LIGHT, Primitive, Scene, SurfaceSensor, Vertex};
-use fredholm::stats::{critical, ledger};
+use fredholm::stats::critical;
 use fredholm::terms::functional::{Replicates, image_replicates};
 use fredholm::terms::{Estimate, TermFilm};
 use glam::{DQuat, DVec3, Vec3};

@@ -1,7 +1,10 @@
 //! Stored rays: what holds by counting, what holds within the sampling error, and what the error bars are worth.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 mod discrete;
+use common::ledger;
 use discrete::*;
 use fredholm::operator::form_factor::{FormFactors, Stopped, Watch};
 use fredholm::operator::matrix::{LinearOperator, PatchOperator, spectral_radius};
@@ -9,7 +12,7 @@ use fredholm::operator::patches::Patches;
 use fredholm::operator::rays::{Coarse, Half, Hit, Light, Rays, record};
 use fredholm::scene::{Scene, description::*, load};
 use fredholm::solver::Radiosity;
-use fredholm::stats::{critical, ledger};
+use fredholm::stats::critical;
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 

@@ -4,6 +4,7 @@
 mod common;
 
 use common::judge::{Judged, Jury};
+use common::ledger;
 use common::random::{albedo, cases, furnished, items, solid};
 use common::sampling::{Kind, TECHNIQUES, film, plan};
 use fredholm::estimator::{Roulette, Technique};
@@ -12,7 +13,7 @@ use fredholm::operator::SceneTransport;
 use fredholm::operator::scene_transport::SurfaceStrip;
 use fredholm::scene::description::{Description, Geometry};
 use fredholm::scene::{Primitive, Scene, SurfaceSensor};
-use fredholm::stats::{critical, ledger};
+use fredholm::stats::critical;
 use fredholm::terms::Estimate;
 use fredholm::terms::functional::{Replicates, image_replicates};
 use glam::{DQuat, DVec3};

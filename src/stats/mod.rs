@@ -19,7 +19,6 @@
 //! | D | distance of p-values from uniform ones | [`uniformity()`] |
 //! | Q_v, A_v, c_v | noise and cost of a roulette schedule, without rendering it | [`schedule`] |
 //! | Q* | the schedule with the most efficiency | [`optimal`] |
-//! | SUITE_ALPHA | significance of this project's own tests | [`ledger`] |
 //!
 //! Two principles. *Not rejected is not agreed*: a verdict of agreement is an equivalence test, and it needs samples.
 //! *Aggregate*: image means, regions and projections are compared, never pixels one by one, because a bias common to
@@ -29,7 +28,6 @@ pub mod decay;
 pub mod detector;
 pub mod evidence;
 pub mod hypothesis;
-pub mod ledger;
 mod line;
 pub mod moments;
 pub mod optimal;

@@ -13,7 +13,7 @@
 //! n equal events needs n = (4 t*)² ≈ 800 of them, enough for their sum to be normal at this depth.
 
 use super::Account;
-use fredholm::stats::ledger;
+use super::ledger;
 use fredholm::terms::{Estimate, TermFilm};
 use glam::DVec3;
 

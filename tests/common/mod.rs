@@ -3,13 +3,13 @@
 #![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used, clippy::print_stderr)]
 
 pub mod judge;
+pub mod ledger;
 pub mod random;
 pub mod sampling;
 pub mod scenes;
 pub mod truth;
 
-use fredholm::stats::ledger;
-pub use fredholm::stats::ledger::Account;
+pub use ledger::Account;
 use statrs::distribution::{Binomial, DiscreteCDF};
 
 /// Opens the account of the test `name`. `FREDHOLM_SEED=n` gives the whole run other seeds (0 if unset), one per name;

@@ -18,11 +18,8 @@
 //! **To add a statistical test**, add a line to [`ENTRIES`] (the name is the test function's, so that the replay line
 //! works; three comparisons for every RGB value that it will judge), then:
 //!
-//! ```
-//! # use fredholm::{stats::ledger, terms::Estimate};
-//! # use glam::DVec3;
-//! # let measured = Estimate { mean: DVec3::ONE, std_error: DVec3::splat(1e-4), replicates: 256, events: None };
-//! let mut account = ledger::open("example_of_the_ledger", 0); // in tests/: common::open("…"), which knows the seed
+//! ```ignore
+//! let mut account = common::open("the_name_of_the_test");
 //! let rng_seed = account.seed();
 //! account.assert_equivalent("T1", &measured, DVec3::ONE, DVec3::splat(0.01));
 //! ```
@@ -30,12 +27,12 @@
 //! `tests/ledger.rs` checks that the shares stay within the budget and that every entry belongs to a test.
 //!
 //! A test of *equivalence* fails by chance only if its noise is too large for δ: plan se ≤ δ / (t* + z_β) with
-//! [`needed_samples`](super::needed_samples). The failure message says whether the values differ or the noise hides the
+//! [`fredholm::stats::needed_samples`]. The failure message says whether the values differ or the noise hides the
 //! answer; the cure of the second is samples, never a larger δ or another seed.
 
-use super::hypothesis::{Measured, ROUNDING, critical};
-use crate::math::fnv1a;
-use crate::terms::Estimate;
+use fredholm::math::fnv1a;
+use fredholm::stats::hypothesis::{Measured, ROUNDING, critical};
+use fredholm::terms::Estimate;
 use glam::DVec3;
 
 /// Chance of a false alarm in one full run of the tests.
@@ -237,7 +234,7 @@ impl Entry {
 /// If the test is not declared: an undeclared test would spend significance that nobody counts.
 pub fn share(name: &str) -> &'static Entry {
     let found = ENTRIES.iter().find(|e| e.name == name);
-    found.unwrap_or_else(|| panic!("`{name}` is not in the ledger: add it to ENTRIES in src/stats/ledger.rs"))
+    found.unwrap_or_else(|| panic!("`{name}` is not in the ledger: add it to ENTRIES in tests/common/ledger.rs"))
 }
 
 /// Opens the account of a test. `base_seed` is 0 unless the run asks for fresh seeds.
@@ -362,91 +359,4 @@ impl Account {
 /// t* s; 0 for an exact value.
 fn half_width(m: Measured, level: f64) -> f64 {
     if m.std_error == 0.0 { 0.0 } else { critical(level, m.dof) * m.std_error }
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-    use std::panic::{AssertUnwindSafe, catch_unwind};
-
-    /// The message of the panic, or "" if it passes. Names the account that the example in the module text owns.
-    fn outcome(judge: impl FnOnce(&mut Account)) -> String {
-        let mut account = open("example_of_the_ledger", 7);
-        match catch_unwind(AssertUnwindSafe(|| judge(&mut account))) {
-            Ok(()) => String::new(),
-            Err(e) => e.downcast_ref::<String>().cloned().unwrap(),
-        }
-    }
-
-    fn measured(mean: f64, std_error: f64) -> Estimate {
-        Estimate { mean: DVec3::splat(mean), std_error: DVec3::splat(std_error), replicates: 256, events: None }
-    }
-
-    const ONE: DVec3 = DVec3::ONE;
-
-    #[test]
-    fn equivalence_needs_the_whole_interval_inside() {
-        let t = share("example_of_the_ledger").threshold(255.0);
-        let delta = DVec3::splat(0.01);
-        let edge = (0.01 - 0.002) / t;
-        assert_eq!(outcome(|a| a.assert_equivalent("T1", &measured(1.002, 0.999 * edge), ONE, delta)), "");
-        let hidden = outcome(|a| a.assert_equivalent("T1", &measured(1.002, 1.001 * edge), ONE, delta));
-        assert!(hidden.contains("noise hides"), "{hidden}");
-        let off = outcome(|a| a.assert_equivalent("T1", &measured(1.02, edge), ONE, delta));
-        assert!(off.contains("differs") && off.contains("expected") && off.contains("1.02"), "{off}");
-        assert!(off.contains("FREDHOLM_SEED=7 cargo test --release example_of_the_ledger"), "{off}");
-    }
-
-    #[test]
-    fn consistency_and_difference_split_at_the_critical_value() {
-        let t = share("example_of_the_ledger").threshold(255.0);
-        let (inside, outside) = (measured(1.0 + 0.999 * t * 0.01, 0.01), measured(1.0 - 1.001 * t * 0.01, 0.01));
-        assert_eq!(outcome(|a| a.assert_consistent("T1", &inside, ONE)), "");
-        assert!(outcome(|a| a.assert_consistent("T1", &outside, ONE)).contains("differs"));
-        assert_eq!(outcome(|a| a.assert_differs("T1", &outside, ONE)), "");
-        assert!(outcome(|a| a.assert_differs("T1", &inside, ONE)).contains("is not told apart"));
-    }
-
-    #[test]
-    fn values_without_noise_pass_to_rounding_only() {
-        let exact = |x| Estimate::exact(DVec3::splat(x));
-        assert_eq!(outcome(|a| a.assert_consistent("T1", &exact(1.0 + 0.9 * ROUNDING), ONE)), "");
-        assert_ne!(outcome(|a| a.assert_consistent("T1", &exact(1.0 + 1.1 * ROUNDING), ONE)), "");
-    }
-
-    #[test]
-    fn nan_never_passes() {
-        for broken in
-            [measured(f64::NAN, 0.1), measured(1.0, f64::NAN), Estimate { replicates: 1, ..measured(1.0, 0.1) }]
-        {
-            assert_ne!(outcome(|a| a.assert_equivalent("x", &broken, ONE, ONE)), "");
-            assert_ne!(outcome(|a| a.assert_consistent("x", &broken, ONE)), "");
-            assert_ne!(outcome(|a| a.assert_differs("x", &broken, 2.0 * ONE)), "");
-        }
-    }
-
-    #[test]
-    fn an_account_cannot_be_overdrawn() {
-        let message = outcome(|a| {
-            a.assert_consistent("first", &measured(1.0, 0.1), ONE);
-            a.assert_consistent("second", &measured(1.0, 0.1), ONE);
-        });
-        assert!(message.contains("more than the 3 comparisons"), "{message}");
-    }
-
-    #[test]
-    #[should_panic(expected = "not in the ledger")]
-    fn an_undeclared_test_is_refused() {
-        let _ = share("nobody declared me");
-    }
-
-    #[test]
-    fn seeds_belong_to_names_and_to_runs() {
-        let seed = |name, base| open(name, base).seed();
-        let a = seed("example_of_the_ledger", 0);
-        assert_eq!(a, seed("example_of_the_ledger", 0));
-        assert_ne!(a, seed("example_of_the_ledger", 1));
-        assert_ne!(a, seed(ENTRIES[1].name, 0));
-    }
 }
