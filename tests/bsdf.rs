@@ -162,23 +162,23 @@ fn wrong_densities_are_found() {
 }
 
 /// ∫ f |cos θ_i| dω_i without deltas, as well as `n` samples deserve.
-fn quadrature(surface: &Surface, bsdf: &Bsdf, wo: Vec3, carried: TransportMode, n: usize) -> DVec3 {
+fn quadrature(surface: &Surface, bsdf: &Bsdf, wo: Vec3, mode: TransportMode, n: usize) -> DVec3 {
     if !bsdf.connects() {
         return DVec3::ZERO;
     }
     let (mut noise, chart) = (Noise(7), Chart::about(wo));
     let mut pilot = vec![];
     for _ in 0..n / 4 {
-        if let Draw::Direction(wi) = bsdf.sample(wo, Sampling::Bsdf, carried, three(&mut noise)).into() {
+        if let Draw::Direction(wi) = bsdf.sample(wo, Sampling::Bsdf, mode, three(&mut noise)).into() {
             pilot.push(chart.at(wi));
         }
     }
-    let f = |z: f64, phi: f64| bsdf.eval(wo, chart.direction(z, phi), carried).as_dvec3() * z.abs();
+    let f = |z: f64, phi: f64| bsdf.eval(wo, chart.direction(z, phi), mode).as_dvec3() * z.abs();
     Cells::new(&mut pilot, PILOT, &surface.cuts(wo)).integrals(f, 2e-5).iter().sum()
 }
 
 /// What a delta part adds to the albedo.
-fn delta(surface: &Surface, wo: Vec3, carried: TransportMode) -> DVec3 {
+fn delta(surface: &Surface, wo: Vec3, mode: TransportMode) -> DVec3 {
     let c = f64::from(wo.z);
     match &surface.description {
         BsdfDescription::Mirror { reflectance } => *reflectance,
@@ -188,7 +188,7 @@ fn delta(surface: &Surface, wo: Vec3, carried: TransportMode) -> DVec3 {
         }
         BsdfDescription::Dielectric { rough: None, .. } => {
             let f = fresnel(c, surface.eta, 0.0);
-            let squeezed = if carried == TransportMode::Radiance { surface.eta.powi(-2) } else { 1.0 };
+            let squeezed = if mode == TransportMode::Radiance { surface.eta.powi(-2) } else { 1.0 };
             DVec3::splat(f + (1.0 - f) * squeezed)
         }
         BsdfDescription::Plastic { ior, rough: None, .. } => DVec3::splat(fresnel(c, *ior, 0.0)),
@@ -201,15 +201,13 @@ fn weights(account: &mut common::Account, n: u64) {
     let mut noise = Noise(account.seed());
     for surface in all() {
         let bsdf = surface.bsdf();
-        let carried = if surface.eta == 1.0 { &BOTH[..1] } else { &BOTH };
-        for ((i, wo), &carried) in
-            outgoing().into_iter().enumerate().flat_map(|wo| carried.iter().map(move |c| (wo, c)))
-        {
-            let truth = quadrature(&surface, &bsdf, wo, carried, n as usize) + delta(&surface, wo, carried);
+        let mode = if surface.eta == 1.0 { &BOTH[..1] } else { &BOTH };
+        for ((i, wo), &mode) in outgoing().into_iter().enumerate().flat_map(|wo| mode.iter().map(move |c| (wo, c))) {
+            let truth = quadrature(&surface, &bsdf, wo, mode, n as usize) + delta(&surface, wo, mode);
             for &sampling in surface.samplings(i) {
                 let (mut sum, mut squares) = (DVec3::ZERO, DVec3::ZERO);
                 for _ in 0..n {
-                    if let Some(s) = bsdf.sample(wo, sampling, carried, three(&mut noise)) {
+                    if let Some(s) = bsdf.sample(wo, sampling, mode, three(&mut noise)) {
                         let w = s.weight.as_dvec3();
                         (sum, squares) = (sum + w, squares + w * w);
                     }
@@ -218,7 +216,7 @@ fn weights(account: &mut common::Account, n: u64) {
                 let variance = (squares / n as f64 - mean * mean).max(DVec3::ZERO);
                 // what f32 and the quadrature leave
                 let std_error = (variance / n as f64 + DVec3::splat(1e-10)).map(f64::sqrt);
-                let what = format!("{sampling:?}, {carried:?}, {wo}, {surface:?}");
+                let what = format!("{sampling:?}, {mode:?}, {wo}, {surface:?}");
                 let limit = if sampling == Sampling::Bsdf { 0.02 } else { 0.25 };
                 assert!(std_error.max_element() < limit * truth.max_element(), "{what}: {std_error} of {truth}");
                 account.assert_consistent(&what, &Estimate { mean, std_error, replicates: n, events: None }, truth);
@@ -306,8 +304,8 @@ fn light_may_go_either_way() {
                 let mirrored = |v: Vec3| if crosses { Vec3::new(v.x, v.y, -v.z) } else { v };
                 let back = if crosses { &other } else { &here };
                 let eta2 = if crosses { surface.eta.powi(2) } else { 1.0 };
-                let there = |carried| here.eval(wo, wi, carried).as_dvec3();
-                let and_back = |carried| back.eval(mirrored(wi), mirrored(wo), carried).as_dvec3();
+                let there = |mode| here.eval(wo, wi, mode).as_dvec3();
+                let and_back = |mode| back.eval(mirrored(wi), mirrored(wo), mode).as_dvec3();
                 let [radiance, flux] = BOTH.map(there);
                 let [radiance_back, flux_back] = BOTH.map(and_back);
                 // rounding of h, as steep as the lobe makes it where the directions graze
@@ -452,18 +450,18 @@ proptest! {
         let bsdf = Bsdf::new(&description, back);
         prop_assert!(bsdf.albedo(wo).is_finite() && bsdf.max_albedo().is_finite());
         prop_assert!(bsdf.albedo(wo).cmple(bsdf.max_albedo() + 1e-6).all());
-        for (sampling, carried) in [Sampling::Bsdf, Sampling::Cosine, Sampling::Uniform].map(|s| BOTH.map(|c| (s, c))).concat() {
+        for (sampling, mode) in [Sampling::Bsdf, Sampling::Cosine, Sampling::Uniform].map(|s| BOTH.map(|c| (s, c))).concat() {
             let wi = if below { -other } else { other };
-            let (f, p) = (bsdf.eval(wo, wi, carried), bsdf.pdf(wo, wi, sampling));
+            let (f, p) = (bsdf.eval(wo, wi, mode), bsdf.pdf(wo, wi, sampling));
             prop_assert!(f.is_finite() && f.min_element() >= 0.0 && p.is_finite() && p >= 0.0, "{} {}: {} {}", wo, wi, f, p);
             for &u in &draws {
-                let Some(s) = bsdf.sample(wo, sampling, carried, u) else { continue };
+                let Some(s) = bsdf.sample(wo, sampling, mode, u) else { continue };
                 prop_assert!(s.weight.is_finite() && s.weight.min_element() >= 0.0, "{:?} {:?}", u, s);
                 prop_assert!((s.wi.length() - 1.0).abs() < 1e-6 && s.wi.z != 0.0, "{:?} {:?} {}", u, s, s.wi.length());
                 prop_assert!(s.pdf > 0.0 && s.pdf.is_finite(), "{:?} {:?}", u, s);
                 prop_assert!((s.delta && bsdf.has_delta() && s.pdf <= 1.0) || (!s.delta && bsdf.connects()));
                 if !s.delta {
-                    let (f, p) = (bsdf.eval(wo, s.wi, carried), bsdf.pdf(wo, s.wi, sampling));
+                    let (f, p) = (bsdf.eval(wo, s.wi, mode), bsdf.pdf(wo, s.wi, sampling));
                     prop_assert!((p / s.pdf - 1.0).abs() < 1e-5, "{:?} {:?}: {}", u, s, p);
                     let (a, b) = (s.weight * s.pdf, f * s.wi.z.abs());
                     prop_assert!((a - b).abs().cmple(1e-5 * a.max(b) + 1e-30).all(), "{:?} {:?}: {} {}", u, s, a, b);

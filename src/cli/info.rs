@@ -151,7 +151,11 @@ fn coincident(d: &Description, scene: &Scene) -> Vec<(Relation, &'static str)> {
         Kind::Differ if seen.contains(&r.shapes) => "they differ, and nothing says which is seen",
         Kind::Differ => "they touch out of sight",
     };
-    all.into_iter().map(|r| (meaning(&r), r)).map(|(m, r)| (r, m)).collect()
+    let with_meaning = |r: Relation| {
+        let meaning = meaning(&r);
+        (r, meaning)
+    };
+    all.into_iter().map(with_meaning).collect()
 }
 
 fn overlaps(d: &Description, scene: &Scene) -> String {

@@ -15,20 +15,8 @@ use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
     let replicates = u64::from(settings.spp.min(16));
     let bytes = u64::from(w) * u64::from(h) * (settings.max_bounces as u64 + 2) * (replicates + 2) * 24;
-    // where the system does not say what is free, the allocator has the last word
-    let Some(free) = available() else {
-        return Ok(());
-    };
-    if bytes <= free {
-        return Ok(());
-    }
-    let gib = |b: u64| b as f64 / f64::from(1 << 30);
-    let (need, have) = (gib(bytes), gib(free));
-    Err(Failure::Usage(format!(
-        "error: {w}×{h} pixels with terms up to k = {} need {need:.1} GiB of memory; {have:.1} GiB are free\n\
-         help: choose a smaller --size or --max-bounces",
-        settings.max_bounces
-    )))
+    let what = format!("{w}×{h} pixels with terms up to k = {}", settings.max_bounces);
+    fits(bytes, &what, "choose a smaller --size or --max-bounces")
 }
 
 /// A guide steers walks from the eye, at surfaces that scatter by the cosine.
@@ -197,19 +185,14 @@ pub fn rows_fit_in_memory(scene: &Scene, settings: &Settings) -> Result<(), Fail
         Factors::Rays(rays) => 3 * u64::from(rays),
     };
     let bytes = n * (row + 400 + 24 * (settings.max_bounces as u64 + 12));
-    let Some(free) = available() else {
-        return Ok(());
-    };
-    if bytes <= free {
-        return Ok(());
-    }
-    let gib = |b: u64| b as f64 / f64::from(1 << 30);
-    Err(Failure::Usage(format!(
-        "error: the rows of {n} patches need {:.1} GiB of memory; {:.1} GiB are free\n\
-         help: choose fewer --patches or --rays",
-        gib(bytes),
-        gib(free)
-    )))
+    fits(bytes, &format!("the rows of {n} patches"), "choose fewer --patches or --rays")
+}
+
+/// Refuses what needs more memory than is free. Where the system does not say what is free, the allocator has the last word.
+fn fits(bytes: u64, what: &str, help: &str) -> Result<(), Failure> {
+    let Some(free) = available().filter(|free| bytes > *free) else { return Ok(()) };
+    let [need, have] = [bytes, free].map(|b| b as f64 / f64::from(1 << 30));
+    Err(Failure::Usage(format!("error: {what} need {need:.1} GiB of memory; {have:.1} GiB are free\nhelp: {help}")))
 }
 
 /// Bytes of memory that are free; nothing where the system does not say.

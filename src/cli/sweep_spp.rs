@@ -308,7 +308,7 @@ fn people(falls: &[Fall], record: &summary::Summary, reference: Option<&Referenc
     }
     for (fall, series) in falls.iter().zip(&record.series) {
         if let Some(reason) = Evidence::of_variance(series.variance).no_error {
-            head += &format!("\n{}: {reason}; V of the tail and of all says nothing", fall.label);
+            head += &format!("\n{}: {reason}; its V(n) of the tail and of all has no meaning", fall.label);
         }
     }
     let broken = record.series.iter().filter(|s| s.cost.non_finite > 0);

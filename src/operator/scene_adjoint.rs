@@ -20,7 +20,7 @@ use glam::{DVec3, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
 impl Role {
-    fn carried(self) -> TransportMode {
+    fn mode(self) -> TransportMode {
         if self == Self::Radiance { TransportMode::Radiance } else { TransportMode::Flux }
     }
 }
@@ -73,7 +73,7 @@ impl Adjoint for SceneTransport<'_> {
         if role == Role::Emission {
             return self.shine(at, u);
         }
-        let d = self.depart(at, role.carried(), u)?;
+        let d = self.depart(at, role.mode(), u)?;
         let o = offset_origin(at.p, d.normal);
         let seen =
             if role == Role::Radiance { self.scene.look(o, d.direction) } else { self.scene.trace(o, d.direction) };
@@ -107,7 +107,7 @@ impl Adjoint for SceneTransport<'_> {
                 }
             };
         }
-        match self.towards(at, direction, role.carried()) {
+        match self.towards(at, direction, role.mode()) {
             Some((value, pdf, _)) => Toward { value, density: pdf * self.angle(at, to, direction) },
             None => Toward::default(),
         }

@@ -73,7 +73,7 @@ pub(super) struct Departure {
 impl SceneTransport<'_> {
     /// A direction at a vertex: nothing where the sample is zero.
     #[inline(always)]
-    pub(super) fn depart(&self, at: &Vertex, carried: TransportMode, u: [f32; 4]) -> Option<Departure> {
+    pub(super) fn depart(&self, at: &Vertex, mode: TransportMode, u: [f32; 4]) -> Option<Departure> {
         match self.scene.bsdf(at) {
             Bsdf::Black => None,
             Bsdf::Diffuse(Diffuse { reflectance }) => (reflectance != Rgb::ZERO).then(|| {
@@ -82,7 +82,7 @@ impl SceneTransport<'_> {
             }),
             bsdf => {
                 let frame = Frame::new(at.n);
-                let s = bsdf.sample(frame.local(at.omega), self.sampling, carried, [u[0], u[1], u[2]])?;
+                let s = bsdf.sample(frame.local(at.omega), self.sampling, mode, [u[0], u[1], u[2]])?;
                 let normal = if s.wi.z > 0.0 { at.n } else { -at.n };
                 Some(Departure { direction: frame.world(s.wi), normal, weight: s.weight, pdf: s.pdf, delta: s.delta })
             }
@@ -91,7 +91,7 @@ impl SceneTransport<'_> {
 
     /// f cos θ and the density of scattering, towards unit direction `to`; the normal on that side.
     #[inline(always)]
-    pub(super) fn towards(&self, at: &Vertex, to: Vec3, carried: TransportMode) -> Option<(Rgb, f32, Vec3)> {
+    pub(super) fn towards(&self, at: &Vertex, to: Vec3, mode: TransportMode) -> Option<(Rgb, f32, Vec3)> {
         let cos = at.n.dot(to);
         match self.scene.bsdf(at) {
             Bsdf::Black => None,
@@ -101,7 +101,7 @@ impl SceneTransport<'_> {
             bsdf => {
                 let frame = Frame::new(at.n);
                 let (wo, wi) = (frame.local(at.omega), frame.local(to));
-                let f = bsdf.eval(wo, wi, carried) * wi.z.abs();
+                let f = bsdf.eval(wo, wi, mode) * wi.z.abs();
                 let normal = if wi.z > 0.0 { at.n } else { -at.n };
                 (f != Rgb::ZERO).then(|| (f, bsdf.pdf(wo, wi, self.sampling), normal))
             }

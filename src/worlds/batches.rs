@@ -6,14 +6,14 @@
 use super::Settings;
 use super::coplanar::undecided;
 use super::doubts::doubts;
-use super::sampled::{Estimator, doubt, film};
+use super::sampled::{Estimator, film, variance};
 use super::unsampled::unsampled;
 use crate::estimator::render::{Amount, Unwatched, render};
 use crate::estimator::{PathTracer, Plan};
 use crate::operator::SceneTransport;
 use crate::scene::Scene;
 use crate::terms::functional::functionals;
-use crate::terms::{Cost, Estimate, Functional, Series, Variance, World};
+use crate::terms::{Cost, Estimate, Functional, Series, World};
 use std::sync::atomic::AtomicBool;
 
 /// One way of rendering.
@@ -88,6 +88,7 @@ impl Side {
         let unsampled = unsampled(scene, self.estimator, self.settings.technique);
         let [w, h] = scene.camera.size.map(u64::from);
         let paths = w * h * u64::from(self.settings.spp);
+        let t = SceneTransport { scene, sampling: self.settings.sampling };
         Series {
             world: if self.estimator.is_some() { World::Terms } else { World::Path },
             label: self.label(),
@@ -96,12 +97,7 @@ impl Side {
             unsampled,
             doubts: doubts(scene, self.estimator, &self.settings),
             undecided: undecided(scene),
-            variance: doubt(
-                &SceneTransport { scene, sampling: self.settings.sampling },
-                self.estimator,
-                &self.settings,
-            )
-            .map_or(Variance::Finite, |growth| growth.variance()),
+            variance: variance(&t, self.estimator, &self.settings),
         }
     }
 }

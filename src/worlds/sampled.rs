@@ -102,6 +102,11 @@ pub fn terms(
     annotated(result, scene, Some(estimator), settings).judged(doubt)
 }
 
+/// Whether what an estimator (`None` for the path tracer) says beyond its terms has a finite variance.
+pub(crate) fn variance(t: &SceneTransport<'_>, estimator: Option<Estimator>, settings: &Settings) -> Variance {
+    doubt(t, estimator, settings).map_or(Variance::Finite, |growth| growth.variance())
+}
+
 /// Why an estimator (`None` for the path tracer) has no error bar beyond its terms, if it has none.
 pub(crate) fn doubt(t: &SceneTransport<'_>, estimator: Option<Estimator>, settings: &Settings) -> Option<Growth> {
     let roulette = settings.roulette_of(estimator);

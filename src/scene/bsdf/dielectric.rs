@@ -62,13 +62,13 @@ pub struct Dielectric {
 impl Dielectric {
     /// Reflects if `u` < p, refracts otherwise.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3, carried: TransportMode, u: f32) -> BsdfSample {
+    pub fn sample(&self, wo: Vec3, mode: TransportMode, u: f32) -> BsdfSample {
         let f = self.interface.reflectance(wo.z);
         let p = self.odds.of_reflection(f);
         match self.interface.refracted(wo.z) {
             Some(g) if u >= p => {
                 let wi = Vec3::new(-wo.x, -wo.y, -g) / self.interface.eta;
-                let weight = (1.0 - f) / (1.0 - p) * carried.squeezed(self.interface.eta2());
+                let weight = (1.0 - f) / (1.0 - p) * mode.squeezed(self.interface.eta2());
                 BsdfSample { wi: wi.normalize(), weight: Rgb::splat(weight), pdf: 1.0 - p, delta: true }
             }
             _ => BsdfSample { wi: reflection(wo), weight: Rgb::splat(f / p), pdf: p, delta: true },

@@ -126,12 +126,12 @@ impl Bsdf {
     }
 
     /// f(ω_o, ω_i), sr⁻¹, without its delta part.
-    pub fn eval(&self, wo: Vec3, wi: Vec3, carried: TransportMode) -> Rgb {
+    pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
         match self {
             Self::Black | Self::Mirror(_) | Self::Dielectric(_) => Rgb::ZERO,
             Self::Diffuse(f) => f.eval(wi),
             Self::Conductor(f) => f.eval(wo, wi),
-            Self::RoughDielectric(f) => f.eval(wo, wi, carried),
+            Self::RoughDielectric(f) => f.eval(wo, wi, mode),
             Self::Plastic(f) => f.eval(wo, wi),
             Self::Phong(f) => f.eval(wo, wi),
         }
@@ -139,7 +139,7 @@ impl Bsdf {
 
     /// A direction; none where there is none to go to. `u[0]`, `u[1]` choose it, `u[2]` chooses between parts. The weight
     /// may be zero where `sampling` does not follow f.
-    pub fn sample(&self, wo: Vec3, sampling: Sampling, carried: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
+    pub fn sample(&self, wo: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
         let at = [u[0], u[1]];
         match self {
             Self::Black => None,
@@ -148,15 +148,15 @@ impl Bsdf {
                 Some(BsdfSample { wi, weight, pdf, delta: false })
             }
             Self::Mirror(f) => Some(f.sample(wo)),
-            Self::Dielectric(f) => Some(f.sample(wo, carried, u[2])),
+            Self::Dielectric(f) => Some(f.sample(wo, mode, u[2])),
             Self::Plastic(f) => f.sample(wo, sampling, u),
             Self::Conductor(f) if f.rough.is_none() || sampling == Sampling::Bsdf => f.sample(wo, at),
-            Self::RoughDielectric(f) if sampling == Sampling::Bsdf => f.sample(wo, carried, u),
+            Self::RoughDielectric(f) if sampling == Sampling::Bsdf => f.sample(wo, mode, u),
             Self::Phong(f) if sampling == Sampling::Bsdf => f.sample(wo, u),
             Self::Conductor(_) | Self::RoughDielectric(_) | Self::Phong(_) => {
                 let up = sampling.direction(at);
                 let wi = if self.transmits() && u[2] >= 0.5 { -up } else { up };
-                BsdfSample::of(wi, self.eval(wo, wi, carried), self.pdf(wo, wi, sampling))
+                BsdfSample::of(wi, self.eval(wo, wi, mode), self.pdf(wo, wi, sampling))
             }
         }
     }

@@ -75,16 +75,16 @@ impl RoughDielectric {
 
     /// e for this pair.
     #[inline(always)]
-    fn squeezed(&self, wi: Vec3, carried: TransportMode) -> f32 {
-        if wi.z > 0.0 { 1.0 } else { carried.squeezed(self.interface.eta2()) }
+    fn squeezed(&self, wi: Vec3, mode: TransportMode) -> f32 {
+        if wi.z > 0.0 { 1.0 } else { mode.squeezed(self.interface.eta2()) }
     }
 
     /// f, sr⁻¹.
     #[inline(always)]
-    pub fn eval(&self, wo: Vec3, wi: Vec3, carried: TransportMode) -> Rgb {
+    pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
         let Some(m) = self.facet(wo, wi) else { return Rgb::ZERO };
         let seen = 4.0 * self.facets.seen(wo.z, wi.z.abs()) * m.cosine;
-        Rgb::splat(m.share * self.facets.d(m.h) * seen * m.jacobian * self.squeezed(wi, carried))
+        Rgb::splat(m.share * self.facets.d(m.h) * seen * m.jacobian * self.squeezed(wi, mode))
     }
 
     /// Density of [`Self::sample`], sr⁻¹.
@@ -100,7 +100,7 @@ impl RoughDielectric {
 
     /// A normal seen from ω_o; reflects there if `u[2]` < p, refracts otherwise. None where that leads to the wrong side.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3, carried: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
+    pub fn sample(&self, wo: Vec3, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
         let h = self.facets.sample(wo, [u[0], u[1]]);
         let c = wo.dot(h);
         if c <= 0.0 {
@@ -118,7 +118,7 @@ impl RoughDielectric {
         // from the pair of directions, as eval and pdf see it
         let m = self.facet(wo, wi)?;
         let pdf = self.density(wo, &m);
-        let weight = m.share / m.probability * self.facets.lit(wo.z, wi.z.abs()) * self.squeezed(wi, carried);
+        let weight = m.share / m.probability * self.facets.lit(wo.z, wi.z.abs()) * self.squeezed(wi, mode);
         (pdf > 0.0).then_some(BsdfSample { wi, weight: Rgb::splat(weight), pdf, delta: false })
     }
 }

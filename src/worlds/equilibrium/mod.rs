@@ -18,7 +18,7 @@ mod judge;
 
 pub use judge::{Group, Judgement, judge};
 
-use super::sampled::doubt;
+use super::sampled::variance;
 use super::{Advance, Observer, Settings};
 use crate::estimator::render::{Amount, render};
 use crate::estimator::{Equilibrium, Plan};
@@ -152,7 +152,7 @@ pub fn at_points(
     let amount = Amount { spp: settings.spp, replicates: REPLICATES.min(settings.spp as usize), key };
     observer.begin("L and E + T L at points", at.len() as u64 * u64::from(settings.spp));
     let film = render(&t, &Fixed(at), &estimator(settings, factor), amount, &mut Advance(observer), stop);
-    let variance = doubt(&t, None, settings).map_or(Variance::Finite, |growth| growth.variance());
+    let variance = variance(&t, None, settings);
     let balance = |(i, x): (usize, &Vertex)| Balance::of(&film, i, *x, t.emission(x).as_dvec3(), variance);
     at.iter().enumerate().map(balance).collect()
 }
