@@ -145,16 +145,24 @@ fn built_in_scenes_stay_as_they_are() {
     }
 }
 
+/// A lamp in the plane y = 1 as quad, mesh and disk.
+fn lamp_shapes() -> [Geometry; 3] {
+    let square = below([-0.3, -0.3], [0.3, 0.3], 1.0);
+    [square.clone(), mesh(&square), Geometry::Disk { center: DVec3::Y, normal: DVec3::NEG_Y, radius: 0.3 }]
+}
+
+fn any_axis(noise: &mut common::Noise) -> DVec3 {
+    DVec3::new(noise.uniform() - 0.5, noise.uniform() - 0.5, noise.uniform() - 0.5).normalize()
+}
+
 /// A lamp in the plane of each face of a room, as quad, mesh and disk, the whole turned by any angle: it comes to lie in front
 /// by four times what rays may be off, or a little more, and nothing else moves.
 #[test]
 fn lamps_come_to_lie_in_front() {
-    let square = below([-0.3, -0.3], [0.3, 0.3], 1.0);
-    let disk = Geometry::Disk { center: DVec3::Y, normal: DVec3::NEG_Y, radius: 0.3 };
     let mut noise = common::Noise(17);
-    for lamp_shape in [square.clone(), mesh(&square), disk] {
+    for lamp_shape in lamp_shapes() {
         for turn in 0..40 {
-            let axis = DVec3::new(noise.uniform() - 0.5, noise.uniform() - 0.5, noise.uniform() - 0.5).normalize();
+            let axis = any_axis(&mut noise);
             let turn = DQuat::from_axis_angle(axis, if turn == 0 { 0.0 } else { 6.3 * noise.uniform() });
             let mut parts: Vec<Part> = faces(&room()).into_iter().map(dark).collect();
             parts.push(lamp(lamp_shape.clone()));
@@ -430,12 +438,10 @@ fn apart(a: &Estimate, b: &Estimate) -> Estimate {
 /// nothing blocks the way back.
 #[test]
 fn rays_meet_the_lamp_and_not_the_wall() {
-    let square = below([-0.3, -0.3], [0.3, 0.3], 1.0);
-    let disk = Geometry::Disk { center: DVec3::Y, normal: DVec3::NEG_Y, radius: 0.3 };
     let mut noise = common::Noise(4);
-    for lamp_shape in [square.clone(), mesh(&square), disk] {
+    for lamp_shape in lamp_shapes() {
         for _ in 0..30 {
-            let axis = DVec3::new(noise.uniform() - 0.5, noise.uniform() - 0.5, noise.uniform() - 0.5).normalize();
+            let axis = any_axis(&mut noise);
             let turn = DQuat::from_axis_angle(axis, 6.3 * noise.uniform());
             let mut parts: Vec<Part> = faces(&room()).into_iter().map(dark).collect();
             parts.push(lamp(lamp_shape.clone()));
