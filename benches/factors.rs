@@ -8,9 +8,10 @@
 //! u = L − E is the reflected light, red channel; its error is the area-weighted relative L² norm.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
-use fredholm::operator::form_factor::{FormFactors, VisibilitySampling, Watch, polygon_to_polygon};
+use fredholm::operator::form_factor::{FormFactors, VisibilitySampling, polygon_to_polygon};
 use fredholm::operator::patches::Patches;
 use fredholm::operator::rays::{Half, Light, Rays};
+use fredholm::progress::Progress;
 use fredholm::scene::description::*;
 use fredholm::scene::{Scene, load};
 use fredholm::solver::Radiosity;
@@ -52,7 +53,7 @@ fn by_rays(description: &Description, n: usize, per_row: usize, with_reference: 
     let scene = timed("scene", || Scene::new(description));
     let patches = timed("patches", || Patches::new(description, n).unwrap());
     println!("{}, {} patches, {per_row} rays a row; {}", description.name, patches.len(), memory());
-    let shoot = |seed| Rays::new(&patches, &scene, per_row, seed, Watch::default()).unwrap();
+    let shoot = |seed| Rays::new(&patches, &scene, per_row, seed, Progress::NONE).unwrap();
     let rows = timed("rays", || shoot(0));
     let light = Light { patches: &patches, rays: &rows };
     let solved = timed("solve", || light.solve(1e-7, 200));
@@ -170,7 +171,7 @@ fn split(n: usize, per_row: usize) {
     let patches = Patches::new(&description, n).unwrap();
     println!("cornell, {} patches, {per_row} rays a row", patches.len());
     let rows = timed("rays, two seeds", || {
-        [0, 1].map(|seed| Rays::new(&patches, &scene, per_row, seed, Watch::default()).unwrap())
+        [0, 1].map(|seed| Rays::new(&patches, &scene, per_row, seed, Progress::NONE).unwrap())
     });
     let lights = rows.each_ref().map(|rays| Light { patches: &patches, rays });
     let u = |d: usize, t: usize| {
@@ -248,7 +249,7 @@ fn in_parts(a: &[DVec3], b: &[DVec3]) -> f64 {
 }
 
 fn dense(patches: &Patches, scene: &Scene, sampling: VisibilitySampling) -> FormFactors {
-    FormFactors::new(patches, scene, sampling, Watch::default()).unwrap()
+    FormFactors::new(patches, scene, sampling, Progress::NONE).unwrap()
 }
 
 fn cornell(n: usize, with_reference: bool) {

@@ -10,15 +10,15 @@
 //! time when 60 seconds of work include the guide's preparation: times 1 − preparation/60 s.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, Technique};
 use fredholm::math::Key;
 use fredholm::operator::guided::{Guide, GuidedTransport, Recipe};
 use fredholm::operator::{SceneTransport, Sensor, Transport};
+use fredholm::progress::Progress;
 use fredholm::scene::{Camera, Scene, load};
 use fredholm::terms::TermFilm;
 use glam::DVec3;
-use std::sync::atomic::AtomicBool;
 
 /// Seconds that this process has worked, in all its threads; hundredths.
 fn worked() -> f64 {
@@ -58,20 +58,20 @@ fn run<T: Transport + Expects>(t: &T, camera: &Camera, what: &str, spp: u32, key
 where
     Camera: Sensor<T>,
 {
-    let (stop, start) = (AtomicBool::new(false), worked());
+    let start = worked();
     let plan = |roulette| Plan { max_bounces: 8, technique: Technique::Mis, roulette };
     let amount = Amount::new(spp, key);
     let film = match what {
         "prefix window" if t.expects() => {
-            render(t, camera, &Prefix(plan(Roulette::Window { from: 0 })), amount, &mut Unwatched, &stop)
+            render(t, camera, &Prefix(plan(Roulette::Window { from: 0 })), amount, Progress::NONE)
         }
         "prefix" | "prefix window" => {
-            render(t, camera, &Prefix(plan(Roulette::Albedo { from: 8 })), amount, &mut Unwatched, &stop)
+            render(t, camera, &Prefix(plan(Roulette::Albedo { from: 8 })), amount, Progress::NONE)
         }
         "window" if t.expects() => {
-            render(t, camera, &PathTracer(plan(Roulette::Window { from: 0 })), amount, &mut Unwatched, &stop)
+            render(t, camera, &PathTracer(plan(Roulette::Window { from: 0 })), amount, Progress::NONE)
         }
-        _ => render(t, camera, &PathTracer(plan(Roulette::Albedo { from: 2 })), amount, &mut Unwatched, &stop),
+        _ => render(t, camera, &PathTracer(plan(Roulette::Albedo { from: 2 })), amount, Progress::NONE),
     };
     Run { film, seconds: worked() - start }
 }
@@ -118,8 +118,7 @@ fn main() {
         recipe.fineness.rays = number(3, recipe.fineness.rays as f64) as usize;
         recipe.bsdf = number(4, recipe.bsdf);
         let start = worked();
-        let stop = AtomicBool::new(false);
-        let guide = Guide::new(&description, recipe, Key::new(0, "guide"), |_| (), &|| (), &stop).unwrap().unwrap();
+        let guide = Guide::new(&description, recipe, Key::new(0, "guide"), Progress::NONE).unwrap().unwrap();
         let prepared = worked() - start;
         let guided = GuidedTransport { scene: plain, guide: &guide };
         let camera = &scene.camera;

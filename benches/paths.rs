@@ -3,15 +3,15 @@
 //! Prints nanoseconds per path, medians of five interleaved rounds, and the ratio of keeping all terms to keeping their sum.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{
-    Batch, Bidirectional, LightTracer, PathTracer, Paths, Plan, Prefix, Roulette, SingleTerm, Technique, TermEstimator,
+    Bidirectional, Job, LightTracer, PathTracer, Paths, Plan, Prefix, Roulette, SingleTerm, Technique, TermEstimator,
     TermSink,
 };
 use fredholm::math::{Columns, Key};
 use fredholm::operator::{SceneTransport, Sensor, Transport};
+use fredholm::progress::Progress;
 use fredholm::scene::{Scene, load};
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// The prefix estimator with every term added to one slot: the same walk, nothing kept apart.
@@ -29,15 +29,8 @@ impl<T: Transport> TermEstimator<T> for OnlyTheSum {
     fn slots(&self) -> usize {
         1
     }
-    fn sample(
-        &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
-        paths: &mut Paths<T::Wave>,
-        sink: &mut impl TermSink,
-    ) {
-        self.0.sample(t, sensor, batch, paths, &mut OneSlot(sink));
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        self.0.sample(job, paths, &mut OneSlot(sink));
     }
 }
 
@@ -49,16 +42,16 @@ fn main() {
     let plan = |roulette| Plan { max_bounces: 8, technique: Technique::Mis, roulette };
     let (cut, tail) = (plan(Roulette::Never), plan(Roulette::Albedo { from: 8 }));
     let time = |what: &str| {
-        let (amount, stop, start) = (Amount::new(spp, Key::new(0, what)), AtomicBool::new(false), Instant::now());
+        let (amount, start) = (Amount::new(spp, Key::new(0, what)), Instant::now());
         let camera = &scene.camera;
         let film = match what {
-            "prefix, all terms" => render(&t, camera, &Prefix(cut.clone()), amount, &mut Unwatched, &stop),
-            "prefix, sum only" => render(&t, camera, &OnlyTheSum(Prefix(cut.clone())), amount, &mut Unwatched, &stop),
-            "prefix, all terms and tail" => render(&t, camera, &Prefix(tail.clone()), amount, &mut Unwatched, &stop),
-            "light" => render(&t, camera, &LightTracer(cut.clone()), amount, &mut Unwatched, &stop),
-            "bidirectional" => render(&t, camera, &Bidirectional(cut.clone()), amount, &mut Unwatched, &stop),
-            "path tracer (scalar)" => render(&t, camera, &PathTracer(cut.clone()), amount, &mut Unwatched, &stop),
-            _ => render(&t, camera, &SingleTerm(cut.clone()), amount, &mut Unwatched, &stop),
+            "prefix, all terms" => render(&t, camera, &Prefix(cut.clone()), amount, Progress::NONE),
+            "prefix, sum only" => render(&t, camera, &OnlyTheSum(Prefix(cut.clone())), amount, Progress::NONE),
+            "prefix, all terms and tail" => render(&t, camera, &Prefix(tail.clone()), amount, Progress::NONE),
+            "light" => render(&t, camera, &LightTracer(cut.clone()), amount, Progress::NONE),
+            "bidirectional" => render(&t, camera, &Bidirectional(cut.clone()), amount, Progress::NONE),
+            "path tracer (scalar)" => render(&t, camera, &PathTracer(cut.clone()), amount, Progress::NONE),
+            _ => render(&t, camera, &SingleTerm(cut.clone()), amount, Progress::NONE),
         };
         start.elapsed().as_secs_f64() * 1e9 / (film.shape.pixels() as f64 * f64::from(spp))
     };

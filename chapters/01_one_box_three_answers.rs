@@ -8,6 +8,7 @@
 //! `fredholm chapter 1`, or `cargo run --release --example 01_one_box_three_answers -- --out DIR`.
 #![allow(clippy::print_stdout)] // a program, not the library
 
+use fredholm::progress::Progress;
 use fredholm::report::decay::{self, Decay, RateLine};
 use fredholm::report::plot::{Curve, Look};
 use fredholm::report::table::{average, significant};
@@ -19,9 +20,9 @@ use fredholm::stats::{Comparison, Criterion, Outcome, TermMeans, compare, discre
 use fredholm::terms::{TermImage, functional::Replicates};
 use fredholm::worlds::discrete::{Discrete, MatrixError, radiosity};
 use fredholm::worlds::sampled::{self, Estimator, Sampled};
-use fredholm::worlds::{Settings, Unobserved, surface};
+use fredholm::worlds::{Settings, surface};
 use glam::Vec3;
-use std::{error::Error, path::Path, process::ExitCode, sync::atomic::AtomicBool};
+use std::{error::Error, path::Path, process::ExitCode};
 
 // ANCHOR: setup
 fn setup() -> Result<(Description, Scene, Settings), SceneError> {
@@ -43,12 +44,12 @@ struct Answers {
 }
 
 fn solve(room: &Description, scene: &Scene, settings: &Settings) -> Result<Answers, MatrixError> {
-    let (nobody, never) = (&Unobserved, &AtomicBool::new(false)); // who watches, and when to stop
+    let nobody = Progress::NONE; // nobody watches, and nothing stops it
     Ok(Answers {
-        series: sampled::terms(scene, Estimator::Single, settings, nobody, never),
-        path: sampled::path(scene, settings, nobody, never),
-        matrix: radiosity(room, scene, settings, nobody, never)?,
-        norms: surface::norms(scene, Estimator::Single, 1 << 18, settings, nobody, never),
+        series: sampled::terms(scene, Estimator::Single, settings, nobody),
+        path: sampled::path(scene, settings, nobody),
+        matrix: radiosity(room, scene, settings, nobody)?,
+        norms: surface::norms(scene, Estimator::Single, 1 << 18, settings, nobody),
     })
 }
 // ANCHOR_END: three_answers

@@ -11,9 +11,10 @@
 #![allow(clippy::print_stdout)] // a program, not the library
 
 use fredholm::operator::algebra::{AlgebraError, Expression};
-use fredholm::operator::form_factor::{FormFactors, VisibilitySampling, Watch};
+use fredholm::operator::form_factor::{FormFactors, VisibilitySampling};
 use fredholm::operator::matrix::LinearOperator;
 use fredholm::operator::patches::Patches;
+use fredholm::progress::Progress;
 use fredholm::scene::{Scene, load};
 use fredholm::solver::Radiosity;
 use std::{error::Error, process::ExitCode};
@@ -48,7 +49,7 @@ impl Equation {
 pub fn room() -> Result<Radiosity, Box<dyn Error>> {
     let room = load::scene("cornell", &load::Options::default())?.description;
     let patches = Patches::new(&room, 600)?;
-    let factors = FormFactors::new(&patches, &Scene::new(&room), VisibilitySampling::default(), Watch::default())?;
+    let factors = FormFactors::new(&patches, &Scene::new(&room), VisibilitySampling::default(), Progress::NONE)?;
     Ok(Radiosity::new(patches, factors))
 }
 

@@ -33,14 +33,14 @@
 //! ```
 //! use fredholm::scene::{Scene, load};
 //! use fredholm::stats::{Criterion, Outcome, compare};
-//! use fredholm::worlds::{Settings, Unobserved, sampled};
-//! use std::sync::atomic::AtomicBool;
+//! use fredholm::progress::Progress;
+//! use fredholm::worlds::{Settings, sampled};
 //!
 //! let options = load::Options { set: vec!["camera.size=[8,8]".into()], ..Default::default() };
 //! let scene = Scene::new(&load::scene("furnace", &options)?.description);
-//! let (settings, never) = (Settings { spp: 64, ..Settings::default() }, AtomicBool::new(false));
-//! let terms = sampled::terms(&scene, sampled::Estimator::Prefix, &settings, &Unobserved, &never);
-//! let path = sampled::path(&scene, &settings, &Unobserved, &never);
+//! let settings = Settings { spp: 64, ..Settings::default() };
+//! let terms = sampled::terms(&scene, sampled::Estimator::Prefix, &settings, Progress::NONE);
+//! let path = sampled::path(&scene, &settings, Progress::NONE);
 //! assert_ne!(compare(&terms.series, &path.series, &Criterion::default(), &[]).outcome, Outcome::Differs);
 //! # Ok::<(), fredholm::scene::SceneError>(())
 //! ```
@@ -49,6 +49,7 @@ pub mod diagnosis;
 pub mod estimator;
 pub mod math;
 pub mod operator;
+pub mod progress;
 pub mod report;
 pub mod scene;
 pub mod solver;

@@ -8,18 +8,18 @@ use common::random::{cases, draw, furnished, items, matrix};
 use common::sampling::{Start, Starts, collect, mean_of, plan};
 use common::scenes::{description, room, sphere};
 use common::truth::case;
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Absorption, Prefix, Roulette, Technique, TermEstimator};
 use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::matrix_walk::Rows;
 use fredholm::operator::scene_transport::SurfaceStrip;
 use fredholm::operator::{SceneTransport, Sensor, Transport};
+use fredholm::progress::Progress;
 use fredholm::scene::{Scene, SurfaceSensor};
 use fredholm::terms::Estimate;
 use fredholm::terms::functional::{Replicates, image_replicates};
 use glam::DVec3;
 use proptest::prelude::*;
-use std::sync::atomic::AtomicBool;
 
 /// K: slots 0..=K, then the tail.
 const K: usize = 4;
@@ -28,7 +28,7 @@ const LONG: usize = 24;
 
 fn replicates<T: Transport>(t: &T, s: &impl Sensor<T>, e: &impl TermEstimator<T>, spp: u32, key: Key) -> Replicates {
     let amount = Amount { spp, replicates: 256, key };
-    image_replicates(&render(t, s, e, amount, &mut Unwatched, &AtomicBool::new(false)))
+    image_replicates(&render(t, s, e, amount, Progress::NONE))
 }
 
 /// Schedules that may end a path at every vertex.

@@ -7,12 +7,12 @@ use common::{
     Noise,
     judge::{Jury, at},
 };
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Bidirectional, LightTracer, Plan, Roulette, Technique, TermEstimator};
 use fredholm::math::{Key, Rgb};
 use fredholm::operator::{MatrixWalk, matrix_walk::Rows};
+use fredholm::progress::Progress;
 use glam::DVec3;
-use std::sync::atomic::AtomicBool;
 
 const K: usize = 5;
 
@@ -55,7 +55,7 @@ fn an_importance_walked_back_meets_the_light() {
 fn compare(mut jury: Jury, t: &MatrixWalk, n: u32, estimator: &impl TermEstimator<MatrixWalk>, spp: u32, power: f64) {
     let key = Key::new(jury.seed(), "adjoint");
     let amount = Amount { spp, replicates: 256, key };
-    let film = render(t, &Rows(n), estimator, amount, &mut Unwatched, &AtomicBool::new(false));
+    let film = render(t, &Rows(n), estimator, amount, Progress::NONE);
     let exact = t.powers(200);
     assert_eq!(film.non_finite, 0);
     for k in 0..=K + 1 {
@@ -102,7 +102,7 @@ fn the_tail_of_walks_from_both_ends_does_not_depend_on_the_technique() {
     let t = matrix(6, 5);
     let film = |technique| {
         let amount = Amount { spp: 64, replicates: 16, key: Key::new(1, "tail") };
-        render(&t, &Rows(6), &Bidirectional(plan(technique)), amount, &mut Unwatched, &AtomicBool::new(false))
+        render(&t, &Rows(6), &Bidirectional(plan(technique)), amount, Progress::NONE)
     };
     let [mis, scatter, connect] = [Technique::Mis, Technique::Scatter, Technique::Connect].map(film);
     for i in 0..6 {

@@ -6,15 +6,15 @@ mod common;
 
 use common::judge::{Judged, Jury, at};
 use common::sampling::{TECHNIQUES, collect, mean_of, plan};
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Branching, Plan, Prefix, Roulette, Technique};
 use fredholm::math::{Key, Points, Rgb};
 use fredholm::operator::matrix_walk::Rows;
 use fredholm::operator::{MatrixWalk, SceneTransport, Sensor, Transport};
+use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
 use glam::DVec3;
-use std::sync::atomic::AtomicBool;
 
 const ROWS: [[f64; 4]; 4] = [[0.0, 0.3, 0.3, 0.4], [0.4, 0.1, 0.2, 0.3], [0.3, 0.3, 0.1, 0.2], [0.5, 0.0, 0.4, 0.1]];
 const RHO: [Rgb; 4] =
@@ -92,7 +92,7 @@ fn rays_grow_as_powers_of_the_children() {
 #[test]
 fn a_tree_has_the_powers_of_the_matrix() {
     let mut jury = Jury::open("a_tree_has_the_powers_of_the_matrix");
-    let (walk, k, stop) = (walk(), 4, AtomicBool::new(false));
+    let (walk, k) = (walk(), 4);
     let (powers, long) = (walk.powers(k), walk.powers(80));
     let whole: Vec<DVec3> = (0..4).map(|i| long.iter().map(|t| t[i]).sum()).collect();
     for children in 1..=3 {
@@ -102,7 +102,7 @@ fn a_tree_has_the_powers_of_the_matrix() {
                 let name = format!("tree {children} {technique} {roulette}");
                 let amount = Amount { spp: 1 << 15, replicates: 256, key: Key::new(jury.seed(), &name) };
                 let tree = Branching { plan: plan(k, technique, &roulette), children };
-                let film = render(&walk, &Rows(4), &tree, amount, &mut Unwatched, &stop);
+                let film = render(&walk, &Rows(4), &tree, amount, Progress::NONE);
                 for row in 0..4 {
                     for (s, term) in powers.iter().enumerate() {
                         jury.part(

@@ -19,14 +19,15 @@ use common::ledger;
 use common::sampling::{Kind, Start, Starts, collect, film, mean_of, plan};
 use common::scenes::{bands, description, room};
 use common::{assert_rate_at_most, open};
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{
-    Absorption, Batch, Bidirectional, Branching, LightTracer, PathTracer, Paths, Prefix, Roulette, SingleTerm,
-    Technique, TermEstimator, TermSink,
+    Absorption, Bidirectional, Branching, Job, LightTracer, PathTracer, Paths, Prefix, Roulette, SingleTerm, Technique,
+    TermEstimator, TermSink,
 };
 use fredholm::math::{Columns, Key, Rng};
 use fredholm::operator::matrix_walk::Rows;
 use fredholm::operator::{MatrixWalk, SceneTransport, Sensor, Transport};
+use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
 use fredholm::stats::{Measured, difference, needed_samples, two_sided_p, uniformity};
@@ -36,7 +37,6 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// K: slots 0..=K, then the tail.
@@ -91,7 +91,7 @@ fn walk(t: &MatrixWalk, estimator: &impl TermEstimator<MatrixWalk>, spp: u32, ke
 }
 
 fn any<T: Transport>(t: &T, s: &impl Sensor<T>, e: &impl TermEstimator<T>, spp: u32, key: Key) -> TermFilm {
-    render(t, s, e, Amount { spp, replicates: 256, key }, &mut Unwatched, &AtomicBool::new(false))
+    render(t, s, e, Amount { spp, replicates: 256, key }, Progress::NONE)
 }
 
 /// The suite: one p-value per comparison.
@@ -308,15 +308,13 @@ impl TermEstimator<MatrixWalk> for Wrong {
     fn slots(&self) -> usize {
         K + 2
     }
-    fn sample(
+    fn sample<S: Sensor<MatrixWalk>>(
         &self,
-        t: &MatrixWalk,
-        sensor: &impl Sensor<MatrixWalk>,
-        batch: &Batch,
+        job: &Job<'_, MatrixWalk, S>,
         paths: &mut Paths<Vec<u32>>,
         sink: &mut impl TermSink,
     ) {
-        tried().sample(t, sensor, batch, paths, &mut Scaled(self, sink));
+        tried().sample(job, paths, &mut Scaled(self, sink));
     }
 }
 

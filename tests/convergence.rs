@@ -4,11 +4,12 @@
 mod common;
 
 use common::sampling::plan;
-use fredholm::estimator::render::{Amount, Watch, render};
+use fredholm::estimator::render::{Amount, render, render_in_passes};
 use fredholm::estimator::{Prefix, Roulette, Technique, TermEstimator};
 use fredholm::math::{Key, Points, Rgb};
 use fredholm::operator::matrix_walk::Rows;
 use fredholm::operator::{MatrixWalk, SceneTransport, Sensor, Transport};
+use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::load::{self, Options};
@@ -17,16 +18,6 @@ use fredholm::terms::scatter::Scatter;
 use fredholm::terms::{TermFilm, TermImage, Variance};
 use fredholm::worlds::convergence::Part;
 use std::ops::Range;
-use std::sync::atomic::AtomicBool;
-
-/// Keeps the scatter of a sum of slots after every pass.
-struct Kept(Range<usize>, Vec<(u32, Scatter)>);
-
-impl Watch for Kept {
-    fn pass(&mut self, film: &TermFilm) {
-        self.1.push((film.least_samples(), Scatter::of(film, self.0.clone(), None)));
-    }
-}
 
 /// The curve of a sum of slots from 1 to `spp / replicates` samples per replicate.
 fn curve<T: Transport>(
@@ -36,9 +27,12 @@ fn curve<T: Transport>(
     amount: Amount,
     slots: Range<usize>,
 ) -> Part {
-    let mut kept = Kept(slots, vec![]);
-    render(t, sensor, estimator, amount, &mut kept, &AtomicBool::new(false));
-    Part { name: "all".into(), points: kept.1, variance: Variance::Finite }
+    let mut points = vec![];
+    render_in_passes(t, sensor, estimator, amount, Progress::NONE, &mut |film, planned| {
+        points.push((film.least_samples(), Scatter::of(film, slots.clone(), None)));
+        planned
+    });
+    Part { name: "all".into(), points, variance: Variance::Finite }
 }
 
 /// Four rows that lose light; rows 0 and 2 emit.
@@ -119,14 +113,7 @@ fn squared_errors_are_unbiased() {
     let (walk, estimator) = (walk(), Prefix(plan(2, Technique::Scatter, &Roulette::Never)));
     let film = |key| {
         let amount = Amount { spp: 64, replicates: 16, key };
-        render(
-            &walk,
-            &Rows(4),
-            &estimator,
-            amount,
-            &mut fredholm::estimator::render::Unwatched,
-            &AtomicBool::new(false),
-        )
+        render(&walk, &Rows(4), &estimator, amount, Progress::NONE)
     };
     let truth: Vec<[f64; 3]> = {
         let terms = walk.powers(2);
@@ -170,21 +157,17 @@ fn squared_errors_are_unbiased() {
 /// Looking at other numbers of samples changes no bit of the film, and the looks are where they were asked for.
 #[test]
 fn looking_changes_nothing() {
-    struct At(Vec<u32>, Vec<u32>);
-    impl Watch for At {
-        fn until(&self, done: u32, planned: u32) -> u32 {
-            self.0.iter().copied().find(|&n| n > done).map_or(planned, |n| planned.min(n))
-        }
-        fn pass(&mut self, film: &TermFilm) {
-            self.1.push(film.least_samples());
-        }
-    }
     let (walk, estimator) = (walk(), Prefix(plan(3, Technique::Scatter, &Roulette::Never)));
     let film = |at: Vec<u32>| {
-        let mut watch = At(at, vec![]);
+        let mut looks = vec![];
         let amount = Amount { spp: 200, replicates: 10, key: Key::new(1, "looks") };
-        let film = render(&walk, &Rows(4), &estimator, amount, &mut watch, &AtomicBool::new(false));
-        (film, watch.1)
+        let film =
+            render_in_passes(&walk, &Rows(4), &estimator, amount, Progress::NONE, &mut |film: &TermFilm, planned| {
+                let done = film.least_samples();
+                looks.push(done);
+                at.iter().copied().find(|&n| n > done).map_or(planned, |n| planned.min(n))
+            });
+        (film, looks)
     };
     let ((plain, usual), (looked, asked)) = (film(vec![]), film(vec![10, 100, 200]));
     assert_eq!((usual, asked), (vec![10, 20, 40, 80, 160, 200], vec![10, 20, 40, 80, 100, 200]));

@@ -4,15 +4,15 @@
 mod common;
 
 use common::scenes::{Surface, description, room, sphere};
+use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::description::{BsdfDescription, Choice, Description, Geometry, LightDescription, Sides, Sky};
 use fredholm::worlds::discrete::{Matrix, MatrixError, dense_matrix, matrix, sampled_matrix};
 use fredholm::worlds::discretisation::Factors;
 use fredholm::worlds::resort::with_last_resort;
 use fredholm::worlds::trap::trapped;
-use fredholm::worlds::{Settings, Unobserved, sampled};
+use fredholm::worlds::{Settings, sampled};
 use glam::DVec3;
-use std::sync::atomic::AtomicBool;
 
 fn block(min: DVec3, max: DVec3) -> Geometry {
     Geometry::Box { min, max, rotate_y: 0.0, inward: false }
@@ -32,7 +32,7 @@ fn with_block(rho: DVec3) -> Description {
 }
 
 fn dense(d: &Description) -> Result<Matrix<fredholm::solver::Radiosity>, MatrixError> {
-    dense_matrix(d, &Scene::new(d), 200, 1.0, 2, &Unobserved, &AtomicBool::new(false))
+    dense_matrix(d, &Scene::new(d), 200, 1.0, 2, Progress::NONE)
 }
 
 #[test]
@@ -44,15 +44,14 @@ fn a_white_block_in_a_room_is_no_trap() {
     let (vertex, q) = scene.last_resort().unwrap();
     assert!(vertex < 40 && q > 0.05, "{vertex} {q}");
     let settings = Settings { spp: 64, max_bounces: 3, ..Settings::default() };
-    let stop = AtomicBool::new(false);
-    let path = sampled::path(&scene, &settings, &Unobserved, &stop).series;
+    let path = sampled::path(&scene, &settings, Progress::NONE).series;
     let total = path.image().total;
     assert!((total.mean - 2.0).abs().max_element() < 0.05 + 6.0 * total.std_error.max_element(), "{total:?}");
     // the camera inside of the block sees nothing, and comes to an end
     let mut inside = d;
     inside.camera.origin = DVec3::new(0.0, -0.5, 0.0);
     let scene = with_last_resort(Scene::new(&inside));
-    let seen = sampled::path(&scene, &settings, &Unobserved, &stop).series;
+    let seen = sampled::path(&scene, &settings, Progress::NONE).series;
     assert_eq!(seen.image().total.mean, DVec3::ZERO);
     assert!(seen.cost.rays < 200 * seen.cost.paths, "{:?}", seen.cost);
 }
@@ -69,7 +68,7 @@ fn the_matrix_of_a_white_block_is_solved_where_light_is() {
     }
     // the same by stored rays
     let settings = Settings { factors: Factors::Rays(64), max_bounces: 2, ..Settings::default() };
-    let rays = sampled_matrix(&d, &Scene::new(&d), 200, 64, &settings, &Unobserved, &AtomicBool::new(false)).unwrap();
+    let rays = sampled_matrix(&d, &Scene::new(&d), 200, 64, &settings, Progress::NONE).unwrap();
     assert_eq!(rays.unlit.len(), 6);
     // direct light is sampled patch by patch, so single patches are noisy
     let (mut area, mut light) = (0.0, DVec3::ZERO);
@@ -144,7 +143,7 @@ fn a_glass_box_in_a_white_sky_is_no_trap() {
     assert_eq!(trapped(&scene), None);
     assert!(scene.last_resort().is_some());
     let settings = Settings { spp: 64, max_bounces: 3, ..Settings::default() };
-    let path = sampled::path(&scene, &settings, &Unobserved, &AtomicBool::new(false)).series;
+    let path = sampled::path(&scene, &settings, Progress::NONE).series;
     let total = path.image().total;
     assert!((total.mean - 1.0).abs().max_element() < 0.01 + 6.0 * total.std_error.max_element(), "{total:?}");
 }
@@ -162,7 +161,7 @@ fn a_closed_room_loses_no_light_in_the_matrix() {
     let mut d = description(&[walls, (lamp, DVec3::splat(rho), DVec3::splat(10.0))]);
     d.materials[1].sides = Sides::Both;
     let settings = Settings { max_bounces: 1, ..Settings::default() };
-    let m = matrix(&d, &Scene::new(&d), 200, &settings, &Unobserved, &AtomicBool::new(false)).unwrap();
+    let m = matrix(&d, &Scene::new(&d), 200, &settings, Progress::NONE).unwrap();
     let r = m.radiosity.dense().unwrap();
     let (area, light): (f64, f64) =
         r.patches.iter().zip(&m.solution.radiance).fold((0.0, 0.0), |a, (p, l)| (a.0 + p.area, a.1 + p.area * l.x));

@@ -7,20 +7,19 @@ mod common;
 use common::ledger;
 use fredholm::diagnosis::candidates::{Members, own_seed};
 use fredholm::diagnosis::{
-    Basis, Case, Diagnosis, Effort, Pictures, Region, Simulate, Slot, Unwatched, Verdict, diagnose, evidence, regions,
+    Basis, Case, Diagnosis, Effort, Pictures, Region, Simulate, Slot, Verdict, diagnose, evidence, regions,
 };
 use fredholm::estimator::{Roulette, Technique};
+use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
+use fredholm::worlds::Settings;
 use fredholm::worlds::sampled::{self, Estimator};
-use fredholm::worlds::{Settings, Unobserved};
 use fredholm::zoo::{self, Bug, Stage};
 use std::fmt::Write;
-use std::sync::atomic::AtomicBool;
 
 const SIZE: [u32; 2] = [24, 24];
 const K: usize = 6;
-static NEVER: AtomicBool = AtomicBool::new(false);
 
 fn settings(spp: u32, seed: u64) -> Settings {
     let usual = Settings::default();
@@ -38,7 +37,7 @@ struct Bench {
 impl Bench {
     fn new(stage: Stage, spp: u32) -> Self {
         let scene = Scene::new(&stage.load(SIZE).unwrap());
-        let render = sampled::terms(&scene, Estimator::Prefix, &settings(spp, own_seed(0)), &Unobserved, &NEVER);
+        let render = sampled::terms(&scene, Estimator::Prefix, &settings(spp, own_seed(0)), Progress::NONE);
         Self { right: Pictures::of(&render, SIZE), seen: regions::seen(&scene), scene }
     }
 
@@ -66,7 +65,7 @@ impl Bench {
             alpha,
             effort: Effort { paths, ..Effort::default() },
         };
-        diagnose(&case, &Unwatched)
+        diagnose(&case, Progress::NONE)
     }
 }
 
@@ -97,9 +96,9 @@ fn hand_in(members: &[&'static Bug], terms: bool, errors: bool, more: u32) -> Ve
     let mut answers = vec![];
     for stage in stages {
         let bench = Bench::new(stage, 4096);
-        let candidates = Members::new(&bench.scene, K, 0, &NEVER);
+        let candidates = Members::new(&bench.scene, K, 0, Progress::NONE);
         for bug in members.iter().filter(|b| b.exposed_by == stage) {
-            let render = zoo::render(bug, &bench.scene, &settings(more * bug.spp.max(64), 77), &Unobserved, &NEVER);
+            let render = zoo::render(bug, &bench.scene, &settings(more * bug.spp.max(64), 77), Progress::NONE);
             let mut suspect = Pictures::of(&render, SIZE);
             if !terms {
                 suspect = suspect.only(|s| s == Slot::Whole);
@@ -173,7 +172,7 @@ fn right_renderers(scene: &Scene, seed: u64) -> Vec<(String, Pictures)> {
     let with = |technique, sampling| Settings { technique, sampling, ..base.clone() };
     // whoever does not see all light says so, and is no right renderer of the scene
     let terms = |e, s: &Settings| {
-        let render = sampled::terms(scene, e, s, &Unobserved, &NEVER);
+        let render = sampled::terms(scene, e, s, Progress::NONE);
         render.series.unsampled.is_empty().then(|| Pictures::of(&render, SIZE))
     };
     let mut all: Vec<(String, Option<Pictures>)> = vec![];
@@ -197,7 +196,7 @@ fn right_renderers(scene: &Scene, seed: u64) -> Vec<(String, Pictures)> {
     all.push(("uniform directions".into(), terms(Estimator::Prefix, &with(Technique::Mis, Sampling::Uniform))));
     let albedo = Settings { roulette: Roulette::Albedo { from: 2 }, ..base.clone() };
     all.push(("roulette".into(), terms(Estimator::Prefix, &albedo)));
-    let path = sampled::path(scene, &base, &Unobserved, &NEVER);
+    let path = sampled::path(scene, &base, Progress::NONE);
     all.push(("path tracer".into(), Some(Pictures::of(&path, SIZE))));
     all.into_iter().filter_map(|(name, p)| Some((name, p?))).collect()
 }
@@ -231,7 +230,7 @@ fn false_alarms_keep_their_level() {
     for errors in [true, false] {
         let wrong = (0..runs).filter(|i| {
             let seed = account.seed().wrapping_add(*i);
-            let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(32, seed), &Unobserved, &NEVER);
+            let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(32, seed), Progress::NONE);
             let suspect = Pictures::of(&render, SIZE);
             let suspect = if errors { suspect } else { without_errors(suspect) };
             bench.judge(&suspect, None, alpha).p < alpha
@@ -247,7 +246,7 @@ fn a_bias_of_the_size_that_is_promised_is_seen() {
     let mut account = ledger::open("a_bias_of_the_size_that_is_promised_is_seen", 0);
     let bench = Bench::new(Stage::CORNELL, 1024);
     let alpha = account.spend(1);
-    let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(256, account.seed()), &Unobserved, &NEVER);
+    let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(256, account.seed()), Progress::NONE);
     let suspect = Pictures::of(&render, SIZE);
     let d = bench.judge(&suspect, None, alpha);
     assert_eq!(d.verdict, Verdict::Correct, "{}", d.worst);
@@ -261,7 +260,7 @@ fn a_bias_of_the_size_that_is_promised_is_seen() {
 #[test]
 fn an_unknown_mistake_has_no_name() {
     let bench = Bench::new(Stage::CORNELL, 1024);
-    let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(256, 5), &Unobserved, &NEVER);
+    let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(256, 5), Progress::NONE);
     let mut suspect = Pictures::of(&render, SIZE);
     // a gradient of brightness from left to right: a vignette, say
     for layer in &mut suspect.layers {
@@ -272,7 +271,7 @@ fn an_unknown_mistake_has_no_name() {
             .enumerate()
             .for_each(|(p, v)| *v = v.map(|x| x * (0.5 + (p % width) as f32 / width as f32)));
     }
-    let candidates = Members::new(&bench.scene, K, 0, &NEVER);
+    let candidates = Members::new(&bench.scene, K, 0, Progress::NONE);
     let d = bench.judge(&suspect, Some(&candidates), 1e-3);
     assert_eq!(d.verdict, Verdict::Wrong);
     assert!(d.suspects.iter().all(|s| s.basis == Basis::Points), "{:?}", d.suspects);
@@ -291,7 +290,7 @@ fn rules_name_the_number() {
         (|k| 0.5f64.powi(k - 1), "half-bounce", "1/2"),
         (|k| if k > 2 { 0.0 } else { 1.0 }, "truncated", "T2"),
     ] {
-        let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(256, 6), &Unobserved, &NEVER);
+        let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(256, 6), Progress::NONE);
         let mut suspect = without_errors(Pictures::of(&render, SIZE)).only(|s| matches!(s, Slot::Term(_)));
         for layer in &mut suspect.layers {
             let Slot::Term(k) = layer.slot else { continue };
@@ -307,7 +306,7 @@ fn rules_name_the_number() {
 #[test]
 fn turned_broken_and_repeated_pictures_are_noticed() {
     let bench = Bench::new(Stage::CORNELL, 1024);
-    let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(64, 7), &Unobserved, &NEVER);
+    let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(64, 7), Progress::NONE);
     let right = Pictures::of(&render, SIZE);
     let names = |p: &Pictures| {
         let d = bench.judge(p, None, 1e-6);
@@ -373,8 +372,8 @@ fn the_command_says_correct_or_names_the_mistake() {
     let scene = Scene::new(&Stage::CORNELL.load([16, 16]).unwrap());
     let s = Settings { spp: 256, seed: 9, max_bounces: 3, ..Settings::default() };
     let s = Settings { roulette: Roulette::Albedo { from: 2 }.after(3), ..s };
-    let good = sampled::terms(&scene, Estimator::Prefix, &s, &Unobserved, &NEVER);
-    let bad = zoo::render(zoo::find("missing-pi-connection").unwrap(), &scene, &s, &Unobserved, &NEVER);
+    let good = sampled::terms(&scene, Estimator::Prefix, &s, Progress::NONE);
+    let bad = zoo::render(zoo::find("missing-pi-connection").unwrap(), &scene, &s, Progress::NONE);
     for (file, render) in [("good.exr", &good), ("bad.exr", &bad)] {
         let names: Vec<String> = (0..4).map(|k| format!("T{k:02}")).collect();
         let mut layers: Vec<(&str, &[[f32; 3]])> = vec![("", &render.total.mean)];
@@ -433,8 +432,8 @@ fn growing_samples_show_what_one_picture_cannot() {
         for spp in [16, 64, 256] {
             let s = settings(spp, 40 + u64::from(spp) * u64::from(bug != Some("same-numbers")));
             let render = match bug {
-                Some(bug) => zoo::render(zoo::find(bug).unwrap(), &scene, &s, &Unobserved, &NEVER),
-                None => sampled::path(&scene, &s, &Unobserved, &NEVER),
+                Some(bug) => zoo::render(zoo::find(bug).unwrap(), &scene, &s, Progress::NONE),
+                None => sampled::path(&scene, &s, Progress::NONE),
             };
             write_exr(&desk, &format!("{name}_{spp}.exr"), [24, 24], &[("", render.total.mean.as_slice())]);
         }
@@ -459,8 +458,8 @@ fn a_larger_scene_shows_mixed_measures() {
     for (radius, stage) in [(1, Stage::SPHERE), (10, Stage::LARGE_SPHERE)] {
         let scene = Scene::new(&stage.load([16, 16]).unwrap());
         let s = Settings { max_bounces: 3, ..settings(256, 20 + radius) };
-        let wrong = zoo::render(mixed, &scene, &s, &Unobserved, &NEVER);
-        let right = zoo::render_right(mixed, &scene, &s, &Unobserved, &NEVER);
+        let wrong = zoo::render(mixed, &scene, &s, Progress::NONE);
+        let right = zoo::render_right(mixed, &scene, &s, Progress::NONE);
         for (name, render) in [("wrong", &wrong), ("right", &right)] {
             write_exr(&desk, &format!("{name}{radius}.exr"), [16, 16], &[("T01", render.terms[1].mean.as_slice())]);
         }
@@ -494,7 +493,7 @@ fn too_few_pixels_are_said_to_be_too_few() {
     let render = |mistake: bool| {
         let s = settings(512, 31);
         let make = if mistake { zoo::render } else { zoo::render_right };
-        without_errors(Pictures::of(&make(behind, &bench.scene, &s, &Unobserved, &NEVER), SIZE))
+        without_errors(Pictures::of(&make(behind, &bench.scene, &s, Progress::NONE), SIZE))
     };
     // this light comes through few pixels: if that is too few to decide, it is said
     let d = bench.judge(&render(true), None, 1e-6);
@@ -513,7 +512,7 @@ fn too_few_pixels_are_said_to_be_too_few() {
 fn a_small_lamp_is_missed() {
     let bench = Bench::new(Stage::CORNELL, 1024);
     let missing = zoo::find("emission-missing").unwrap();
-    let render = zoo::render(missing, &bench.scene, &settings(64, 32), &Unobserved, &NEVER);
+    let render = zoo::render(missing, &bench.scene, &settings(64, 32), Progress::NONE);
     let all = without_errors(Pictures::of(&render, SIZE));
     for part in [all.clone(), all.only(|s| s == Slot::Whole)] {
         let d = bench.judge(&part, None, 1e-6);

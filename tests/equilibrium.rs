@@ -7,17 +7,17 @@ use common::judge::{Judged, Jury, at};
 use common::open;
 use common::sampling::plan;
 use common::scenes::{bands, description};
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Equilibrium, Roulette, Technique};
 use fredholm::math::{Key, Rgb};
 use fredholm::operator::MatrixWalk;
 use fredholm::operator::matrix_walk::Rows;
+use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::stats::Outcome;
+use fredholm::worlds::Settings;
 use fredholm::worlds::equilibrium::{Balance, Judgement, Origin, aggregate, at_points, judge, points};
-use fredholm::worlds::{Settings, Unobserved};
 use glam::DVec3;
-use std::sync::atomic::AtomicBool;
 
 const END: Roulette = Roulette::Albedo { from: 2 };
 
@@ -33,7 +33,7 @@ fn both_sides_are_the_solution_on_a_matrix() {
     for technique in Technique::ALL {
         let estimator = Equilibrium { plan: plan(0, technique, &END), factor: 1.0 };
         let amount = Amount { spp: 1 << 18, replicates: 256, key: Key::new(jury.seed(), &technique.to_string()) };
-        let film = render(&walk, &Rows(3), &estimator, amount, &mut Unwatched, &AtomicBool::new(false));
+        let film = render(&walk, &Rows(3), &estimator, amount, Progress::NONE);
         for row in 0..3 {
             let truth: DVec3 = powers.iter().map(|t| t[row]).sum();
             for slot in 0..2 {
@@ -56,7 +56,7 @@ fn balances(scene: &Scene, settings: &Settings, factor: f32) -> [Vec<Balance>; 2
         let at = points(scene, from, 24, settings.seed);
         assert_eq!(at.len(), 24);
         let settings = Settings { seed: settings.seed ^ from as u64, ..settings.clone() };
-        at_points(scene, &at, &settings, factor, &Unobserved, &AtomicBool::new(false))
+        at_points(scene, &at, &settings, factor, Progress::NONE)
     })
 }
 

@@ -12,14 +12,14 @@ mod common;
 
 use common::{assert_rate_at_most, open};
 use fredholm::estimator::Technique;
+use fredholm::progress::Progress;
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Scene, builtin};
 use fredholm::stats::{Comparison, Criterion, Evidence, Outcome, compare, half_width_95};
 use fredholm::terms::Series;
+use fredholm::worlds::Settings;
 use fredholm::worlds::sampled::{self, Estimator, Sampled};
-use fredholm::worlds::{Settings, Unobserved};
 use rayon::prelude::*;
-use std::sync::atomic::AtomicBool;
 
 /// One glowing square before black.
 const SQUARE: &str = r#"
@@ -126,11 +126,11 @@ fn settings(technique: Technique, spp: u32, seed: u64) -> Settings {
 }
 
 fn terms(s: &Scene, estimator: Estimator, settings: &Settings) -> Sampled {
-    sampled::terms(s, estimator, settings, &Unobserved, &AtomicBool::new(false))
+    sampled::terms(s, estimator, settings, Progress::NONE)
 }
 
 fn path(s: &Scene, settings: &Settings) -> Sampled {
-    sampled::path(s, settings, &Unobserved, &AtomicBool::new(false))
+    sampled::path(s, settings, Progress::NONE)
 }
 
 fn judged(a: &Series, b: &Series) -> Comparison {

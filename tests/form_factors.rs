@@ -6,6 +6,7 @@ mod discrete;
 use discrete::*;
 use fredholm::operator::form_factor::*;
 use fredholm::operator::patches::{BruteForce, Patches, polygon};
+use fredholm::progress::Progress;
 use fredholm::scene::{Primitive, description::*};
 use fredholm::solver::Radiosity;
 use glam::DVec3;
@@ -218,7 +219,7 @@ fn visibility_samples_leave_the_reflected_light_right() {
     let scene = cornell();
     let patches = Patches::new(&scene, 600).unwrap();
     let reflected = |sampling: VisibilitySampling| {
-        let f = FormFactors::new(&patches, &BruteForce::new(&scene), sampling, Watch::default()).unwrap();
+        let f = FormFactors::new(&patches, &BruteForce::new(&scene), sampling, Progress::NONE).unwrap();
         let lit = Radiosity::new(patches.clone(), f).solve().unwrap().radiance;
         lit.iter().zip(patches.iter()).map(|(l, p)| l.x - p.emission.x).collect::<Vec<_>>()
     };

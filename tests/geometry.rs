@@ -16,18 +16,18 @@ mod common;
 use common::open;
 use common::sampling::{Kind, TECHNIQUES, collect, film, plan};
 use common::scenes::{description, quad, room, sphere};
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Bidirectional, LightTracer, Prefix, Roulette, Technique};
 use fredholm::math::{Key, Purpose, Rng};
 use fredholm::operator::patches::Patches;
 use fredholm::operator::{SceneTransport, Transport};
+use fredholm::progress::Progress;
 use fredholm::scene::description::{CameraDescription, Description, Geometry, LightDescription, Sides};
 use fredholm::scene::load::{Options, toml};
 use fredholm::scene::{Scene, Vertex};
 use fredholm::terms::{Estimate, TermFilm, functional::image_replicates};
 use glam::{DQuat, DVec3};
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 fn camera(origin: DVec3, target: DVec3, up: DVec3, fov: f64, size: u32) -> CameraDescription {
     CameraDescription { origin, target, up, fov, size: [size; 2] }
@@ -133,10 +133,10 @@ fn needles_and_strips_light_what_they_should() {
             let found = film(&t, &scene.camera, Kind::Prefix, &plan, 16_384, Key::new(account.seed(), &name));
             account.assert_consistent(&name, &image(&found, 1), DVec3::splat(truth));
         }
-        let (stop, name) = (AtomicBool::new(false), format!("{kind} {a} × {b}, both ends"));
+        let name = format!("{kind} {a} × {b}, both ends");
         let amount = Amount { spp: 4096, replicates: 256, key: Key::new(account.seed(), &name) };
         let both = Bidirectional(plan(1, Technique::Mis, &Roulette::Never));
-        let found = render(&t, &scene.camera, &both, amount, &mut Unwatched, &stop);
+        let found = render(&t, &scene.camera, &both, amount, Progress::NONE);
         account.assert_consistent(&name, &image(&found, 1), DVec3::splat(truth));
     }
 }
@@ -171,12 +171,12 @@ fn a_room_far_away_is_the_room_at_the_origin() {
     let bits = |d: &Description| {
         let scene = Scene::new(d);
         let t = SceneTransport::new(&scene);
-        let (stop, key) = (AtomicBool::new(false), Key::new(1, "far"));
+        let key = Key::new(1, "far");
         let plan = plan(3, Technique::Mis, &Roulette::Albedo { from: 3 });
         let mut all = collect(&t, &scene.camera, &Prefix(plan.clone()), 8, 8, key).values;
         for film in [
-            render(&t, &scene.camera, &Bidirectional(plan.clone()), Amount::new(8, key), &mut Unwatched, &stop),
-            render(&t, &scene.camera, &LightTracer(plan), Amount::new(8, key), &mut Unwatched, &stop),
+            render(&t, &scene.camera, &Bidirectional(plan.clone()), Amount::new(8, key), Progress::NONE),
+            render(&t, &scene.camera, &LightTracer(plan), Amount::new(8, key), Progress::NONE),
         ] {
             all.extend((0..64).flat_map(|p| (0..4).map(move |k| (p, k))).map(|(p, k)| film.sum(p, 0, k)));
         }
@@ -229,9 +229,9 @@ fn a_camera_may_stand_far_away() {
         let found = image(&film(&t, &scene.camera, Kind::Prefix, &plan, 1024, key), 0);
         account.assert_equivalent(&format!("{distance} m"), &found, DVec3::splat(2.5), DVec3::splat(0.005));
         // and light that is led to the eye finds the pixels that the eye's rays start from
-        let (stop, amount) = (AtomicBool::new(false), Amount { spp: 1024, replicates: 256, key });
+        let amount = Amount { spp: 1024, replicates: 256, key };
         let light = LightTracer(plan);
-        let found = image(&render(&t, &scene.camera, &light, amount, &mut Unwatched, &stop), 0);
+        let found = image(&render(&t, &scene.camera, &light, amount, Progress::NONE), 0);
         account.assert_equivalent(&format!("light from {distance} m"), &found, DVec3::splat(2.5), DVec3::splat(0.1));
     }
 }
@@ -353,10 +353,10 @@ fn a_glowing_sphere_is_seen_from_inside_and_from_beside() {
             let found = film(&t, &scene.camera, Kind::Prefix, &plan, 16_384, Key::new(account.seed(), &name));
             account.assert_equivalent(&name, &image(&found, 1), truth, 0.02 * truth);
         }
-        let (stop, name) = (AtomicBool::new(false), format!("{gap} above, both ends"));
+        let name = format!("{gap} above, both ends");
         let amount = Amount { spp: 16_384, replicates: 256, key: Key::new(account.seed(), &name) };
         let both = Bidirectional(plan(1, Technique::Mis, &Roulette::Never));
-        let found = render(&t, &scene.camera, &both, amount, &mut Unwatched, &stop);
+        let found = render(&t, &scene.camera, &both, amount, Progress::NONE);
         account.assert_equivalent(&name, &image(&found, 1), truth, 0.02 * truth);
     }
 }

@@ -19,6 +19,7 @@ use fredholm::math::direction::Frame;
 use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::guided::{Guide, GuidedTransport, Recipe};
 use fredholm::operator::{SceneTransport, Sensor, Step, Transport};
+use fredholm::progress::Progress;
 use fredholm::scene::description::{BsdfDescription, Colour, Description};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Camera, Scene, SurfaceSensor, Vertex, VertexWave};
@@ -26,7 +27,6 @@ use fredholm::stats::Criterion;
 use fredholm::terms::functional::image_replicates;
 use fredholm::terms::{Estimate, TermFilm};
 use glam::{DVec3, Vec3};
-use std::sync::atomic::AtomicBool;
 
 fn built_in(name: &str, size: [u32; 2]) -> Description {
     let mut d = load::scene(name, &Options::default()).unwrap().description;
@@ -58,7 +58,7 @@ fn glossy() -> Description {
 }
 
 fn guide(description: &Description, recipe: Recipe) -> Guide {
-    Guide::new(description, recipe, Key::new(1, "guide"), |_| (), &|| (), &AtomicBool::new(false)).unwrap().unwrap()
+    Guide::new(description, recipe, Key::new(1, "guide"), Progress::NONE).unwrap().unwrap()
 }
 
 const COARSE: Recipe = Recipe {

@@ -13,11 +13,12 @@ use common::sampling::{Start, Starts, collect, plan, point};
 use common::scenes::{Surface, bands, description, quad, room, sphere};
 use common::truth::case;
 use common::{assert_rate, open};
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Bidirectional, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm, Technique};
 use fredholm::math::Key;
 use fredholm::operator::scene_transport::SurfaceStrip;
 use fredholm::operator::{SceneTransport, Sensor};
+use fredholm::progress::Progress;
 use fredholm::scene::bsdf::{Bsdf, TransportMode, fresnel::hemispherical};
 use fredholm::scene::description::{
     BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
@@ -29,7 +30,6 @@ use fredholm::terms::functional::image_replicates;
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 const K: usize = 4;
 
@@ -52,17 +52,15 @@ fn film<'s>(
     spp: u32,
     key: Key,
 ) -> TermFilm {
-    let (t, stop) = (SceneTransport::new(scene), AtomicBool::new(false));
+    let t = SceneTransport::new(scene);
     let amount = Amount { spp, replicates: 256, key };
     let with = |technique| Plan { max_bounces: last, technique, roulette: roulette.clone() };
     match way {
-        Way::Prefix(technique) => render(&t, sensor, &Prefix(with(technique)), amount, &mut Unwatched, &stop),
-        Way::Single(technique) => render(&t, sensor, &SingleTerm(with(technique)), amount, &mut Unwatched, &stop),
-        Way::Path(technique) => render(&t, sensor, &PathTracer(with(technique)), amount, &mut Unwatched, &stop),
-        Way::Light => render(&t, sensor, &LightTracer(with(Technique::Mis)), amount, &mut Unwatched, &stop),
-        Way::Bidirectional(technique) => {
-            render(&t, sensor, &Bidirectional(with(technique)), amount, &mut Unwatched, &stop)
-        }
+        Way::Prefix(technique) => render(&t, sensor, &Prefix(with(technique)), amount, Progress::NONE),
+        Way::Single(technique) => render(&t, sensor, &SingleTerm(with(technique)), amount, Progress::NONE),
+        Way::Path(technique) => render(&t, sensor, &PathTracer(with(technique)), amount, Progress::NONE),
+        Way::Light => render(&t, sensor, &LightTracer(with(Technique::Mis)), amount, Progress::NONE),
+        Way::Bidirectional(technique) => render(&t, sensor, &Bidirectional(with(technique)), amount, Progress::NONE),
     }
 }
 

@@ -6,9 +6,10 @@
 
 mod discrete;
 use discrete::*;
-use fredholm::operator::form_factor::{FormFactors, VisibilitySampling, Watch, point_to_polygon};
+use fredholm::operator::form_factor::{FormFactors, VisibilitySampling, point_to_polygon};
 use fredholm::operator::matrix::PatchOperator;
 use fredholm::operator::patches::Patches;
+use fredholm::progress::Progress;
 use fredholm::scene::description::{Material, Sides};
 use fredholm::scene::{Description, Scene, load};
 use fredholm::solver::{Neumann, Radiosity, direct};
@@ -245,7 +246,7 @@ fn cornell_limit(n: usize) -> ([f64; 3], [fredholm::stats::Limit; 3]) {
             let patches = Patches::new(&description, *n).unwrap();
             let area: f64 = patches.iter().map(|p| p.area).sum();
             let h = (area / patches.len() as f64).sqrt();
-            let f = FormFactors::new(&patches, &scene, VisibilitySampling::default(), Watch::default()).unwrap();
+            let f = FormFactors::new(&patches, &scene, VisibilitySampling::default(), Progress::NONE).unwrap();
             (h, Radiosity::new(patches, f).spectral_radius().map(|s| s.radius))
         })
         .collect();
@@ -290,8 +291,7 @@ fn limits_of_the_spectral_radius_are_covered() {
     let cubes: Vec<Value> = cases().into_iter().filter(|c| c["expected"]["spectral_radius"].is_f64()).collect();
     let radius = |scene: &Description, n: usize| {
         let patches = Patches::new(scene, n).unwrap();
-        let f =
-            FormFactors::new(&patches, &Scene::new(scene), VisibilitySampling::default(), Watch::default()).unwrap();
+        let f = FormFactors::new(&patches, &Scene::new(scene), VisibilitySampling::default(), Progress::NONE).unwrap();
         let r = Radiosity::new(patches, f);
         Radius::of(&r.patches, &r.spectral_radius(), DVec3::ZERO)
     };

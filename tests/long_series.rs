@@ -4,15 +4,17 @@
 mod common;
 
 use common::scenes::{bands, description, room, sphere};
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, Technique, TermEstimator};
 use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
+use fredholm::progress::Progress;
 use fredholm::scene::{Scene, bsdf::Sampling};
 use fredholm::stats::evidence::Reason;
 use fredholm::stats::{Criterion, Detector, Outcome, compare};
 use fredholm::terms::functional::image_replicates;
 use fredholm::terms::{Estimate, Variance};
+use fredholm::worlds::Settings;
 use fredholm::worlds::batches::Side;
 use fredholm::worlds::convergence::{Part, Recorder};
 use fredholm::worlds::equilibrium::{self, Origin, judge};
@@ -20,9 +22,7 @@ use fredholm::worlds::growth::{FromEye, growth, proved};
 use fredholm::worlds::resort::with_last_resort;
 use fredholm::worlds::roulette::beyond;
 use fredholm::worlds::sampled::{self, Estimator};
-use fredholm::worlds::{Settings, Unobserved};
 use glam::DVec3;
-use std::sync::atomic::AtomicBool;
 
 const K: usize = 4;
 
@@ -35,7 +35,7 @@ fn furnace(rho: f64) -> Scene {
 fn whole<'a>(scene: &'a Scene, estimator: &impl TermEstimator<SceneTransport<'a>>, seed: u64) -> Estimate {
     let amount = Amount { spp: 256, replicates: 256, key: Key::new(seed, "long") };
     let t = SceneTransport::new(scene);
-    let film = render(&t, &scene.camera, estimator, amount, &mut Unwatched, &AtomicBool::new(false));
+    let film = render(&t, &scene.camera, estimator, amount, Progress::NONE);
     let r = image_replicates(&film);
     r.estimate(0..r.mean.len())
 }
@@ -114,9 +114,8 @@ fn infinite_variance_is_said_in_place_of_an_error() {
     let scene = furnace(0.999);
     let settings = Settings { spp: 32, max_bounces: K, ..Settings::default() };
     let lecture = Settings { roulette: Roulette::LECTURE, path_roulette: Roulette::LECTURE, ..settings.clone() };
-    let stop = AtomicBool::new(false);
-    let short = sampled::terms(&scene, Estimator::Prefix, &lecture, &Unobserved, &stop);
-    let path = sampled::path(&scene, &lecture, &Unobserved, &stop);
+    let short = sampled::terms(&scene, Estimator::Prefix, &lecture, Progress::NONE);
+    let path = sampled::path(&scene, &lecture, Progress::NONE);
     for s in [&short, &path] {
         assert_eq!(s.series.variance, Variance::Infinite);
         let image = s.series.image();
@@ -133,7 +132,7 @@ fn infinite_variance_is_said_in_place_of_an_error() {
     let side = Side { estimator: None, settings: lecture.clone() };
     let mut watched = Detector::new(Criterion::default()).doubting(&side.limits(&scene));
     for i in 0..3 {
-        let batch = |name| side.batch(&scene, name, i, &stop).functionals;
+        let batch = |name| side.batch(&scene, name, i).functionals;
         watched.push(&batch("first"), &batch("second"));
     }
     let total = watched.findings().into_iter().find(|f| f.name == "total").unwrap();
@@ -141,14 +140,14 @@ fn infinite_variance_is_said_in_place_of_an_error() {
     assert!(total.reason.as_deref().unwrap().contains("infinite"), "{total:?}");
     // where both sides of the equation are held against each other,
     let at = equilibrium::points(&scene, Origin::Surface, 4, 1);
-    let balances = equilibrium::at_points(&scene, &at, &lecture, 1.0, &Unobserved, &stop);
+    let balances = equilibrium::at_points(&scene, &at, &lecture, 1.0, Progress::NONE);
     assert!(balances.iter().all(|b| b.evidence().no_error == Some(Reason::Infinite)));
     let judged = judge(&[("surface", &balances)], 0.05, 0.5);
     assert_eq!((judged.outcome, judged.judged), (Outcome::Inconclusive, 0));
     // and where noise falls: samples whose variance were finite would have a slope
-    let recorder = Recorder::new(&Unobserved, None, vec![64, 128, 256]);
+    let mut recorder = Recorder::new(None, vec![64, 128, 256]);
     let longer = Settings { spp: 256, ..lecture.clone() };
-    let swept = sampled::terms(&scene, Estimator::Prefix, &longer, &recorder, &stop);
+    let swept = sampled::recorded(&scene, Some(Estimator::Prefix), &longer, Progress::NONE, Some(&mut recorder));
     let stands = recorder.stands();
     for (variance, known) in [(Variance::Finite, true), (swept.series.variance, false)] {
         let parts = Part::all(&stands, true, variance);
@@ -156,7 +155,7 @@ fn infinite_variance_is_said_in_place_of_an_error() {
         assert_eq!(all.slope().is_some(), known, "{variance:?}");
     }
     // by albedo everything keeps its error
-    let usual = sampled::path(&scene, &settings, &Unobserved, &stop);
+    let usual = sampled::path(&scene, &settings, Progress::NONE);
     assert!(usual.doubt.is_none() && usual.series.image().total.std_error.is_finite());
 }
 
@@ -170,7 +169,7 @@ fn a_channel_without_light_has_no_say() {
     )]));
     assert_eq!(scene.lit().as_dvec3(), DVec3::new(1.0, 1.0, 0.0));
     let settings = Settings { spp: 16, max_bounces: K, ..Settings::default() };
-    let path = sampled::path(&scene, &settings, &Unobserved, &AtomicBool::new(false));
+    let path = sampled::path(&scene, &settings, Progress::NONE);
     let mean = path.series.image().total.mean;
     assert!((mean - DVec3::new(2.0, 2.0, 0.0)).abs().max_element() < 0.2, "{mean}");
     assert!(path.series.cost.rays < 20 * path.series.cost.paths);

@@ -15,12 +15,13 @@ use common::random::{cases, draw, glass, items, opaque, schedule, world};
 use common::sampling::{Start, Starts, collect, plan};
 use common::scenes::{description, quad, room, sphere};
 use fredholm::estimator::densities::{Node, PathDensities, walk};
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Bidirectional, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm, Technique};
 use fredholm::math::direction::Frame;
 use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::scene_transport::SurfaceStrip;
 use fredholm::operator::{Adjoint, Role, SceneTransport, Sensor, Transport};
+use fredholm::progress::Progress;
 use fredholm::scene::bsdf::{Bsdf, Sampling, TransportMode};
 use fredholm::scene::description::{BsdfDescription, Description, Geometry, LightDescription, Shape, Sides};
 use fredholm::scene::emitter::environment::Environment;
@@ -31,7 +32,6 @@ use fredholm::terms::{Estimate, TermFilm};
 use glam::{DQuat, DVec3, Vec3};
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use std::sync::atomic::AtomicBool;
 
 const K: usize = 4;
 
@@ -53,14 +53,14 @@ fn film<'s>(
     (spp, replicates): (u32, usize),
     key: Key,
 ) -> TermFilm {
-    let (t, plan, stop) = (SceneTransport::new(scene), plan.clone(), AtomicBool::new(false));
+    let (t, plan) = (SceneTransport::new(scene), plan.clone());
     let amount = Amount { spp, replicates, key };
     match kind {
-        Kind::Single => render(&t, sensor, &SingleTerm(plan), amount, &mut Unwatched, &stop),
-        Kind::Prefix => render(&t, sensor, &Prefix(plan), amount, &mut Unwatched, &stop),
-        Kind::Path => render(&t, sensor, &PathTracer(plan), amount, &mut Unwatched, &stop),
-        Kind::Light => render(&t, sensor, &LightTracer(plan), amount, &mut Unwatched, &stop),
-        Kind::Bidirectional => render(&t, sensor, &Bidirectional(plan), amount, &mut Unwatched, &stop),
+        Kind::Single => render(&t, sensor, &SingleTerm(plan), amount, Progress::NONE),
+        Kind::Prefix => render(&t, sensor, &Prefix(plan), amount, Progress::NONE),
+        Kind::Path => render(&t, sensor, &PathTracer(plan), amount, Progress::NONE),
+        Kind::Light => render(&t, sensor, &LightTracer(plan), amount, Progress::NONE),
+        Kind::Bidirectional => render(&t, sensor, &Bidirectional(plan), amount, Progress::NONE),
     }
 }
 

@@ -18,16 +18,16 @@ mod common;
 
 use common::judge::Jury;
 use common::truth::case;
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Bidirectional, Plan, Prefix, Roulette, Technique, TermEstimator};
 use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
+use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::description::{BsdfDescription, Description, Geometry, LightDescription};
 use fredholm::scene::load::{self, Options};
 use fredholm::terms::{Estimate, TermFilm};
 use glam::DVec3;
-use std::sync::atomic::AtomicBool;
 
 const K: usize = 6;
 const PARTS: [&str; 5] = ["image", "top left", "top right", "bottom left", "bottom right"];
@@ -41,7 +41,7 @@ fn film<'a>(
     seed: u64,
 ) -> TermFilm {
     let amount = Amount { spp, replicates: REPLICATES, key: Key::new(seed, "other renderer") };
-    render(t, &scene.camera, e, amount, &mut Unwatched, &AtomicBool::new(false))
+    render(t, &scene.camera, e, amount, Progress::NONE)
 }
 
 fn plan(technique: Technique) -> Plan {

@@ -5,11 +5,12 @@ mod common;
 
 use common::judge::{Jury, at};
 use common::sampling::{Kind, TECHNIQUES, collect, film, plan};
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{PathTracer, Prefix, Roulette, Technique};
 use fredholm::math::{Key, Points, Purpose, Rgb, Rng, fnv1a};
 use fredholm::operator::matrix_walk::Rows;
 use fredholm::operator::{MatrixWalk, SceneTransport};
+use fredholm::progress::Progress;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Scene, description::Description};
@@ -17,7 +18,6 @@ use fredholm::stats::{critical, variance_slope};
 use fredholm::terms::functional::image_replicates;
 use fredholm::terms::variance::snapshot;
 use glam::DVec3;
-use std::sync::atomic::AtomicBool;
 
 const PURPOSES: [Purpose; 4] = [Purpose::Start, Purpose::Connect, Purpose::Scatter, Purpose::Roulette];
 
@@ -199,11 +199,11 @@ fn sobol_points_move_no_mean() {
 fn misses(seed: u64, scrambles: usize, trials: u32) -> u64 {
     let walk = walk();
     let truth = walk.powers(2)[2][1].y + walk.powers(1)[1][1].y;
-    let (plan, stop) = (plan(2, Technique::Mis, &Roulette::Never), AtomicBool::new(false));
+    let plan = plan(2, Technique::Mis, &Roulette::Never);
     let missed = |trial: u32| {
         let key = Key::new(seed, "calibration").with_points(Points::Sobol, scrambles).branch(trial);
         let amount = Amount { spp: 16 * 32, replicates: 16, key };
-        let film = render(&walk, &Rows(2), &Prefix(plan.clone()), amount, &mut Unwatched, &stop);
+        let film = render(&walk, &Rows(2), &Prefix(plan.clone()), amount, Progress::NONE);
         let e = at(&film, 1, 1..3);
         (e.mean.y - truth).abs() > critical(0.05, 15.0) * e.std_error.y
     };

@@ -7,6 +7,7 @@
 mod discrete;
 use discrete::*;
 use fredholm::operator::{form_factor::*, matrix::*, patches::*};
+use fredholm::progress::Progress;
 use fredholm::scene::{Description, description::Geometry};
 use fredholm::solver::{direct, *};
 use glam::DVec3;
@@ -348,7 +349,7 @@ fn timings() {
         let (wall, cpu) = (std::time::Instant::now(), cpu_seconds());
         let patches = Patches::new(scene, n).unwrap();
         let mesh = cpu_seconds() - cpu;
-        let f = FormFactors::new(&patches, visibility, VisibilitySampling::default(), Watch::default()).unwrap();
+        let f = FormFactors::new(&patches, visibility, VisibilitySampling::default(), Progress::NONE).unwrap();
         println!(
             "{name} n = {}: mesh {mesh:.2}, all {:.2} CPU-s, {:.2} s wall, {:.1} M rays, {:?}",
             f.n,

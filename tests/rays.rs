@@ -6,10 +6,11 @@ mod common;
 mod discrete;
 use common::ledger;
 use discrete::*;
-use fredholm::operator::form_factor::{FormFactors, Stopped, Watch};
+use fredholm::operator::form_factor::{FormFactors, Stopped};
 use fredholm::operator::matrix::{LinearOperator, PatchOperator, spectral_radius};
 use fredholm::operator::patches::Patches;
 use fredholm::operator::rays::{Coarse, Half, Hit, Light, Rays, record};
+use fredholm::progress::Progress;
 use fredholm::scene::{Scene, description::*, load};
 use fredholm::solver::Radiosity;
 use fredholm::stats::critical;
@@ -17,7 +18,7 @@ use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 
 fn shoot(scene: &Description, patches: &Patches, per_row: usize, seed: u64) -> Rays {
-    Rays::new(patches, &Scene::new(scene), per_row, seed, Watch::default()).unwrap()
+    Rays::new(patches, &Scene::new(scene), per_row, seed, Progress::NONE).unwrap()
 }
 
 /// A closed room with a turned block, and a ball that stands half in the floor, so that floor patches are partly covered.
@@ -257,11 +258,10 @@ fn rows_do_not_depend_on_threads_and_can_be_stopped() {
     assert_eq!(one, three);
     assert_ne!(one, shoot(&scene, &patches, 64, 3));
     // packets and single rays meet the same
-    let single = Rays::new(&patches, &Scene::new(&scene).one_by_one(), 64, 2, Watch::default()).unwrap();
+    let single = Rays::new(&patches, &Scene::new(&scene).one_by_one(), 64, 2, Progress::NONE).unwrap();
     assert_eq!(one, single);
     let stop = AtomicBool::new(true);
-    let watch = Watch { progress: None, stop: Some(&stop) };
-    assert_eq!(Rays::new(&patches, &Scene::new(&scene), 64, 2, watch), Err(Stopped));
+    assert_eq!(Rays::new(&patches, &Scene::new(&scene), 64, 2, Progress::NONE.stopped_by(&stop)), Err(Stopped));
 }
 
 #[test]

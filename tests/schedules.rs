@@ -16,25 +16,22 @@ use common::Account;
 use common::judge::{Judged, Jury};
 use common::sampling::{TECHNIQUES, collect, plan};
 use fredholm::estimator::record::record;
-use fredholm::estimator::render::{Amount, Unwatched};
+use fredholm::estimator::render::Amount;
 use fredholm::estimator::{Prefix, Roulette, Technique, Vertices};
 use fredholm::math::{Key, Rgb};
 use fredholm::operator::matrix_walk::Rows;
 use fredholm::operator::{MatrixWalk, SceneTransport, Sensor, Transport};
+use fredholm::progress::Progress;
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
 use fredholm::stats::Noise;
 use fredholm::terms::cross_moments::{CrossMoments, Value};
 use fredholm::terms::{Estimate, Recorded};
+use fredholm::worlds::Settings;
 use fredholm::worlds::discrete;
 use fredholm::worlds::roulette::{self, Radii};
-use fredholm::worlds::{Settings, Unobserved};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
-
-fn never() -> AtomicBool {
-    AtomicBool::new(false)
-}
 
 fn scene(name: &str, side: u32) -> (Description, Scene) {
     seen(name, side, &[])
@@ -103,7 +100,7 @@ fn recordings_do_not_depend_on_threads() {
     let settings = Settings { max_bounces: 4, ..Settings::default() };
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let mut r = pool.install(|| roulette::pilot(&scene, &settings, 8, &Unobserved, &never()).unwrap());
+        let mut r = pool.install(|| roulette::pilot(&scene, &settings, 8, Progress::NONE).unwrap());
         r.seconds = 0.0;
         r
     };
@@ -118,7 +115,7 @@ fn recordings_do_not_depend_on_threads() {
 fn an_interrupted_recording_is_none() {
     let (_, scene) = scene("cornell", 8);
     let stop = AtomicBool::new(true);
-    assert_eq!(roulette::pilot(&scene, &Settings::default(), 8, &Unobserved, &stop), None);
+    assert_eq!(roulette::pilot(&scene, &Settings::default(), 8, Progress::NONE.stopped_by(&stop)), None);
 }
 
 // ------------------------------------------------------------------------------------------------ against algebra
@@ -154,7 +151,7 @@ fn recorded_moments_are_those_of_the_matrix() {
         let plan = plan(K, technique, &"constant:0.2@3".parse().unwrap());
         let key = Key::new(jury.seed(), "moments").branch(stream as u32);
         let amount = Amount { spp: 1 << 19, replicates: 256, key };
-        let r = record(&t, &Rows(N as u32), &Vertices(plan), amount, &Unwatched, &never()).unwrap();
+        let r = record(&t, &Rows(N as u32), &Vertices(plan), amount, Progress::NONE).unwrap();
         // hits score E at every vertex; connections score one of two lamps, weight ρ F · 2 E, after the hit at the eye
         let (slot, vertices): (fn(usize) -> usize, usize) =
             if technique == Technique::Scatter { (|v| 2 * v, K + 1) } else { (|v| 2 * v + 1, K) };
@@ -253,19 +250,19 @@ fn compare(mut account: Account, scenes: &[(&str, u32)], schedules: &[&str], pat
         // not into the lamp: its rim would be all the noise there is
         let floor = ["camera.origin=[0,0.6,0.9]", "camera.target=[0,-0.9,-0.5]"];
         let (description, scene) = seen(name, side, if name == "cornell" { &floor } else { &[] });
-        let matrix = discrete::dense_matrix(&description, &scene, 100, 1.0, 0, &Unobserved, &never()).unwrap();
+        let matrix = discrete::dense_matrix(&description, &scene, 100, 1.0, 0, Progress::NONE).unwrap();
         let radii = Radii::new(Some(&matrix.radiosity), &scene, LARGEST);
         assert!(radii.fourth < 0.95, "{name} at q = {LARGEST}: {radii:?}");
         let settings = Settings { max_bounces: 12, seed: account.seed(), ..Settings::default() };
         let spp = paths / (side * side);
         // all predictions share its error: four times the paths
-        let recorded = roulette::pilot(&scene, &settings, 4 * spp, &Unobserved, &never()).unwrap();
+        let recorded = roulette::pilot(&scene, &settings, 4 * spp, Progress::NONE).unwrap();
         let (mut errors, mut beyond, mut largest, mut all) = (vec![], 0, 0.0_f64, 0);
         for text in schedules {
             let schedule: Roulette = text.parse().unwrap();
             let schedule = schedule.then(12, roulette::beyond(&scene)).unwrap();
             let p = Noise::predicted(&recorded, &schedule).unwrap();
-            let render = roulette::measure(&scene, &settings, &schedule, spp, &Unobserved, &never()).unwrap();
+            let render = roulette::measure(&scene, &settings, &schedule, spp, Progress::NONE).unwrap();
             let m = Noise::measured(&render);
             let parts = |n: &Noise| [[n.all, n.terms[1], n.terms[2]], [n.terms[3], n.terms[5], n.tail]];
             for (i, (p, m)) in parts(&p).iter().zip(&parts(&m)).enumerate() {
@@ -327,13 +324,13 @@ fn the_best_schedule_is_the_most_efficient() {
     for (name, spp) in [("cornell", 2048), ("sphere", 512), ("shells", 512), ("many-lights", 512)] {
         let (_, scene) = scene(name, 32);
         let settings = Settings { seed: account.seed(), max_bounces: 16, ..Settings::default() };
-        let best = roulette::optimal(&scene, &settings, &Unobserved, &never()).unwrap();
+        let best = roulette::optimal(&scene, &settings, Progress::NONE).unwrap();
         let lecture = Roulette::LECTURE.then(16, roulette::beyond(&scene)).unwrap();
         let schedules = [best.roulette.clone(), lecture, Roulette::Albedo { from: 2 }];
         let measured: Vec<(Noise, u64)> = schedules
             .iter()
             .map(|s| {
-                let r: Recorded = roulette::measure(&scene, &settings, s, spp, &Unobserved, &never()).unwrap();
+                let r: Recorded = roulette::measure(&scene, &settings, s, spp, Progress::NONE).unwrap();
                 (Noise::measured(&r), r.replicates())
             })
             .collect();

@@ -7,11 +7,12 @@ mod common;
 
 use common::sampling::plan;
 use common::{Noise, assert_rate_at_most, open};
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{PathTracer, Prefix, Roulette, Technique};
 use fredholm::math::{Key, Rgb};
 use fredholm::operator::MatrixWalk;
 use fredholm::operator::matrix_walk::Rows;
+use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
 use fredholm::stats::sequential::planned_batches;
@@ -22,7 +23,6 @@ use fredholm::worlds::Settings;
 use fredholm::worlds::batches::Side;
 use fredholm::worlds::sampled::Estimator;
 use rayon::prelude::*;
-use std::sync::atomic::AtomicBool;
 
 /// Batches of mean 0, in three shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,16 +138,15 @@ fn image(film: &TermFilm) -> Vec<Functional> {
 /// One batch of each side, `spp` samples of every row: terms against terms, or against the path tracer.
 fn batches(walk: &MatrixWalk, path: bool, spp: u32, key: Key) -> [Vec<Functional>; 2] {
     let end = Roulette::Constant { from: 2, q: 0.5 };
-    let stop = AtomicBool::new(false);
     let amount = |side: u32| Amount { spp, replicates: 1, key: key.branch(side) };
     let prefix = |side: u32, technique| {
         let plan = plan(3, technique, &end);
-        image(&render(walk, &Rows(4), &Prefix(plan), amount(side), &mut Unwatched, &stop))
+        image(&render(walk, &Rows(4), &Prefix(plan), amount(side), Progress::NONE))
     };
     let first = prefix(0, Technique::Mis);
     let second = if path {
         let plan = plan(3, Technique::Connect, &end);
-        image(&render(walk, &Rows(4), &PathTracer(plan), amount(1), &mut Unwatched, &stop))
+        image(&render(walk, &Rows(4), &PathTracer(plan), amount(1), Progress::NONE))
     } else {
         prefix(1, Technique::Connect)
     };
@@ -225,11 +224,11 @@ fn watching_the_cornell_box_raises_no_false_alarms() {
     let roulette = settings.path_roulette.clone().after(4);
     let settings = Settings { roulette, ..settings };
     let sides = [Some(Estimator::Prefix), None].map(|estimator| Side { estimator, settings: settings.clone() });
-    let (runs, looks, alpha, stop) = (2000, 60, 0.05, AtomicBool::new(false));
+    let (runs, looks, alpha) = (2000, 60, 0.05);
     let alarm = |r: u32| {
         let mut d = watch(alpha);
         (0..looks).any(|i| {
-            let [a, b] = [0, 1].map(|s| sides[s].batch(&scene, "calibration", r * looks + i, &stop));
+            let [a, b] = [0, 1].map(|s| sides[s].batch(&scene, "calibration", r * looks + i));
             d.push(&a.functionals, &b.functionals);
             d.excess() >= 0.0
         })

@@ -6,18 +6,17 @@ mod common;
 use common::sampling::{Start, Starts, plan};
 use common::scenes::{bands, description};
 use common::truth::case;
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{OneTerm, Prefix, Roulette, SingleTerm, Technique};
 use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
+use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
 use fredholm::stats::critical;
 use fredholm::terms::covariance::covariance;
 use fredholm::terms::scatter::Scatter;
-use fredholm::worlds::Unobserved;
 use fredholm::worlds::split::{Term, Unit, best, measure, optimal, reuse, work};
-use std::sync::atomic::AtomicBool;
 
 const K: usize = 6;
 
@@ -113,15 +112,15 @@ fn formulae_are_those_of_the_tables() {
 fn one_term_is_that_term_of_single() {
     let mut d = load::scene("cornell", &Options::default()).unwrap().description;
     d.camera.size = [9, 8];
-    let (scene, stop) = (Scene::new(&d), AtomicBool::new(false));
+    let scene = Scene::new(&d);
     let t = SceneTransport::new(&scene);
     for technique in [Technique::Scatter, Technique::Connect, Technique::Mis] {
         let single = SingleTerm(plan(3, technique, &Roulette::Albedo { from: 2 }.after(3)));
         let amount = Amount { spp: 48, replicates: 16, key: Key::new(3, "single") };
-        let all = render(&t, &scene.camera, &single, amount, &mut Unwatched, &stop);
+        let all = render(&t, &scene.camera, &single, amount, Progress::NONE);
         for slot in 0..5 {
             let one = OneTerm { single: single.clone(), slot };
-            let film = render(&t, &scene.camera, &one, amount, &mut Unwatched, &stop);
+            let film = render(&t, &scene.camera, &one, amount, Progress::NONE);
             assert_eq!(film.rays[0], all.rays[slot], "{technique}, {slot}");
             for (p, r) in (0..72).flat_map(|p| (0..16).map(move |r| (p, r))) {
                 assert_eq!(film.sum(p, r, 0), all.sum(p, r, slot), "{technique}, {slot}");
@@ -135,7 +134,7 @@ fn one_term_is_that_term_of_single() {
 #[test]
 fn splits_cost_what_the_covariance_says() {
     let mut account = common::open("splits_cost_what_the_covariance_says");
-    let (stop, spp) = (AtomicBool::new(false), 64);
+    let spp = 64;
     for (name, bands) in cases() {
         let scene = bands.scene();
         let (t, starts) = (SceneTransport::new(&scene), Starts(vec![Start::On(0); 2048]));
@@ -143,14 +142,14 @@ fn splits_cost_what_the_covariance_says() {
         let single = SingleTerm(plan.clone());
         let key = |stream: &str| Key::new(account.seed(), &format!("{name}, {stream}"));
         let terms =
-            |counts: &[u32], stream| measure(&t, &starts, &single, counts, key(stream), &Unobserved, &stop).unwrap();
+            |counts: &[u32], stream| measure(&t, &starts, &single, counts, key(stream), Progress::NONE).unwrap();
         let equal = terms(&[spp; K + 1], "equal");
         let budget = equal.iter().map(|t| t.rays).sum::<f64>() * f64::from(spp);
         // the split is chosen by what a pilot measured, as in the program
         let pilot = terms(&[16; K + 1], "pilot");
         let counts = optimal(&pilot, Unit::Rays, budget, 16);
         let best_terms = terms(&counts, "optimal");
-        let shared = reuse(&t, &starts, &Prefix(plan), spp, key("prefix"), &Unobserved, &stop).unwrap();
+        let shared = reuse(&t, &starts, &Prefix(plan), spp, key("prefix"), Progress::NONE).unwrap();
         for (k, term) in equal.iter().enumerate() {
             assert_eq!(term.rays, k as f64 + 1.0);
             assert!(k > 0 || term.variance < 1e-12, "a path starts where it sees the same light: {}", term.variance);
@@ -181,13 +180,12 @@ fn splits_cost_what_the_covariance_says() {
 #[test]
 fn the_film_knows_the_covariance_of_its_terms() {
     let mut account = common::open("the_film_knows_the_covariance_of_its_terms");
-    let stop = AtomicBool::new(false);
     for (name, bands) in cases() {
         let scene = bands.scene();
         let (t, starts) = (SceneTransport::new(&scene), Starts(vec![Start::On(0); 1024]));
         let prefix = Prefix(plan(K, Technique::Scatter, &Roulette::Never));
         let amount = Amount { spp: 128, replicates: 16, key: Key::new(account.seed(), name) };
-        let film = render(&t, &starts, &prefix, amount, &mut Unwatched, &stop);
+        let film = render(&t, &starts, &prefix, amount, Progress::NONE);
         let c = covariance(&film);
         // the sum over all entries is the variance of the sum, and the diagonal that of every term: identities
         let all = Scatter::of(&film, 0..K + 2, None);

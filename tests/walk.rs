@@ -7,18 +7,18 @@ mod common;
 use common::Noise;
 use common::judge::{Judged, Jury, at};
 use common::sampling::{collect, mean_of};
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Absorption, Plan, Prefix, Roulette, Technique, TermEstimator};
 use fredholm::math::Key;
 use fredholm::operator::GuidedWalk;
 use fredholm::operator::form_factor::FormFactors;
 use fredholm::operator::guided_walk::GuidedRows;
 use fredholm::operator::matrix::{PatchOperator, Rows};
+use fredholm::progress::Progress;
 use fredholm::solver::{Neumann, direct};
 use fredholm::terms::TermFilm;
 use glam::DVec3;
 use nalgebra::{DMatrix, DVector};
-use std::sync::atomic::AtomicBool;
 
 const N: usize = 9;
 
@@ -76,7 +76,7 @@ fn led_by_the_answer_every_walk_is_the_answer() {
 
 fn film(walk: &GuidedWalk, estimator: &impl for<'a> TermEstimator<GuidedWalk<'a>>, spp: u32, key: Key) -> TermFilm {
     let amount = Amount { spp, replicates: 256, key };
-    render(walk, &WHOLE, estimator, amount, &mut Unwatched, &AtomicBool::new(false))
+    render(walk, &WHOLE, estimator, amount, Progress::NONE)
 }
 
 /// Whatever leads a walk, its mean stays.

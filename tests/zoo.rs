@@ -8,24 +8,24 @@ use common::judge::{Judged, Jury};
 use common::sampling::{Collected, Start, Starts, collect, point};
 use common::scenes::{bands, description, quad};
 use common::truth::case;
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Plan, Prefix, Roulette, Technique, TermEstimator};
 use fredholm::math::Key;
 use fredholm::operator::{SceneTransport, Sensor};
+use fredholm::progress::Progress;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::description::{BsdfDescription, Choice, Geometry, LightDescription, Material, Sides, Sky};
 use fredholm::scene::{Description, Scene, Selection, Vertex};
 use fredholm::terms::Estimate;
 use fredholm::terms::functional::{Replicates, image_replicates};
 use fredholm::worlds::sampled::Sampled;
-use fredholm::worlds::{Settings, Unobserved, sampled};
+use fredholm::worlds::{Settings, sampled};
 use fredholm::zoo::bookkeeping::{Clamped, Truncated};
 use fredholm::zoo::judge::{Judgement, judge};
 use fredholm::zoo::walk::Whole;
 use fredholm::zoo::{self, Bug, Mistake, PIXELS, Right, Stage, Walk};
 use glam::DVec3;
 use std::collections::BTreeMap;
-use std::sync::atomic::AtomicBool;
 
 /// K of the tests that judge.
 const K: usize = 4;
@@ -152,11 +152,11 @@ fn through<'s>(
 ) -> Replicates {
     let walk = Walk { plan: Plan { max_bounces, technique, roulette }, mistake };
     let amount = Amount { spp, replicates: 256, key: Key::new(seed, "closed form") };
-    let (t, stop) = (SceneTransport::new(scene), AtomicBool::new(false));
+    let t = SceneTransport::new(scene);
     let film = if mistake.finishes() {
-        render(&t, sensor, &Whole(walk), amount, &mut Unwatched, &stop)
+        render(&t, sensor, &Whole(walk), amount, Progress::NONE)
     } else {
-        render(&t, sensor, &walk, amount, &mut Unwatched, &stop)
+        render(&t, sensor, &walk, amount, Progress::NONE)
     };
     assert_eq!(film.non_finite, 0);
     image_replicates(&film)
@@ -338,8 +338,7 @@ fn settings(spp: u32, seed: u64) -> Settings {
 /// The terms of a stage to many digits, by the estimator of the house.
 fn reference(scene: &Scene, seed: u64) -> Sampled {
     let chosen = if scene.any_delta_surface() { 4096 } else { 8192 };
-    let never = AtomicBool::new(false);
-    sampled::terms(scene, sampled::Estimator::Prefix, &settings(chosen, seed), &Unobserved, &never)
+    sampled::terms(scene, sampled::Estimator::Prefix, &settings(chosen, seed), Progress::NONE)
 }
 
 struct Stages(BTreeMap<&'static str, (Scene, Sampled)>, u64);
@@ -360,10 +359,10 @@ impl Stages {
 
 fn run(bug: &Bug, wrong: bool, stages: &mut Stages, seed: u64) -> (Judgement, f64) {
     let (scene, truth) = stages.of(bug.exposed_by);
-    let (settings, never) = (settings(bug.spp, seed), AtomicBool::new(false));
+    let settings = settings(bug.spp, seed);
     let started = std::time::Instant::now();
     let render = if wrong { zoo::render } else { zoo::render_right };
-    let suspect = render(bug, scene, &settings, &Unobserved, &never);
+    let suspect = render(bug, scene, &settings, Progress::NONE);
     (judge(&suspect, truth), started.elapsed().as_secs_f64())
 }
 

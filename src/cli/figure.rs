@@ -1,13 +1,12 @@
 //! `fredholm figure ID`: a registry of figures, each a recipe or a command that leaves data, pictures and a caption.
 
-use super::progress::{Progress, stop_flag};
+use super::progress::{Bar, stop_flag};
 use super::{Ending, Failure, args, output, preflight, solve};
 use clap::{Args, Parser};
 use fredholm::estimator::Roulette;
 use fredholm::report::{stages as report, summary, typeset::Caption, write_atomically};
 use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
-use fredholm::terms::TermFilm;
 use fredholm::worlds::Settings;
 use fredholm::worlds::resort::with_last_resort;
 use fredholm::worlds::stages::{KAJIYA, NOISE, Recipe, reference_seed, render_stages};
@@ -223,9 +222,10 @@ fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Endin
     };
     preflight::fits_in_memory(&settings, description.camera.size)?;
     let folder = output::folder(folder, recipe.id, &command, args.force)?;
-    let progress = Progress::new(args.quiet, |_: &TermFilm| {});
-    let grown = render_stages(&scene, recipe, &settings, &progress, stop_flag());
-    progress.finish();
+    let bar = Bar::plain(args.quiet);
+    let progress = bar.progress();
+    let grown = render_stages(&scene, recipe, &settings, progress);
+    bar.finish();
     let Some(grown) = grown else {
         super::note("nothing to save yet");
         let _ = std::fs::remove_dir(&folder); // only if it is empty
@@ -269,5 +269,5 @@ fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Endin
                 The reference loses lamps and bright light, too; what an image loses beyond that is noise";
     let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
     super::print(&super::paragraphs(&[head, format!("{}{foot}", report::table(&grown)), files]))?;
-    Ok(if stop_flag().load(Ordering::Relaxed) { Ending::Interrupted } else { Ending::Ok })
+    Ok(if progress.stopped() { Ending::Interrupted } else { Ending::Ok })
 }

@@ -1,6 +1,6 @@
 //! Progress with an ETA on stderr, and Ctrl-C.
 
-use fredholm::worlds::Observer;
+use fredholm::progress::{Listener, Progress};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -25,7 +25,7 @@ pub fn stop_flag() -> &'static AtomicBool {
 }
 
 /// A bar on a terminal; elsewhere a line per 10 % for work that takes more than two seconds.
-pub struct Progress {
+pub struct Bar {
     quiet: bool,
     bar: Mutex<Option<ProgressBar>>,
     what: Mutex<(String, u64, Instant)>,
@@ -34,7 +34,7 @@ pub struct Progress {
     preview: Box<dyn Fn(&fredholm::terms::TermFilm) + Sync + Send>,
 }
 
-impl Progress {
+impl Bar {
     /// `preview` is shown the film after every complete pass.
     pub fn new(quiet: bool, preview: impl Fn(&fredholm::terms::TermFilm) + Sync + Send + 'static) -> Self {
         Self {
@@ -45,6 +45,16 @@ impl Progress {
             tenths: AtomicU64::new(0),
             preview: Box::new(preview),
         }
+    }
+
+    /// Without a preview.
+    pub fn plain(quiet: bool) -> Self {
+        Self::new(quiet, |_| ())
+    }
+
+    /// What the library is given: work that this bar shows, and that Ctrl-C ends.
+    pub fn progress(&self) -> Progress<'_> {
+        Progress::to(self).stopped_by(stop_flag())
     }
 
     /// Takes the bar away.
@@ -59,7 +69,7 @@ fn lock<T>(m: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     m.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-impl Observer for Progress {
+impl Listener for Bar {
     fn begin(&self, what: &str, units: u64) {
         self.finish();
         *lock(&self.what) = (what.to_string(), units.max(1), Instant::now());
@@ -94,7 +104,7 @@ impl Observer for Progress {
         }
     }
 
-    fn preview(&self, film: &fredholm::terms::TermFilm) {
+    fn film(&self, film: &fredholm::terms::TermFilm) {
         (self.preview)(film);
     }
 }

@@ -1,6 +1,6 @@
 //! `fredholm zoo --quiz`: a table of r_k without a name; predict, then reveal.
 
-use super::progress::{Progress, stop_flag};
+use super::progress::Bar;
 use super::zoo::{Zoo, brief, introduction, settings, whole};
 use super::{Ending, Failure, paragraphs, print};
 use fredholm::math::{Key, Purpose, Rng};
@@ -9,7 +9,6 @@ use fredholm::worlds::sampled;
 use fredholm::zoo::signature::measured;
 use fredholm::zoo::{self, Bug};
 use std::io::BufRead;
-use std::sync::atomic::Ordering;
 
 /// Names to choose from.
 const CHOICES: usize = 4;
@@ -17,16 +16,17 @@ const CHOICES: usize = 4;
 /// Asks as many rounds as were wanted; answers are lines of stdin, and where it ends the rest is revealed.
 pub fn run(args: &Zoo) -> Result<Ending, Failure> {
     let mut lines = std::io::stdin().lock().lines();
-    let (settings, progress) = (settings(args, 64), Progress::new(args.quiet, |_| {}));
+    let (settings, bar) = (settings(args, 64), Bar::plain(args.quiet));
+    let progress = bar.progress();
     let order = shuffled(args.seed, 0, zoo::all());
     let (mut right, mut answered, mut asked) = (0, 0, 0);
     print("Which mistake was made? rₖ = Tₖ of the suspect / Tₖ of the right renderer. Answer with a number.")?;
     for (round, &bug) in order.iter().cycle().take(args.rounds as usize).enumerate() {
         let scene = Scene::new(&bug.exposed_by.load(args.size)?);
-        let truth = sampled::terms(&scene, sampled::Estimator::Prefix, &settings, &progress, stop_flag());
-        let suspect = zoo::render(bug, &scene, &settings, &progress, stop_flag());
-        progress.finish();
-        if stop_flag().load(Ordering::Relaxed) {
+        let truth = sampled::terms(&scene, sampled::Estimator::Prefix, &settings, progress);
+        let suspect = zoo::render(bug, &scene, &settings, progress);
+        bar.finish();
+        if progress.stopped() {
             return Ok(Ending::Interrupted);
         }
         let (a, b) = (suspect.series.image(), truth.series.image());

@@ -1,7 +1,7 @@
 //! `fredholm roulette [SCENE]`: schedules predicted from the cross moments of one recording, verified by rendering them, and
 //! the best one found.
 
-use super::progress::{Progress, stop_flag};
+use super::progress::Bar;
 use super::{Ending, Failure, args, output, preflight, solve, sweep};
 use fredholm::estimator::{self, Technique};
 use fredholm::report::roulette::{self as rows, Row};
@@ -15,7 +15,6 @@ use fredholm::terms::cross_moments::{Recorded, Value};
 use fredholm::worlds::Settings;
 use fredholm::worlds::resort::with_last_resort;
 use fredholm::worlds::roulette::{self, Radii};
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Shown below the help.
@@ -102,12 +101,12 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
     preflight::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
     let name = format!("{}-roulette", description.name);
     let folder = output::folder(args.shared.out.as_deref(), &name, &command, args.shared.force)?;
-    let progress = Progress::new(args.shared.quiet, |_| {});
-    let stop = stop_flag();
+    let bar = Bar::plain(args.shared.quiet);
+    let progress = bar.progress();
 
     // the recording, and what follows from it
-    let Some(recorded) = roulette::pilot(&scene, &settings, args.spp, &progress, stop) else {
-        progress.finish();
+    let Some(recorded) = roulette::pilot(&scene, &settings, args.spp, progress) else {
+        bar.finish();
         super::note("nothing to save yet");
         let _ = std::fs::remove_dir(&folder); // only if it is empty
         return Ok(Ending::Interrupted);
@@ -128,18 +127,18 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
         for (row, schedule) in all.iter_mut().zip(&schedules) {
             let rival = ["optimal", "lecture", "albedo"].contains(&row.name.as_str());
             if args.verify || rival {
-                let measured = roulette::measure(&scene, &settings, schedule, args.spp, &progress, stop);
+                let measured = roulette::measure(&scene, &settings, schedule, args.spp, progress);
                 row.measured = measured.map(|m| Noise::measured(&m));
             }
         }
     }
-    if args.optimise && !stop.load(Ordering::Relaxed) {
+    if args.optimise && !progress.stopped() {
         let spp = (args.spp / 4).max(1);
         let seconds = roulette::seconds_per_path(&scene, &settings, &schedules, spp);
         all.iter_mut().zip(seconds).for_each(|(row, s)| row.seconds = Some(s));
     }
-    progress.finish();
-    let stopped = stop.load(Ordering::Relaxed);
+    bar.finish();
+    let stopped = progress.stopped();
 
     // written and printed
     let mut record = summary::Summary {

@@ -1,12 +1,13 @@
 //! `tour`, `series`, `render`, `radiosity`: load, solve in the worlds asked for, compare, write, print.
 
 use super::args::{EstimatorName, FactorsName, GuideName, Run, Schedule, WorldName};
-use super::progress::{Progress, stop_flag};
+use super::progress::Bar;
 use super::radiosity::Export;
 use super::{Ending, Failure, notes, output, preflight, write};
 use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::math::Points;
+use fredholm::progress::Progress;
 use fredholm::report::{summary, table};
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::{Description, Scene};
@@ -20,9 +21,8 @@ use fredholm::worlds::guided::{self, Prepared};
 use fredholm::worlds::pyramid::{self, Strategy};
 use fredholm::worlds::roulette::Radii;
 use fredholm::worlds::sampled::{self, Estimator, Sampled};
-use fredholm::worlds::{Settings, Unobserved, roulette, surface};
+use fredholm::worlds::{Settings, roulette, surface};
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Everything a run found.
@@ -177,10 +177,10 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         return Err(Failure::Usage(format!("error: stored rays have no matrix to write\nhelp: {help}")));
     }
     let folder = output::folder(run.shared.out.as_deref(), &description.name, &command, run.shared.force)?;
-    let stop = stop_flag();
     let preview = write::preview(&folder, &description, &command, run.seed);
-    let progress = Progress::new(run.shared.quiet, preview);
-    let stopped = || stop.load(Ordering::Relaxed);
+    let bar = Bar::new(run.shared.quiet, preview);
+    let progress = bar.progress();
+    let stopped = || progress.stopped();
 
     let mut found = Solved {
         hash,
@@ -205,16 +205,16 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     };
 
     if run.roulette == Some(Schedule::Optimal)
-        && let Some(best) = roulette::optimal(&found.scene, &found.settings, &progress, stop)
+        && let Some(best) = roulette::optimal(&found.scene, &found.settings, progress)
     {
         (found.settings.roulette, found.settings.path_roulette) = (best.roulette.clone(), best.roulette);
     }
     if run.guide == GuideName::Radiosity {
         let patches = run.patches.map_or(guided::PATCHES, |n| n as usize);
-        found.guide = guided::prepare(&found.description, patches, &found.settings, &progress, stop)?;
+        found.guide = guided::prepare(&found.description, patches, &found.settings, progress)?;
         // without its guide the run would not be the one that was asked for
         if found.guide.is_none() {
-            progress.finish();
+            bar.finish();
             return Ok(nothing_to_save(&found));
         }
     }
@@ -222,32 +222,32 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
     for &estimator in estimators.iter().rev() {
         if !stopped() {
             let (scene, settings) = (&found.scene, &found.settings);
-            let guided = found.guide.as_ref().and_then(|g| g.terms(scene, estimator, settings, &progress, stop));
-            let result = guided.unwrap_or_else(|| sampled::terms(scene, estimator, settings, &progress, stop));
+            let guided = found.guide.as_ref().and_then(|g| g.terms(scene, estimator, settings, progress));
+            let result = guided.unwrap_or_else(|| sampled::terms(scene, estimator, settings, progress));
             found.terms.insert(0, result);
         }
     }
     if run.strategies && !stopped() {
-        found.strategies = pyramid::strategies(&found.scene, &found.settings, &progress, stop);
+        found.strategies = pyramid::strategies(&found.scene, &found.settings, progress);
     }
     if worlds.contains(&WorldName::Path) && !stopped() {
         let (scene, settings) = (&found.scene, &found.settings);
         found.path = Some(match &found.guide {
-            Some(guide) => guide.path(scene, settings, &progress, stop),
-            None => sampled::path(scene, settings, &progress, stop),
+            Some(guide) => guide.path(scene, settings, progress),
+            None => sampled::path(scene, settings, progress),
         });
     }
     if worlds.contains(&WorldName::Radiosity) && !stopped() {
-        match discrete::radiosity(&found.description, &found.scene, &found.settings, &progress, stop) {
+        match discrete::radiosity(&found.description, &found.scene, &found.settings, progress) {
             Ok(result) => found.radiosity = Some(result),
             Err(MatrixError::Stopped) => {}
             Err(e) => return Err(e.into()),
         }
         if run.factors == Some(FactorsName::Both) && !stopped() {
-            found.by_rays = apart(run, &found, &progress)?;
+            found.by_rays = apart(run, &found, progress)?;
         }
         if run.orders && !stopped() {
-            found.orders = orders(&found, &progress)?;
+            found.orders = orders(&found, progress)?;
         }
     }
     if !estimators.is_empty() {
@@ -255,15 +255,15 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         let paths = reached.min(found.settings.spp).max(1).saturating_mul(1024).min(1 << 22);
         for estimator in [Estimator::Single, Estimator::Prefix] {
             if !stopped() {
-                let norms = surface::norms(&found.scene, estimator, paths, &found.settings, &progress, stop);
+                let norms = surface::norms(&found.scene, estimator, paths, &found.settings, progress);
                 found.surface.push((estimator, norms));
             }
         }
     }
     if let (true, Some(spp)) = (estimators.contains(&Estimator::Prefix) && !stopped(), aside(&found.settings)) {
-        found.moments = roulette::pilot(&found.scene, &found.settings, spp, &progress, stop);
+        found.moments = roulette::pilot(&found.scene, &found.settings, spp, progress);
     }
-    progress.finish();
+    bar.finish();
 
     if found.terms.is_empty() && found.path.is_none() && found.radiosity.is_none() {
         return Ok(nothing_to_save(&found));
@@ -323,7 +323,7 @@ pub fn coarse(description: &Description, scene: &Scene) -> Option<Matrix<Radiosi
     if scene.sides() > 400 || description.radiosity_suits().is_err() {
         return None;
     }
-    discrete::dense_matrix(description, scene, 150, 1.0, 0, &Unobserved, stop_flag()).ok()
+    discrete::dense_matrix(description, scene, 150, 1.0, 0, Progress::NONE).ok()
 }
 
 /// The schedule that was typed; none if there is none, or if it is yet to be found.
@@ -351,9 +351,9 @@ fn aside(settings: &Settings) -> Option<u32> {
 }
 
 /// How far stored rays on the same patches are from the matrix.
-fn apart(run: &Run, found: &Solved, progress: &Progress) -> Result<Option<Difference>, Failure> {
+fn apart(run: &Run, found: &Solved, progress: Progress<'_>) -> Result<Option<Difference>, Failure> {
     let Some(r) = &found.radiosity else { return Ok(None) };
-    match r.matrix.against_rays(&found.scene, preflight::rays(run), found.settings.seed, progress, stop_flag()) {
+    match r.matrix.against_rays(&found.scene, preflight::rays(run), found.settings.seed, progress) {
         Ok(difference) => Ok(Some(difference)),
         Err(MatrixError::Stopped) => Ok(None),
         Err(e) => Err(e.into()),
@@ -361,11 +361,11 @@ fn apart(run: &Run, found: &Solved, progress: &Progress) -> Result<Option<Differ
 }
 
 /// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.
-fn orders(found: &Solved, progress: &Progress) -> Result<Vec<Series>, Failure> {
+fn orders(found: &Solved, progress: Progress<'_>) -> Result<Vec<Series>, Failure> {
     let coarsest = (found.settings.patches / 16).max(1);
-    let matrix = discrete::matrix(&found.description, &found.scene, coarsest, &found.settings, progress, stop_flag());
+    let matrix = discrete::matrix(&found.description, &found.scene, coarsest, &found.settings, progress);
     let picture = match matrix {
-        Ok(m) => m.through_camera(&found.scene, &found.settings, progress, stop_flag()),
+        Ok(m) => m.through_camera(&found.scene, &found.settings, progress),
         Err(MatrixError::Stopped) => return Ok(vec![]),
         Err(e) => return Err(e.into()),
     };

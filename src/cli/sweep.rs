@@ -4,19 +4,19 @@
 //! means are not independent of each other.
 
 use super::args::{self, EstimatorName, Over, WorldName};
-use super::progress::{Progress, stop_flag};
+use super::progress::Bar;
 use super::{Ending, Failure, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
+use fredholm::progress::Progress;
 use fredholm::report::sweep::{self, Row, Sweep};
 use fredholm::report::typeset::Caption;
 use fredholm::report::{summary, write_atomically};
 use fredholm::scene::{Description, Scene};
-use fredholm::terms::{Series, TermFilm};
+use fredholm::terms::Series;
 use fredholm::worlds::sampled::{self, Estimator};
-use fredholm::worlds::{Observer, Settings, roulette};
+use fredholm::worlds::{Settings, roulette};
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// One value of the setting.
@@ -52,9 +52,10 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     }
     let folder =
         output::folder(run.shared.out.as_deref(), &format!("{}-{over}", description.name), &command, run.shared.force)?;
-    let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
+    let bar = Bar::plain(run.shared.quiet);
+    let progress = bar.progress();
     for case in cases.iter_mut().filter(|c| c.optimal) {
-        if let Some(best) = roulette::optimal(&scene, &case.settings, &progress, stop_flag()) {
+        if let Some(best) = roulette::optimal(&scene, &case.settings, progress) {
             case.settings.roulette = best.roulette;
             super::note(&format!("{}: optimal is {}", case.value, case.settings.roulette));
         }
@@ -69,17 +70,17 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     // every value in turn
     let (mut rows, mut series) = (vec![], vec![]);
     for case in &cases {
-        if stop_flag().load(Ordering::Relaxed) {
+        if progress.stopped() {
             break;
         }
-        let named = Named(&progress, format!("{over} {}", case.value));
-        let mut result = sampled::terms(&scene, case.estimator, &case.settings, &named, stop_flag());
+        let name = format!("{over} {}", case.value);
+        let mut result = sampled::terms(&scene, case.estimator, &case.settings, progress.named(&name));
         rows.push(Row::new(&case.value, &result));
         result.series.label = format!("{over} {}: {}", case.value, result.series.label);
         series.push(result.series);
     }
-    progress.finish();
-    let stopped = stop_flag().load(Ordering::Relaxed);
+    bar.finish();
+    let stopped = progress.stopped();
     if rows.is_empty() {
         super::note("nothing to save yet");
         let _ = std::fs::remove_dir(&folder); // only if it is empty
@@ -254,8 +255,7 @@ pub(super) fn number(text: &str, most: u32) -> Result<u32, String> {
 fn share_rays(cases: &mut [Case], scene: &Scene) {
     let price = |case: &Case| {
         let trial = Settings { spp: 1, ..case.settings.clone() };
-        let cost =
-            sampled::terms(scene, case.estimator, &trial, &fredholm::worlds::Unobserved, stop_flag()).series.cost;
+        let cost = sampled::terms(scene, case.estimator, &trial, Progress::NONE).series.cost;
         cost.rays as f64 / cost.paths as f64
     };
     let prices: Vec<f64> = cases.iter().map(price).collect();
@@ -263,17 +263,5 @@ fn share_rays(cases: &mut [Case], scene: &Scene) {
     for (case, price) in cases.iter_mut().zip(prices) {
         let spp = f64::from(case.settings.spp) * dearest / price;
         case.settings.spp = (spp.round() as u32).clamp(1, 1 << 24);
-    }
-}
-
-/// Progress that says which value is being rendered.
-struct Named<'a>(&'a Progress, String);
-
-impl Observer for Named<'_> {
-    fn begin(&self, _: &str, units: u64) {
-        self.0.begin(&self.1, units);
-    }
-    fn advance(&self, units: u64) {
-        self.0.advance(units);
     }
 }

@@ -1,14 +1,12 @@
 //! `fredholm sweep [SCENE] --over patches`: the matrix on finer and finer meshes against the truth from rays.
 
-use super::progress::{Progress, stop_flag};
+use super::progress::Bar;
 use super::{Ending, Failure, args, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::report::typeset::Caption;
 use fredholm::report::{drift, refine as report, summary, write_atomically};
-use fredholm::terms::TermFilm;
 use fredholm::worlds::{Settings, discretisation::Factors, refine};
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Meshes of these sizes unless told otherwise: h halves from one to the next.
@@ -58,11 +56,12 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         &command,
         run.shared.force,
     )?;
-    let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
+    let bar = Bar::plain(run.shared.quiet);
+    let progress = bar.progress();
     let eigenvalues = args.eigenvalues.unwrap_or(0).into();
-    let found = refine::refine(&description, &scene, &sizes, eigenvalues, &settings, &progress, stop_flag())?;
-    progress.finish();
-    let stopped = stop_flag().load(Ordering::Relaxed);
+    let found = refine::refine(&description, &scene, &sizes, eigenvalues, &settings, progress)?;
+    bar.finish();
+    let stopped = progress.stopped();
     if found.meshes.is_empty() {
         super::note("nothing to save yet");
         let _ = std::fs::remove_dir(&folder); // only if it is empty

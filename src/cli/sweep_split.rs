@@ -1,13 +1,12 @@
 //! `fredholm sweep [SCENE] --over split`: the samples of separate terms shared equally, shared best, and one path for all.
 
 use super::args::{self, WorldName};
-use super::progress::{Progress, stop_flag};
+use super::progress::Bar;
 use super::sweep::usage;
 use super::{Ending, Failure, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use fredholm::estimator::Roulette;
 use fredholm::report::{split as report, summary, typeset::Caption, write_atomically};
-use fredholm::terms::TermFilm;
 use fredholm::worlds::{Settings, sampled::Estimator, split};
 use std::time::Instant;
 
@@ -40,10 +39,11 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     preflight::light_is_lost(&scene, &settings, &[WorldName::Terms])?;
     let folder =
         output::folder(run.shared.out.as_deref(), &format!("{}-split", description.name), &command, run.shared.force)?;
-    let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
+    let bar = Bar::plain(run.shared.quiet);
+    let progress = bar.progress();
     let pilot = args.pilot.unwrap_or(spp / 4);
-    let study = split::study(&scene, &settings, pilot, &progress, stop_flag());
-    progress.finish();
+    let study = split::study(&scene, &settings, pilot, progress);
+    bar.finish();
     let Some(study) = study else {
         super::note("nothing to save yet: the comparison needs all its renders");
         let _ = std::fs::remove_dir(&folder); // only if it is empty

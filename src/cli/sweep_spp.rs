@@ -2,7 +2,7 @@
 //! and squared error against samples per pixel, read off the film as it fills.
 
 use super::args::{self, EstimatorName, Schedule, WorldName};
-use super::progress::{Progress, stop_flag};
+use super::progress::Bar;
 use super::sweep::{number, usage, values};
 use super::{Ending, Failure, output, preflight, solve};
 use crate::cli::open::{self, Opened};
@@ -14,13 +14,12 @@ use fredholm::report::typeset::Caption;
 use fredholm::report::{exr, summary, write_atomically};
 use fredholm::scene::{Description, Scene};
 use fredholm::stats::Evidence;
-use fredholm::terms::{TermFilm, TermImage};
+use fredholm::terms::TermImage;
 use fredholm::worlds::convergence::{Recorder, Reference};
 use fredholm::worlds::sampled::{self, Estimator};
 use fredholm::worlds::stages::reference_seed;
-use fredholm::worlds::{Observer, Settings, roulette, unsampled::unsampled};
+use fredholm::worlds::{Settings, roulette, unsampled::unsampled};
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Replicates of a film, and the first number of samples that can be looked at.
@@ -211,18 +210,18 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let planned = plan_reference(args, &scene, &description, &cases[0].settings)?;
     let folder =
         output::folder(run.shared.out.as_deref(), &format!("{}-spp", description.name), &command, run.shared.force)?;
-    let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
-    let stopped = || stop_flag().load(Ordering::Relaxed);
+    let bar = Bar::plain(run.shared.quiet);
+    let progress = bar.progress();
+    let stopped = || progress.stopped();
     for case in cases.iter_mut().filter(|c| c.optimal) {
-        if let Some(best) = roulette::optimal(&scene, &case.settings, &progress, stop_flag()) {
+        if let Some(best) = roulette::optimal(&scene, &case.settings, progress) {
             (case.settings.roulette, case.settings.path_roulette) = (best.roulette.clone(), best.roulette);
         }
     }
     let reference = match planned {
         Some(Planned::Read(reference)) => Some(*reference),
         Some(Planned::Render(estimator, settings)) => {
-            let named = Named(&progress, "reference".into());
-            let result = sampled::terms(&scene, estimator, &settings, &named, stop_flag());
+            let result = sampled::terms(&scene, estimator, &settings, progress.named("reference"));
             let mut reference = Reference::from(result);
             reference.label = format!("{}, {} spp, seed {}", reference.label, settings.spp, settings.seed);
             Some(reference)
@@ -236,12 +235,9 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         if stopped() {
             break;
         }
-        let named = Named(&progress, case.label.clone());
-        let recorder = Recorder::new(&named, reference.as_ref(), at.clone());
-        let result = match case.estimator {
-            Some(e) => sampled::terms(&scene, e, &case.settings, &recorder, stop_flag()),
-            None => sampled::path(&scene, &case.settings, &recorder, stop_flag()),
-        };
+        let mut recorder = Recorder::new(reference.as_ref(), at.clone());
+        let progress = progress.named(&case.label);
+        let result = sampled::recorded(&scene, case.estimator, &case.settings, progress, Some(&mut recorder));
         let tail = !result.series.image().tail.is_none();
         let stands = recorder.stands();
         if !stands.is_empty() {
@@ -249,7 +245,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
             series.push(result.series);
         }
     }
-    progress.finish();
+    bar.finish();
     if falls.is_empty() {
         super::note("nothing to save yet");
         let _ = std::fs::remove_dir(&folder); // only if it is empty
@@ -383,16 +379,4 @@ fn plan_reference(
     };
     let label = format!("{text}, {} spp, seed {}", known.spp, known.seed);
     Ok(Some(Planned::Read(Box::new(Reference { label, terms, tail: layer("tail"), total }))))
-}
-
-/// Progress that says what is being rendered.
-struct Named<'a>(&'a Progress, String);
-
-impl Observer for Named<'_> {
-    fn begin(&self, _: &str, units: u64) {
-        self.0.begin(&self.1, units);
-    }
-    fn advance(&self, units: u64) {
-        self.0.advance(units);
-    }
 }

@@ -1,6 +1,6 @@
 //! `fredholm walk [SCENE]`: the estimators on the radiosity matrix, where the terms are known to rounding.
 
-use super::progress::{Progress, stop_flag};
+use super::progress::Bar;
 use super::{Ending, Failure, args, notes, output, preflight};
 use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
@@ -10,7 +10,6 @@ use fredholm::report::{summary, table, walk as report, write_atomically};
 use fredholm::scene::Description;
 use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, Outcome, compare};
-use fredholm::terms::TermFilm;
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::{self, Matrix, MatrixError};
 use fredholm::worlds::discretisation::Factors;
@@ -18,7 +17,6 @@ use fredholm::worlds::sampled::Estimator;
 use fredholm::worlds::walk::{self, Walked, Walker};
 use fredholm::worlds::zero_variance::{self, ZeroVariance};
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// What walks.
@@ -120,16 +118,17 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
     }
     let folder =
         output::folder(args.shared.out.as_deref(), &format!("{}-walk", description.name), &command, args.shared.force)?;
-    let progress = Progress::new(args.shared.quiet, |_: &TermFilm| {});
+    let bar = Bar::plain(args.shared.quiet);
+    let progress = bar.progress();
     let mesh = |patches: usize| -> Result<Option<Matrix<Radiosity>>, Failure> {
-        match discrete::dense_matrix(&description, &scene, patches, 1.0, max_bounces, &progress, stop_flag()) {
+        match discrete::dense_matrix(&description, &scene, patches, 1.0, max_bounces, progress) {
             Ok(m) => Ok(Some(m)),
             Err(MatrixError::Stopped) => Ok(None),
             Err(e) => Err(e.into()),
         }
     };
     let Some(matrix) = mesh(settings.patches)? else {
-        progress.finish();
+        bar.finish();
         super::note("nothing to save yet");
         let _ = std::fs::remove_dir(&folder); // only if it is empty
         return Ok(Ending::Interrupted);
@@ -155,8 +154,8 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
     );
     let (text, failed) = match walker {
         Some(walker) => {
-            let walked = walk::walk(&matrix, walker, &settings, &progress, stop_flag());
-            progress.finish();
+            let walked = walk::walk(&matrix, walker, &settings, progress);
+            bar.finish();
             beside_the_powers(&walked, &mut record)
         }
         None => {
@@ -166,9 +165,9 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
                 coarse.extend(mesh(patches)?);
             }
             coarse.dedup_by_key(|m| m.radiosity.patches.len());
-            let study = |c| zero_variance::study(&matrix, &coarse, c, &settings, &progress, stop_flag());
+            let study = |c| zero_variance::study(&matrix, &coarse, c, &settings, progress);
             let found: Vec<ZeroVariance> = (0..3).map(study).collect();
-            progress.finish();
+            bar.finish();
             led(&found, &folder, &mut record)?
         }
     };
@@ -183,7 +182,7 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
         let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
         super::print(&super::paragraphs(&[head, text, files]))?;
     }
-    Ok(match (stop_flag().load(Ordering::Relaxed), failed) {
+    Ok(match (progress.stopped(), failed) {
         (true, _) => Ending::Interrupted,
         (_, true) => Ending::Failed,
         _ => Ending::Ok,

@@ -1,6 +1,6 @@
 //! `fredholm zoo`: estimators that are wrong on purpose, each beside the right one.
 
-use super::progress::{Progress, stop_flag};
+use super::progress::Bar;
 use super::{Ending, Failure, output, paragraphs, print, quiz};
 use clap::Args;
 use fredholm::report::contact_sheet::{self, Cell};
@@ -18,7 +18,6 @@ use fredholm::zoo::signature::{Ratio, measured};
 use fredholm::zoo::{self, Bug, Stage};
 use fredholm::{estimator::Roulette, worlds::sampled};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 /// K of the zoo.
 const BOUNCES: usize = 6;
@@ -173,8 +172,9 @@ fn mark() -> String {
 /// Every member on the scene that shows it, and the control.
 fn everyone(args: &Zoo) -> Result<Ending, Failure> {
     let folder = folder(args, "zoo-out")?;
-    let (settings, progress) = (settings(args, 16), Progress::new(args.quiet, |_| {}));
-    let stopped = || stop_flag().load(Ordering::Relaxed);
+    let (settings, bar) = (settings(args, 16), Bar::plain(args.quiet));
+    let progress = bar.progress();
+    let stopped = || progress.stopped();
     let mut rights: Vec<(Stage, Scene, Functional)> = vec![];
     let mut csv = format!("{}member,scene,k,ratio,std_error,predicted\n", mark());
     // first, so that the folder is known as this command's even if the rest never comes
@@ -185,13 +185,13 @@ fn everyone(args: &Zoo) -> Result<Ending, Failure> {
         if !rights.iter().any(|r| r.0 == stage) {
             let scene = Scene::new(&stage.load(args.size)?);
             let few = Settings { spp: 4 * settings.spp, ..settings.clone() };
-            let right = sampled::terms(&scene, sampled::Estimator::Prefix, &few, &progress, stop_flag());
+            let right = sampled::terms(&scene, sampled::Estimator::Prefix, &few, progress);
             write(&place(&folder, stage, "correct")?, args.size, &right)?;
             rights.push((stage, scene, right.series.image().clone()));
         }
         let Some((_, scene, right)) = rights.iter().find(|r| r.0 == stage) else { continue };
         let settings = enough(bug, &settings);
-        let wrong = zoo::render(bug, scene, &settings, &progress, stop_flag());
+        let wrong = zoo::render(bug, scene, &settings, progress);
         if stopped() {
             break;
         }
@@ -206,7 +206,7 @@ fn everyone(args: &Zoo) -> Result<Ending, Failure> {
         let cells: Vec<String> = cells.iter().map(|c| format!("{c:10}")).collect();
         table.push(format!("{:24} {:18} {}", bug.name, stage.label, cells.join(" ").trim_end()));
     }
-    progress.finish();
+    bar.finish();
     write_atomically(&folder.join(MARK), csv.as_bytes())?;
     let note =
         "rₖ = Tₖ wrong / Tₖ right, mean of the image and the channels; the last digits' 95 % interval in brackets";
@@ -276,15 +276,16 @@ fn one(args: &Zoo, bug: &'static Bug) -> Result<Ending, Failure> {
         }
     };
     let folder = folder(args, &format!("zoo-out/{}", bug.name))?;
-    let progress = Progress::new(args.quiet, |_| {});
+    let bar = Bar::plain(args.quiet);
+    let progress = bar.progress();
     let pair = |stage: Stage| -> Result<(Sampled, Sampled), Failure> {
         let scene = Scene::new(&stage.load(args.size)?);
-        let right = zoo::render_right(bug, &scene, &settings, &progress, stop_flag());
-        Ok((zoo::render(bug, &scene, &settings, &progress, stop_flag()), right))
+        let right = zoo::render_right(bug, &scene, &settings, progress);
+        Ok((zoo::render(bug, &scene, &settings, progress), right))
     };
     let (wrong, right) = pair(stage)?;
     let blind = bug.blind.map(|stage| pair(stage).map(|p| (stage, p))).transpose()?;
-    progress.finish();
+    bar.finish();
 
     let judgement = zoo::judge::judge(&wrong, &right);
     let theory = stage == bug.exposed_by;
@@ -310,7 +311,7 @@ fn one(args: &Zoo, bug: &'static Bug) -> Result<Ending, Failure> {
         n = bug.name
     ));
     print(&paragraphs(&blocks))?;
-    Ok(if stop_flag().load(Ordering::Relaxed) { Ending::Interrupted } else { Ending::Ok })
+    Ok(if progress.stopped() { Ending::Interrupted } else { Ending::Ok })
 }
 
 /// A row per term: right, wrong, r_k measured and predicted.

@@ -5,19 +5,19 @@
 use super::elimination::Simulate;
 use super::picture::Pictures;
 use crate::math::fnv1a;
+use crate::progress::Progress;
 use crate::scene::Scene;
+use crate::worlds::Settings;
 use crate::worlds::sampled::Sampled;
-use crate::worlds::{Settings, Unobserved};
 use crate::zoo;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The members of the zoo in one scene; pictures are kept, so that many suspects share them.
 pub struct Members<'a> {
     scene: &'a Scene,
     settings: Settings,
-    stop: &'a AtomicBool,
+    progress: Progress<'a>,
     made: Mutex<BTreeMap<(String, u32), Pictures>>,
     shown: Mutex<Option<Vec<String>>>,
 }
@@ -31,12 +31,18 @@ pub fn own_seed(seed: u64) -> u64 {
 }
 
 impl<'a> Members<'a> {
-    /// In this scene, with terms up to K as the suspect has them.
-    pub fn new(scene: &'a Scene, max_bounces: usize, seed: u64, stop: &'a AtomicBool) -> Self {
+    /// In this scene, with terms up to K as the suspect has them; of `progress` only the end is heeded.
+    pub fn new(scene: &'a Scene, max_bounces: usize, seed: u64, progress: Progress<'a>) -> Self {
         let settings = Settings::default();
         let after = settings.path_roulette.clone().after(max_bounces);
         let settings = Settings { max_bounces, roulette: after, seed: own_seed(seed), ..settings };
-        Self { scene, settings, stop, made: Mutex::new(BTreeMap::new()), shown: Mutex::new(None) }
+        Self {
+            scene,
+            settings,
+            progress: progress.silent(),
+            made: Mutex::new(BTreeMap::new()),
+            shown: Mutex::new(None),
+        }
     }
 }
 
@@ -45,7 +51,7 @@ impl Members<'_> {
     fn shows(&self, bug: &zoo::Bug) -> bool {
         let settings = Settings { spp: TRIAL, ..self.settings.clone() };
         let plan = bug.plan(&settings);
-        let render = |mistake| zoo::of(&plan, mistake, "trial", self.scene, &settings, &Unobserved, self.stop);
+        let render = |mistake| zoo::of(&plan, mistake, "trial", self.scene, &settings, self.progress);
         let (wrong, right) = (render(bug.mistake), render(&zoo::Right));
         let means = |s: &Sampled| s.terms.iter().chain([&s.tail, &s.total]).map(|i| i.mean.clone()).collect::<Vec<_>>();
         means(&wrong) != means(&right)
@@ -67,8 +73,8 @@ impl Simulate for Members<'_> {
             return Some(pictures.clone());
         }
         let settings = Settings { spp, ..self.settings.clone() };
-        let render = zoo::render(zoo::find(name)?, self.scene, &settings, &Unobserved, self.stop);
-        if self.stop.load(Ordering::SeqCst) {
+        let render = zoo::render(zoo::find(name)?, self.scene, &settings, self.progress);
+        if self.progress.stopped() {
             return None;
         }
         let pictures = Pictures::of(&render, self.scene.camera.size);

@@ -10,6 +10,7 @@
 use super::gap::{Fit, compare, ratio};
 use super::picture::{Pictures, Slot};
 use super::regions::Region;
+use crate::progress::Progress;
 
 /// Who can render candidates.
 pub trait Simulate {
@@ -68,8 +69,7 @@ pub fn eliminate(
     regions: &[Region],
     alpha: f64,
     effort: Effort,
-    mut begin: impl FnMut(u32, usize),
-    mut done: impl FnMut(),
+    progress: Progress<'_>,
 ) -> Vec<Tried> {
     // a tail is what each renderer takes for it: its length depends on where paths end
     let suspect = suspect.only(|s| s != Slot::Tail);
@@ -82,7 +82,7 @@ pub fn eliminate(
         if alive.is_empty() || (stage > 0 && pixels * u64::from(spp) * alive.len() as u64 > effort.paths) {
             break;
         }
-        begin(spp, alive.len());
+        progress.begin(&format!("{} candidates, {spp} spp", alive.len()), alive.len() as u64);
         tried.retain(|t| t.rejected);
         for name in std::mem::take(&mut alive) {
             let Some(predicted) = candidates.pictures(&name, spp) else { continue };
@@ -93,7 +93,7 @@ pub fn eliminate(
                 alive.push(name.clone());
             }
             tried.push(Tried { name, fit, spp, rejected });
-            done();
+            progress.advance(1);
         }
     }
     tried.sort_by(|a, b| a.rejected.cmp(&b.rejected).then(a.fit.misfit.total_cmp(&b.fit.misfit)));

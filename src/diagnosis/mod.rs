@@ -35,6 +35,7 @@ pub use picture::{Code, Layer, Pictures, Slot};
 pub use regions::Region;
 pub use rules::{Basis, Suspicion};
 
+use crate::progress::Progress;
 use crate::stats::evidence::JUDGED_PIXELS;
 use crate::stats::min_detectable;
 use gap::{compare, difference};
@@ -125,23 +126,8 @@ impl Case<'_> {
     }
 }
 
-/// Who watches a diagnosis: a stage with so many candidates begins; one is done.
-pub trait Watch {
-    /// Candidates are rendered with so many samples per pixel.
-    fn begin(&self, spp: u32, candidates: usize);
-    /// One is done.
-    fn done(&self);
-}
-
-/// Nobody watches.
-pub struct Unwatched;
-impl Watch for Unwatched {
-    fn begin(&self, _: u32, _: usize) {}
-    fn done(&self) {}
-}
-
 /// Finds out what is wrong, if anything.
-pub fn diagnose(case: &Case, watch: &dyn Watch) -> Diagnosis {
+pub fn diagnose(case: &Case, progress: Progress<'_>) -> Diagnosis {
     let grid = regions::lit(regions::without(regions::grid(case.suspect.size), case.mask), case.reference);
     let all = grid.iter().chain(case.seen).cloned().collect();
     let all = regions::lit(regions::without(all, case.mask), case.reference);
@@ -168,8 +154,7 @@ pub fn diagnose(case: &Case, watch: &dyn Watch) -> Diagnosis {
     // numbers that are none, and noise that is shared, leave nothing that a simulation could be compared with
     let tried = match case.candidates {
         Some(candidates) if rejected && !broken && !alone => {
-            let (begin, done) = (|spp, n| watch.begin(spp, n), || watch.done());
-            elimination::eliminate(case.suspect, candidates, &all, case.alpha, case.effort, begin, done)
+            elimination::eliminate(case.suspect, candidates, &all, case.alpha, case.effort, progress)
         }
         _ => vec![],
     };

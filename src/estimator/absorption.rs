@@ -16,7 +16,7 @@
 //! A vertex with q = 0 is never an end, and its term never scored: the schedule must have q > 0 wherever there is emission.
 //! Reference: von Neumann and Ulam, after Forsythe and Leibler (1950); Spanier and Gelbard, *Monte Carlo Principles* (1969).
 
-use super::{Batch, Paths, Plan, TermEstimator, TermSink};
+use super::{Job, Paths, Plan, TermEstimator, TermSink};
 use crate::math::{Purpose, Rng};
 use crate::operator::{Sensor, Transport};
 
@@ -29,7 +29,8 @@ impl<T: Transport> TermEstimator<T> for Absorption {
         self.0.max_bounces + 2
     }
 
-    fn sample(&self, t: &T, sensor: &impl Sensor<T>, batch: &Batch, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        let &Job { t, sensor, batch } = job;
         let Plan { max_bounces, ref roulette, .. } = self.0;
         let mut value = crate::math::Columns::new(1);
         for (pixel, sample) in batch.samples.clone().flat_map(|s| batch.pixels.clone().map(move |p| (p, s))) {

@@ -20,7 +20,7 @@
 
 use super::densities::{Node, PathDensities};
 use super::light_tracer::LIGHT_STREAM;
-use super::{Batch, Paths, Plan, SingleTerm, Technique, TermEstimator, TermSink};
+use super::{Batch, Job, Paths, Plan, SingleTerm, Technique, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
 use crate::operator::{Adjoint, Role, Sensor};
 
@@ -166,14 +166,8 @@ impl<T: Adjoint> TermEstimator<T> for Bidirectional {
         true
     }
 
-    fn sample(
-        &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
-        paths: &mut Paths<T::Wave>,
-        sink: &mut impl TermSink,
-    ) {
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        let &Job { t, sensor, batch } = job;
         let mut value = Columns::new(1);
         let rays = self.batch(t, sensor, batch, |f, sample| {
             value.set(0, f.value * f.weight);
@@ -182,7 +176,7 @@ impl<T: Adjoint> TermEstimator<T> for Bidirectional {
         rays.iter().enumerate().for_each(|(k, &n)| sink.rays(k, n));
         // beyond K the eye's walks go on alone, and must find what has no area, too
         let technique = if self.0.technique == Technique::Power { Technique::Power } else { Technique::Mis };
-        SingleTerm(Plan { technique, ..self.0.clone() }).tail(t, sensor, batch, paths, sink);
+        SingleTerm(Plan { technique, ..self.0.clone() }).tail(job, paths, sink);
     }
 }
 
@@ -219,7 +213,8 @@ impl<T: Adjoint> TermEstimator<T> for Pyramid {
         true
     }
 
-    fn sample(&self, t: &T, sensor: &impl Sensor<T>, batch: &Batch, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        let &Job { t, sensor, batch } = job;
         let behind = Self::len(self.0.max_bounces);
         let mut column = Columns::new(1);
         Bidirectional(self.0.clone()).batch(t, sensor, batch, |f, sample| {

@@ -21,7 +21,7 @@
 //! Shaded Display* (1980), for the tree; Cook, Porter, Carpenter, *Distributed Ray Tracing* (1984); Kajiya, *The
 //! Rendering Equation* (1986), for why one child is enough.
 
-use super::{Batch, Paths, Plan, TermEstimator, TermSink, prefix};
+use super::{Job, Paths, Plan, TermEstimator, TermSink, prefix};
 use crate::math::Key;
 use crate::operator::{Sensor, Transport};
 
@@ -39,17 +39,10 @@ impl<T: Transport> TermEstimator<T> for Branching {
         self.plan.max_bounces + 2
     }
 
-    fn sample(
-        &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
-        paths: &mut Paths<T::Wave>,
-        sink: &mut impl TermSink,
-    ) {
-        prefix::start(t, sensor, batch, paths, sink);
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        prefix::start(job, paths, sink);
         let mut below: Vec<Paths<T::Wave>> = (0..self.plan.max_bounces).map(|_| Paths::default()).collect();
-        self.descend(t, 0, batch.key, paths, &mut below, sink);
+        self.descend(job.t, 0, job.batch.key, paths, &mut below, sink);
     }
 }
 

@@ -18,7 +18,7 @@
 //! of its own, `L' = E + 1.02 T L'`; it is the step by hand, or the roulette or the connections inside L, that must be wrong to be seen.
 //! Needs a schedule that ends paths, and lights that have area: a step never hits a point.
 
-use super::{Batch, PathTracer, Paths, Plan, TermEstimator, TermSink};
+use super::{Job, PathTracer, Paths, Plan, TermEstimator, TermSink};
 use crate::math::{Columns, Purpose, Rgb, Rng};
 use crate::operator::{Sensor, Transport};
 
@@ -36,7 +36,8 @@ impl<T: Transport> TermEstimator<T> for Equilibrium {
         2
     }
 
-    fn sample(&self, t: &T, sensor: &impl Sensor<T>, batch: &Batch, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        let &Job { t, sensor, batch } = job;
         let tracer = PathTracer(self.plan.clone());
         let [left, step, onward] = [0, 1, 2].map(|i| batch.key.branch(i));
         let mut value = Columns::new(1);

@@ -14,7 +14,7 @@
 //! Reference: Sloan, *Improvement by iteration for compact operator equations* (Math. Comp. 30, 1976); in rendering, the
 //! final gather of Reichert (1992).
 
-use super::{Batch, Paths, Technique, TermEstimator, TermSink};
+use super::{Job, Paths, Technique, TermEstimator, TermSink};
 use crate::math::Columns;
 use crate::operator::{SceneTransport, Sensor, patches::Patches};
 use crate::scene::{Vertex, VertexWave};
@@ -50,15 +50,14 @@ impl<'s> TermEstimator<SceneTransport<'s>> for Gather<'_> {
         self.terms.len() + 1
     }
 
-    fn sample(
+    fn sample<S: Sensor<SceneTransport<'s>>>(
         &self,
-        t: &SceneTransport<'s>,
-        sensor: &impl Sensor<SceneTransport<'s>>,
-        batch: &Batch,
+        job: &Job<'_, SceneTransport<'s>, S>,
         paths: &mut Paths<VertexWave>,
         sink: &mut impl TermSink,
     ) {
-        paths.start(t, sensor, batch);
+        let &Job { t, batch, .. } = job;
+        paths.start(job);
         sink.rays(0, batch.len());
         let tail = self.terms.len();
         // `shift` is how many bounces lie between the pixel and the patch that is read; `read` the first slot read there

@@ -13,7 +13,7 @@
 //! through glass no particle can reach, because no connection to the eye passes a delta vertex there: `worlds::unsampled`.
 //! Reference: Arvo, *Backward Ray Tracing* (1986); Dutré, Lafortune, Willems, *Monte Carlo Light Tracing* (1993).
 
-use super::{Batch, Paths, Plan, TermEstimator, TermSink};
+use super::{Job, Paths, Plan, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
 use crate::operator::{Adjoint, Role, Sensor};
 
@@ -81,7 +81,8 @@ impl<T: Adjoint> TermEstimator<T> for LightTracer {
         true
     }
 
-    fn sample(&self, t: &T, sensor: &impl Sensor<T>, batch: &Batch, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        let &Job { t, sensor, batch } = job;
         let [w, h] = sensor.size();
         let share = 1.0 / (w * h) as f32;
         let key = batch.key.branch(LIGHT_STREAM);

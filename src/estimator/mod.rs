@@ -71,6 +71,17 @@ pub struct Plan {
     pub roulette: Roulette,
 }
 
+/// What a sample is asked for: of which operator, through which sensor, which paths.
+#[derive(Debug)]
+pub struct Job<'a, T, S> {
+    /// T.
+    pub t: &'a T,
+    /// Where paths start.
+    pub sensor: &'a S,
+    /// Which paths.
+    pub batch: &'a Batch,
+}
+
 /// An estimator of the terms, over any transport.
 pub trait TermEstimator<T: Transport>: Sync {
     /// Number of slots a sample has.
@@ -80,12 +91,5 @@ pub trait TermEstimator<T: Transport>: Sync {
         false
     }
     /// One sample per path of the batch into the sink.
-    fn sample(
-        &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
-        paths: &mut Paths<T::Wave>,
-        sink: &mut impl TermSink,
-    );
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink);
 }

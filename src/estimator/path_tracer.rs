@@ -15,7 +15,7 @@
 //! stops after `max_bounces` applications of T. Reference: Kajiya, *The Rendering Equation* (1986).
 
 use super::branching::lineage;
-use super::{Batch, Paths, Plan, Roulette, TermEstimator, TermSink};
+use super::{Job, Paths, Plan, Roulette, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
 use crate::operator::{Sensor, Transport};
 
@@ -121,7 +121,8 @@ impl<T: Transport> TermEstimator<T> for PathTracer {
         1
     }
 
-    fn sample(&self, t: &T, sensor: &impl Sensor<T>, batch: &Batch, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        let &Job { t, sensor, batch } = job;
         let mut rays = 0;
         let mut value = Columns::new(1);
         for sample in batch.samples.clone() {

@@ -8,10 +8,10 @@
 //!
 //! Paths that end are compacted away; the order of those that stay never changes, so sums do not depend on the wave size.
 
-use super::TermSink;
 use super::branching::lineage;
 use super::roulette::Roulette;
 use super::technique::Technique;
+use super::{Job, TermSink};
 use crate::math::{Columns, Key, Purpose, Streams, columns};
 use crate::operator::{Samples, Sensor, Transport, Wave};
 use std::ops::Range;
@@ -80,11 +80,11 @@ impl<W> Paths<W> {
     }
 
     /// Starts the paths of a batch at the sensor, with throughput 1. Paths that see nothing are dropped: all their terms are 0.
-    pub fn start<T>(&mut self, t: &T, sensor: &impl Sensor<T>, batch: &Batch)
+    pub fn start<T: Transport<Wave = W>, S: Sensor<T>>(&mut self, job: &Job<'_, T, S>)
     where
-        T: Transport<Wave = W>,
         W: Wave<T::State>,
     {
+        let &Job { t, sensor, batch } = job;
         self.reserve(batch.len());
         (self.n, self.key) = (batch.len(), Some(batch.key));
         let names = batch.samples.clone().flat_map(|s| batch.pixels.clone().map(move |p| (p, s)));

@@ -11,7 +11,7 @@
 //! Terms of one path share their prefix, so they are correlated; fits over k must use their covariance.
 //! Reference: Kajiya, *The Rendering Equation* (1986); Veach (1997), ch. 10.
 
-use super::{Batch, Paths, Plan, Roulette, TermEstimator, TermSink};
+use super::{Job, Paths, Plan, Roulette, TermEstimator, TermSink};
 use crate::operator::{Sensor, Transport};
 
 /// The prefix estimator.
@@ -23,31 +23,22 @@ impl<T: Transport> TermEstimator<T> for Prefix {
         self.0.max_bounces + 2
     }
 
-    fn sample(
-        &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
-        paths: &mut Paths<T::Wave>,
-        sink: &mut impl TermSink,
-    ) {
-        start(t, sensor, batch, paths, sink);
-        follow(t, &self.0, 0, paths, sink);
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        start(job, paths, sink);
+        follow(job.t, &self.0, 0, paths, sink);
     }
 }
 
 /// Starts the paths of a batch and scores term 0.
-pub(super) fn start<T: Transport>(
-    t: &T,
-    sensor: &impl Sensor<T>,
-    batch: &Batch,
+pub(super) fn start<T: Transport, S: Sensor<T>>(
+    job: &Job<'_, T, S>,
     paths: &mut Paths<T::Wave>,
     sink: &mut impl TermSink,
 ) {
-    paths.start(t, sensor, batch);
-    paths.emission(t);
+    paths.start(job);
+    paths.emission(job.t);
     paths.add(0, sink);
-    sink.rays(0, batch.len());
+    sink.rays(0, job.batch.len());
 }
 
 /// Follows paths that stand at vertex `first`, scoring every term beyond it; terms beyond K go to the tail's slot. Where the roulette

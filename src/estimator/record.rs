@@ -4,14 +4,14 @@
 //! every path. Blocks are added up in their order, so the sums are the same bits for any number of threads. Memory does not
 //! grow with the image: what is kept is `R · slots²`, not an image per slot.
 
-use super::render::{Amount, Watch};
-use super::{Batch, Paths, TermEstimator, TermSink};
+use super::render::Amount;
+use super::{Batch, Job, Paths, TermEstimator, TermSink};
 use crate::math::Columns;
 use crate::operator::{Sensor, Transport};
+use crate::progress::Progress;
 use crate::terms::cross_moments::{Recorded, Sums};
 use crate::terms::film::BLOCK;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Samples of each pixel of a block that walk together.
@@ -52,8 +52,7 @@ pub fn record<T: Transport>(
     sensor: &impl Sensor<T>,
     estimator: &impl TermEstimator<T>,
     amount: Amount,
-    watch: &impl Watch,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Option<Recorded> {
     if estimator.splats() {
         return None;
@@ -80,13 +79,8 @@ pub fn record<T: Transport>(
                 wave.sample = s;
                 wave.values.clear();
                 wave.values.resize(samples.len() * count * 3 * slots, 0.0);
-                estimator.sample(
-                    t,
-                    sensor,
-                    &Batch { key: amount.key, pixels: pixels.clone(), samples },
-                    paths,
-                    &mut wave,
-                );
+                let batch = &Batch { key: amount.key, pixels: pixels.clone(), samples };
+                estimator.sample(&Job { t, sensor, batch }, paths, &mut wave);
                 for (i, y) in wave.values.chunks(slots).enumerate() {
                     let (path, channel) = (i / 3, i % 3);
                     sums.path(r, channel, y);
@@ -101,14 +95,14 @@ pub fn record<T: Transport>(
             sums.pixel(i % 3, s);
         }
         sums.pixels = count as u64;
-        watch.paths(count as u64 * u64::from(amount.spp));
+        progress.advance(count as u64 * u64::from(amount.spp));
         sums
     };
 
     let blocks: Vec<u32> = (0..w * h).step_by(BLOCK).collect();
     let mut all = Sums::new(slots, counts.clone());
     for some in blocks.chunks(SIDE_BY_SIDE) {
-        if stop.load(Ordering::Relaxed) {
+        if progress.stopped() {
             return None;
         }
         let done: Vec<Sums> = some.par_iter().map_init(Paths::default, |paths, &first| job(paths, first)).collect();

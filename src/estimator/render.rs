@@ -1,16 +1,16 @@
 //! From an estimator and a sensor to a film: every pixel, every sample, in passes that double.
 //!
-//! Passes end at 1, 2, 4, … samples per replicate, and where a watch asks for it: there the film is complete, a preview can be shown, and the variance
+//! Passes end at 1, 2, 4, … samples per replicate, and where somebody asks for it: there the film is complete, a preview can be shown, and the variance
 //! curve has a point. Inside a pass blocks of pixels are independent jobs. A pixel's samples are added in order by one
 //! thread, so the sums are the same bits for any number of threads.
 
-use super::{Batch, Paths, TermEstimator, TermSink};
+use super::{Batch, Job, Paths, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Rgb};
 use crate::operator::{Sensor, Transport};
+use crate::progress::Progress;
 use crate::terms::film::{BLOCK, FilmBlock, Shape, TermFilm};
 use crate::terms::largest::Largest;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How much to render.
 #[derive(Clone, Copy, Debug)]
@@ -30,23 +30,6 @@ impl Amount {
     }
 }
 
-/// What watches a render.
-pub trait Watch: Sync {
-    /// Called after every block with the number of paths it took.
-    fn paths(&self, _paths: u64) {}
-    /// Asked between passes: how many samples per pixel there shall be after the next one, which is planned to end at `planned`.
-    /// No more than `done`: no further pass.
-    fn until(&self, _done: u32, planned: u32) -> u32 {
-        planned
-    }
-    /// Called with the film after every complete pass.
-    fn pass(&mut self, _film: &TermFilm) {}
-}
-
-/// Nobody watches.
-pub struct Unwatched;
-impl Watch for Unwatched {}
-
 /// Paths of a wave.
 const WAVE: u32 = 1024;
 
@@ -60,31 +43,40 @@ impl TermSink for FilmBlock<'_> {
     }
 }
 
-/// Renders into a new film. A render that `watch` ends early is the same, bit for bit, as one of the samples it has reached. When `stop` is set, what has been done so far comes back: every pixel then holds some number of
+/// Renders into a new film. When it is stopped, what has been done so far comes back: every pixel then holds some number of
 /// samples, and all means are still unbiased.
 pub fn render<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
     estimator: &impl TermEstimator<T>,
     amount: Amount,
-    watch: &mut impl Watch,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
+) -> TermFilm {
+    render_in_passes(t, sensor, estimator, amount, progress, &mut |film, planned| {
+        progress.film(film);
+        planned
+    })
+}
+
+/// The same, where somebody looks at the film after every complete pass, and says how many samples per pixel there shall be after the
+/// next one, given what is planned; no more than there are: the render ends. It is then the same, bit for bit, as one of the
+/// samples it has reached.
+pub fn render_in_passes<T: Transport>(
+    t: &T,
+    sensor: &impl Sensor<T>,
+    estimator: &impl TermEstimator<T>,
+    amount: Amount,
+    progress: Progress<'_>,
+    look: &mut dyn FnMut(&TermFilm, u32) -> u32,
 ) -> TermFilm {
     let shape = Shape { size: sensor.size(), slots: estimator.slots(), replicates: amount.replicates };
     let mut film = TermFilm::new(shape);
-    let mut done = 0;
-    while done < amount.spp && !(done > 0 && stop.load(Ordering::Relaxed)) {
-        let until = match done {
-            0 => (amount.replicates as u32).min(amount.spp),
-            _ => watch.until(done, done.saturating_mul(2).min(amount.spp)).min(amount.spp),
-        };
-        if until <= done {
-            break;
-        }
-        pass(t, sensor, estimator, amount.key, done..until, &mut film, &*watch, stop);
+    let (mut done, mut until) = (0, (amount.replicates as u32).min(amount.spp));
+    while done < until && !(done > 0 && progress.stopped()) {
+        pass(t, sensor, estimator, amount.key, done..until, &mut film, progress);
         done = until;
-        if !stop.load(Ordering::Relaxed) {
-            watch.pass(&film);
+        if !progress.stopped() {
+            until = look(&film, done.saturating_mul(2).min(amount.spp)).min(amount.spp);
         }
     }
     film
@@ -101,8 +93,7 @@ fn pass<T: Transport>(
     key: Key,
     samples: std::ops::Range<u32>,
     film: &mut TermFilm,
-    watch: &(impl Watch + ?Sized),
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) {
     let shape = film.shape;
     let sums = film.sums.par_chunks_mut(BLOCK * shape.per_pixel());
@@ -113,7 +104,7 @@ fn pass<T: Transport>(
     // what is larger than this is kept; every block that is done raises it for the others
     let floors = Largest::floors(&film.largest);
     let job = |paths: &mut Paths<T::Wave>, (i, ((sums, squares), counts)): (usize, Part)| {
-        if may_stop && stop.load(Ordering::Relaxed) {
+        if may_stop && progress.stopped() {
             return Totals::new(shape.slots);
         }
         let first = (i * BLOCK) as u32;
@@ -124,16 +115,16 @@ fn pass<T: Transport>(
         let at_once = WAVE / BLOCK as u32 * (BLOCK / pixels.len()) as u32;
         for s in samples.clone().step_by(at_once as usize) {
             let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + at_once).min(samples.end) };
-            estimator.sample(t, sensor, &batch, paths, &mut block);
+            estimator.sample(&Job { t, sensor, batch: &batch }, paths, &mut block);
         }
         counts.iter_mut().for_each(|n| *n += samples.len() as u32);
-        watch.paths(samples.len() as u64 * u64::from(pixels.end - pixels.start));
+        progress.advance(samples.len() as u64 * u64::from(pixels.end - pixels.start));
         block.largest.iter().zip(&floors).for_each(|(l, floor)| l.tell(floor));
         Totals { rays: block.rays, non_finite: block.non_finite, largest: block.largest }
     };
     if estimator.splats() {
         film.shared = true;
-        return splat(t, sensor, estimator, key, samples, film, watch, stop);
+        return splat(t, sensor, estimator, key, samples, film, progress);
     }
     let parts = sums.zip(squares).zip(counts).enumerate().map_init(Paths::default, job);
     let totals = parts.reduce(|| Totals::new(shape.slots), Totals::plus);
@@ -197,8 +188,7 @@ fn splat<T: Transport>(
     key: Key,
     samples: std::ops::Range<u32>,
     film: &mut TermFilm,
-    watch: &(impl Watch + ?Sized),
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) {
     let (shape, pixels) = (film.shape, film.shape.pixels() as u32);
     let blocks: Vec<u32> = (0..pixels).step_by(BLOCK).collect();
@@ -206,15 +196,16 @@ fn splat<T: Transport>(
     // finished, so that every replicate holds something: of empty ones the errors would be 0
     let may_stop = samples.start > 0;
     for sample in samples {
-        if may_stop && stop.load(Ordering::Relaxed) {
+        if may_stop && progress.stopped() {
             return;
         }
         for some in blocks.chunks(AT_ONCE) {
             let job = |paths: &mut Paths<T::Wave>, &first: &u32| {
                 let mut splats = Splats { rays: vec![0; shape.slots], ..Splats::default() };
                 let pixels = first..(first + BLOCK as u32).min(pixels);
-                watch.paths(u64::from(pixels.end - pixels.start));
-                estimator.sample(t, sensor, &Batch { key, pixels, samples: sample..sample + 1 }, paths, &mut splats);
+                progress.advance(u64::from(pixels.end - pixels.start));
+                let batch = &Batch { key, pixels, samples: sample..sample + 1 };
+                estimator.sample(&Job { t, sensor, batch }, paths, &mut splats);
                 splats
             };
             let done: Vec<Splats> = some.par_iter().map_init(Paths::default, job).collect();

@@ -5,7 +5,7 @@
 //!
 //! The tail has paths of its own too: K steps without scoring, then everything beyond.
 
-use super::{Batch, Paths, Plan, TermEstimator, TermSink, prefix};
+use super::{Batch, Job, Paths, Plan, TermEstimator, TermSink, prefix};
 use crate::math::Columns;
 use crate::operator::{Sensor, Transport};
 
@@ -15,18 +15,17 @@ pub struct SingleTerm(pub Plan);
 
 impl SingleTerm {
     /// Fresh paths for slot `k`, walked to vertex `steps`.
-    #[allow(clippy::too_many_arguments)] // what a wave needs, and which slot it is for
-    fn walk<T: Transport>(
+    fn walk<T: Transport, S: Sensor<T>>(
         &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
+        job: &Job<'_, T, S>,
         k: usize,
         steps: usize,
         paths: &mut Paths<T::Wave>,
         sink: &mut impl TermSink,
     ) {
-        paths.start(t, sensor, &Batch { key: batch.key.branch(k as u32), ..batch.clone() });
+        let &Job { t, sensor, batch } = job;
+        let batch = &Batch { key: batch.key.branch(k as u32), ..batch.clone() };
+        paths.start(&Job { t, sensor, batch });
         sink.rays(k, batch.len());
         for v in 0..steps {
             paths.roulette(t, v, &self.0.roulette);
@@ -38,50 +37,46 @@ impl SingleTerm {
 
 impl SingleTerm {
     /// Term k ≤ K, from paths of its own.
-    fn term<T: Transport>(
+    fn term<T: Transport, S: Sensor<T>>(
         &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
+        job: &Job<'_, T, S>,
         k: usize,
         paths: &mut Paths<T::Wave>,
         sink: &mut impl TermSink,
     ) {
         let Plan { technique, ref roulette, .. } = self.0;
-        self.walk(t, sensor, batch, k, k.saturating_sub(1), paths, sink);
+        self.walk(job, k, k.saturating_sub(1), paths, sink);
         if k == 0 {
-            paths.emission(t);
+            paths.emission(job.t);
             paths.add(0, sink);
             return;
         }
         let v = k - 1;
         if technique.connects() {
             sink.rays(k, paths.n);
-            paths.connect(t, v);
+            paths.connect(job.t, v);
             paths.score_connections(technique, k, sink);
         }
-        if technique.hits(t) {
-            paths.roulette(t, v, roulette);
+        if technique.hits(job.t) {
+            paths.roulette(job.t, v, roulette);
             sink.rays(k, paths.n);
-            paths.scatter(t, v);
-            paths.emission(t);
+            paths.scatter(job.t, v);
+            paths.emission(job.t);
             paths.score_hits(technique, k, sink);
         }
     }
 
     /// Everything beyond K, from paths of its own; nothing where no roulette ends them.
-    pub(super) fn tail<T: Transport>(
+    pub(super) fn tail<T: Transport, S: Sensor<T>>(
         &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
+        job: &Job<'_, T, S>,
         paths: &mut Paths<T::Wave>,
         sink: &mut impl TermSink,
     ) {
         let max_bounces = self.0.max_bounces;
         if self.0.roulette.ends() {
-            self.walk(t, sensor, batch, max_bounces + 1, max_bounces, paths, sink);
-            prefix::follow(t, &self.0, max_bounces, paths, sink);
+            self.walk(job, max_bounces + 1, max_bounces, paths, sink);
+            prefix::follow(job.t, &self.0, max_bounces, paths, sink);
         }
     }
 }
@@ -91,16 +86,9 @@ impl<T: Transport> TermEstimator<T> for SingleTerm {
         self.0.max_bounces + 2
     }
 
-    fn sample(
-        &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
-        paths: &mut Paths<T::Wave>,
-        sink: &mut impl TermSink,
-    ) {
-        (0..=self.0.max_bounces).for_each(|k| self.term(t, sensor, batch, k, paths, sink));
-        self.tail(t, sensor, batch, paths, sink);
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+        (0..=self.0.max_bounces).for_each(|k| self.term(job, k, paths, sink));
+        self.tail(job, paths, sink);
     }
 }
 
@@ -119,19 +107,12 @@ impl<T: Transport> TermEstimator<T> for OneTerm {
         1
     }
 
-    fn sample(
-        &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
-        paths: &mut Paths<T::Wave>,
-        sink: &mut impl TermSink,
-    ) {
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
         let sink = &mut Alone(sink);
         if self.slot <= self.single.0.max_bounces {
-            self.single.term(t, sensor, batch, self.slot, paths, sink);
+            self.single.term(job, self.slot, paths, sink);
         } else {
-            self.single.tail(t, sensor, batch, paths, sink);
+            self.single.tail(job, paths, sink);
         }
     }
 }

@@ -12,7 +12,7 @@
 //! The rays of a slot are those that are asked for once its vertex is reached: the ray that leads to a vertex counts there,
 //! because roulette has already spared the path when it is cast.
 
-use super::{Batch, Paths, Plan, TermEstimator, TermSink, prefix};
+use super::{Job, Paths, Plan, TermEstimator, TermSink, prefix};
 use crate::operator::{Sensor, Transport};
 
 /// The prefix estimator, vertex by vertex.
@@ -41,23 +41,16 @@ impl<T: Transport> TermEstimator<T> for Vertices {
         Self::slots_for(self.0.max_bounces)
     }
 
-    fn sample(
-        &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        batch: &Batch,
-        paths: &mut Paths<T::Wave>,
-        sink: &mut impl TermSink,
-    ) {
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
         let Plan { max_bounces, ref roulette, .. } = self.0;
         let tail = 2 * max_bounces + 1;
-        prefix::start(t, sensor, batch, paths, sink);
+        prefix::start(job, paths, sink);
         for v in 0.. {
             if paths.n == 0 || v >= max_bounces && !roulette.ends() {
                 break;
             }
             let slots = [2 * v + 1, 2 * v + 2].map(|slot| slot.min(tail));
-            prefix::step(t, &self.0, v, slots, paths, sink);
+            prefix::step(job.t, &self.0, v, slots, paths, sink);
         }
     }
 }

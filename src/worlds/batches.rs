@@ -6,15 +6,15 @@
 use super::Settings;
 use super::coplanar::undecided;
 use super::doubts::doubts;
-use super::sampled::{Estimator, film, variance};
+use super::sampled::{Estimator, Passes, film, variance};
 use super::unsampled::unsampled;
-use crate::estimator::render::{Amount, Unwatched, render};
+use crate::estimator::render::{Amount, render};
 use crate::estimator::{PathTracer, Plan};
 use crate::operator::SceneTransport;
+use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::terms::functional::functionals;
 use crate::terms::{Cost, Estimate, Functional, Series, World};
-use std::sync::atomic::AtomicBool;
 
 /// One way of rendering.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,17 +57,19 @@ impl Side {
     }
 
     /// Batch `index`. `name` keeps the streams of two sides apart that are rendered in the same way.
-    pub fn batch(&self, scene: &Scene, name: &str, index: u32, stop: &AtomicBool) -> Batch {
+    pub fn batch(&self, scene: &Scene, name: &str, index: u32) -> Batch {
         let settings = &self.settings;
         let stream = self.estimator.map_or("path".into(), |e| e.to_string());
         let key = settings.key(&format!("batches, {name}: {stream}"), 1).branch(index);
         let amount = Amount { spp: settings.spp, replicates: 1, key };
         let t = SceneTransport { scene, sampling: settings.sampling };
         let film = match self.estimator {
-            Some(estimator) => film(&t, &scene.camera, estimator, settings.plan(), amount, &mut Unwatched, stop),
+            Some(estimator) => {
+                film(&t, &scene.camera, estimator, settings.plan(), amount, &mut Passes::of(Progress::NONE))
+            }
             None => {
                 let plan = Plan { roulette: settings.path_roulette.clone(), ..settings.plan() };
-                render(&t, &scene.camera, &PathTracer(plan), amount, &mut Unwatched, stop)
+                render(&t, &scene.camera, &PathTracer(plan), amount, Progress::NONE)
             }
         };
         let mut functionals = functionals(&film);

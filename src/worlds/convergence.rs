@@ -13,13 +13,11 @@
 //! Nothing is rendered twice: the film of n samples is a part of the film of 2n. The points of a curve therefore share their
 //! replicates, and the error of a slope comes from curves without one replicate each.
 
-use super::Observer;
 use super::sampled::Sampled;
 use crate::stats::evidence::FITTED_SPREAD;
 use crate::stats::{Evidence, Slope, falling_slope};
 use crate::terms::scatter::Scatter;
 use crate::terms::{TermFilm, TermImage, Variance};
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// A film at one number of samples.
@@ -55,24 +53,38 @@ impl From<Sampled> for Reference {
     }
 }
 
-/// An observer that keeps what the film says at chosen numbers of samples, and passes on everything else.
+/// Keeps what the film says at chosen numbers of samples.
 pub struct Recorder<'a> {
-    observer: &'a dyn Observer,
     reference: Option<&'a Reference>,
     /// Where to look; empty: after every pass.
     at: Vec<u32>,
-    kept: Mutex<(Instant, f64, Vec<Stand>)>,
+    /// Since when samples are taken, and how long they took before.
+    since: Instant,
+    seconds: f64,
+    kept: Vec<Stand>,
 }
 
 impl<'a> Recorder<'a> {
     /// Keeps the numbers of samples `at`, in rising order, or all that the render stops at.
-    pub fn new(observer: &'a dyn Observer, reference: Option<&'a Reference>, at: Vec<u32>) -> Self {
-        Self { observer, reference, at, kept: Mutex::new((Instant::now(), 0.0, vec![])) }
+    pub fn new(reference: Option<&'a Reference>, at: Vec<u32>) -> Self {
+        Self { reference, at, since: Instant::now(), seconds: 0.0, kept: vec![] }
     }
 
     /// What was kept.
     pub fn stands(self) -> Vec<Stand> {
-        self.kept.into_inner().unwrap_or_else(PoisonError::into_inner).2
+        self.kept
+    }
+
+    /// Looks at the film after a pass; the next number of samples per pixel at which to look, beside the usual ones.
+    pub(super) fn look(&mut self, film: &TermFilm) -> Option<u32> {
+        self.seconds += self.since.elapsed().as_secs_f64();
+        let spp = film.least_samples();
+        if film.shape.replicates > 1 && (self.at.is_empty() || self.at.contains(&spp)) {
+            let (rays, parts) = (film.rays.iter().sum(), self.parts(film));
+            self.kept.push(Stand { spp, rays, seconds: self.seconds, parts });
+        }
+        self.since = Instant::now();
+        self.at.iter().copied().find(|&n| n > spp)
     }
 
     fn parts(&self, film: &TermFilm) -> Vec<Scatter> {
@@ -88,30 +100,6 @@ impl<'a> Recorder<'a> {
         let alone = if slots == 1 { vec![] } else { (0..slots).map(|s| (s..s + 1, Some(s))).collect() };
         let all = alone.into_iter().chain([(0..slots, None)]);
         all.map(|(range, slot)| Scatter::of(film, range, reference(slot))).collect()
-    }
-}
-
-impl Observer for Recorder<'_> {
-    fn begin(&self, what: &str, units: u64) {
-        self.observer.begin(what, units);
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner).0 = Instant::now();
-    }
-    fn advance(&self, units: u64) {
-        self.observer.advance(units);
-    }
-    fn stop(&self, done: u32) -> Option<u32> {
-        self.at.iter().copied().find(|&n| n > done).or_else(|| self.observer.stop(done))
-    }
-    fn preview(&self, film: &TermFilm) {
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.1 += kept.0.elapsed().as_secs_f64();
-        let spp = film.least_samples();
-        if film.shape.replicates > 1 && (self.at.is_empty() || self.at.contains(&spp)) {
-            let (rays, seconds) = (film.rays.iter().sum(), kept.1);
-            kept.2.push(Stand { spp, rays, seconds, parts: self.parts(film) });
-        }
-        self.observer.preview(film);
-        kept.0 = Instant::now();
     }
 }
 

@@ -6,19 +6,18 @@
 use super::coplanar::undecided;
 use super::discretisation::{Difference, Discretisation, Factors, SampledRows, Stored};
 use super::radius::{Radius, radii, sampled_noise};
-use super::{Observer, Settings, sampled, sampled::Sampled};
+use super::{Settings, sampled, sampled::Sampled};
 use crate::estimator::Gather;
 use crate::operator::SceneTransport;
-use crate::operator::form_factor::{FormFactors, Invariants, VisibilitySampling, Watch};
+use crate::operator::form_factor::{FormFactors, Invariants, VisibilitySampling};
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
 use crate::operator::rays::{Half, Hit, Light, Rays, Record, Solved, record};
+use crate::progress::Progress;
 use crate::scene::{Description, Scene, SceneError};
 use crate::solver::{Radiosity, Solution, residual, settle};
 use crate::terms::{TermImage, World};
 use glam::DVec3;
-use std::sync::Mutex;
-use std::sync::atomic::AtomicBool;
 
 /// A scene as a matrix, with everything that is printed about it.
 pub struct Matrix<R = Discretisation> {
@@ -120,16 +119,15 @@ pub fn matrix(
     scene: &Scene,
     patches: usize,
     settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Result<Matrix, MatrixError> {
     Ok(match settings.factors {
         Factors::Dense => {
             let (k, grading) = (settings.max_bounces, settings.grading);
-            dense_matrix(description, scene, patches, grading, k, observer, stop)?.held_as(Discretisation::from)
+            dense_matrix(description, scene, patches, grading, k, progress)?.held_as(Discretisation::from)
         }
         Factors::Rays(n) => {
-            sampled_matrix(description, scene, patches, n, settings, observer, stop)?.held_as(Discretisation::from)
+            sampled_matrix(description, scene, patches, n, settings, progress)?.held_as(Discretisation::from)
         }
     })
 }
@@ -144,10 +142,9 @@ pub fn dense_matrix(
     patches: usize,
     grading: f64,
     max_bounces: usize,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Result<Matrix<Radiosity>, MatrixError> {
-    dense(Patches::graded(description, patches, grading)?, scene, max_bounces, observer, stop)
+    dense(Patches::graded(description, patches, grading)?, scene, max_bounces, progress)
 }
 
 /// The same as `per_row` stored rays, for what applies T once more.
@@ -160,38 +157,22 @@ pub fn sampled_matrix(
     patches: usize,
     per_row: u32,
     settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Result<Matrix<Stored>, MatrixError> {
     let patches = Patches::graded(description, patches, settings.grading)?;
-    let rays = trace(&patches, scene, per_row, settings.seed, observer, stop)?;
+    let rays = trace(&patches, scene, per_row, settings.seed, progress)?;
     by_rays(Stored { patches, rays }, settings.max_bounces)
-}
-
-/// Passes the highest count of rows on.
-fn rows(observer: &dyn Observer) -> impl Fn(usize, usize) + Sync + '_ {
-    let last = Mutex::new(0);
-    move |done: usize, _: usize| {
-        let mut last = last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if done > *last {
-            observer.advance((done - *last) as u64);
-            *last = done;
-        }
-    }
 }
 
 fn dense(
     patches: Patches,
     scene: &Scene,
     max_bounces: usize,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Result<Matrix<Radiosity>, MatrixError> {
-    observer.begin(&format!("form factors, {} patches", patches.len()), patches.len() as u64);
-    let progress = rows(observer);
-    let watch = Watch { progress: Some(&progress), stop: Some(stop) };
+    progress.begin(&format!("form factors, {} patches", patches.len()), patches.len() as u64);
     let factors =
-        FormFactors::new(&patches, scene, VisibilitySampling::default(), watch).map_err(|_| MatrixError::Stopped)?;
+        FormFactors::new(&patches, scene, VisibilitySampling::default(), progress).map_err(|_| MatrixError::Stopped)?;
     let invariants = factors.invariants();
     let mut radiosity = Radiosity::new(patches, factors);
     let lit = radiosity.reached();
@@ -199,7 +180,7 @@ fn dense(
     radiosity.patches.darken(&lit);
     // where nothing leaves, no light may be lost or made by errors of F
     let inside: Vec<bool> = lit.iter().map(|l| l.contains(&true)).collect();
-    if closed(&radiosity.patches, scene, &inside, stop)? {
+    if closed(&radiosity.patches, scene, &inside, progress)? {
         radiosity.factors.close(&inside);
     }
     // LU of a matrix that is singular but for rounding succeeds, and means nothing
@@ -214,12 +195,11 @@ fn dense(
 }
 
 /// Whether no ray from these patches leaves the scene, or meets what takes no part: 64 are tried from each.
-fn closed(patches: &Patches, scene: &Scene, inside: &[bool], stop: &AtomicBool) -> Result<bool, MatrixError> {
+fn closed(patches: &Patches, scene: &Scene, inside: &[bool], progress: Progress<'_>) -> Result<bool, MatrixError> {
     if scene.has_environment() || patches.len() > Hit::MOST {
         return Ok(false);
     }
-    let watch = Watch { progress: None, stop: Some(stop) };
-    let rays = Rays::new(patches, scene, 64, 0, watch).map_err(|_| MatrixError::Stopped)?;
+    let rays = Rays::new(patches, scene, 64, 0, progress.silent()).map_err(|_| MatrixError::Stopped)?;
     let gone =
         |i: usize| rays.row(i).iter().flat_map(|half| half.iter()).filter(|h| **h == Hit::NOTHING).count() as u64;
     Ok((0..patches.len()).filter(|&i| inside[i]).map(gone).sum::<u64>() <= rays.lost)
@@ -237,17 +217,14 @@ fn trace(
     scene: &Scene,
     per_row: u32,
     seed: u64,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Result<Rays, MatrixError> {
     if patches.len() > Hit::MOST {
         let e = SceneError::new(format!("{} patches, and rows of rays hold {} at most", patches.len(), Hit::MOST));
         return Err(e.help("fewer --patches; of many triangles every side is one patch at least").into());
     }
-    observer.begin(&format!("{per_row} rays from each of {} patches", patches.len()), patches.len() as u64);
-    let progress = rows(observer);
-    let watch = Watch { progress: Some(&progress), stop: Some(stop) };
-    Rays::new(patches, scene, per_row as usize, seed, watch).map_err(|_| MatrixError::Stopped)
+    progress.begin(&format!("{per_row} rays from each of {} patches", patches.len()), patches.len() as u64);
+    Rays::new(patches, scene, per_row as usize, seed, progress).map_err(|_| MatrixError::Stopped)
 }
 
 fn by_rays(mut stored: Stored, max_bounces: usize) -> Result<Matrix<Stored>, MatrixError> {
@@ -329,11 +306,10 @@ impl Matrix {
         scene: &Scene,
         per_row: u32,
         seed: u64,
-        observer: &dyn Observer,
-        stop: &AtomicBool,
+        progress: Progress<'_>,
     ) -> Result<Difference, MatrixError> {
         let patches = self.radiosity.patches();
-        let rays = trace(patches, scene, per_row, seed, observer, stop)?;
+        let rays = trace(patches, scene, per_row, seed, progress)?;
         let light = Light { patches, rays: &rays };
         let (solution, spectral, sampling) = solve_by_rays(&light)?;
         let pairs = self.solution.radiance.iter().zip(&solution.radiance);
@@ -343,13 +319,7 @@ impl Matrix {
     }
 
     /// The terms and the solution through the camera of the scene.
-    pub fn through_camera(
-        &self,
-        scene: &Scene,
-        settings: &Settings,
-        observer: &dyn Observer,
-        stop: &AtomicBool,
-    ) -> Sampled {
+    pub fn through_camera(&self, scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
         let t = SceneTransport { scene, sampling: settings.sampling };
         let gather = Gather::new(self.radiosity.patches(), &self.terms, &self.solution.radiance, settings.read_patches);
         let label = format!(
@@ -359,7 +329,7 @@ impl Matrix {
             if settings.read_patches { ", read" } else { "" }
         );
         let world = (World::Radiosity, label);
-        let mut seen = sampled::sample(&t, &scene.camera, &gather, "radiosity", world, settings, observer, stop);
+        let mut seen = sampled::sample(&t, &scene.camera, &gather, "radiosity", world, settings, progress);
         seen.series.undecided = undecided(scene);
         seen
     }
@@ -373,8 +343,7 @@ impl Matrix<Radiosity> {
         scene: &Scene,
         fields: &[Vec<f64>],
         settings: &Settings,
-        observer: &dyn Observer,
-        stop: &AtomicBool,
+        progress: Progress<'_>,
     ) -> Vec<TermImage> {
         let t = SceneTransport { scene, sampling: settings.sampling };
         let patches = &self.radiosity.patches;
@@ -385,7 +354,7 @@ impl Matrix<Radiosity> {
         terms.push(nothing.clone());
         let gather = Gather { patches, terms: &terms, tail: nothing, read_patches: false };
         let world = (World::Radiosity, "modes".to_string());
-        let mut seen = sampled::sample(&t, &scene.camera, &gather, "modes", world, settings, observer, stop);
+        let mut seen = sampled::sample(&t, &scene.camera, &gather, "modes", world, settings, progress);
         seen.terms.drain(2..2 + fields.len()).collect()
     }
 }
@@ -429,19 +398,18 @@ pub fn radiosity(
     description: &Description,
     scene: &Scene,
     settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Result<Discrete, MatrixError> {
     let one = |patches: usize| {
-        let matrix = matrix(description, scene, patches, settings, observer, stop)?;
-        let picture = matrix.through_camera(scene, settings, observer, stop);
+        let matrix = matrix(description, scene, patches, settings, progress)?;
+        let picture = matrix.through_camera(scene, settings, progress);
         Ok::<_, MatrixError>((matrix, picture))
     };
     let (second, coarse) = one((settings.patches / 4).max(1))?;
     let (fine_matrix, fine) = one(settings.patches)?;
     let mut radii = fine_matrix.radii.clone();
     if fine_matrix.radiosity.dense().is_some() {
-        let coarsest = matrix(description, scene, (settings.patches / 16).max(1), settings, observer, stop)?;
+        let coarsest = matrix(description, scene, (settings.patches / 16).max(1), settings, progress)?;
         radii = coarsest.radii.into_iter().chain(second.radii).chain(radii).collect();
     }
     Ok(Discrete { matrix: fine_matrix, fine, coarse, radii })

@@ -2,16 +2,16 @@
 //!
 //! `L_h → p(ω) → T^k E`: the matrix of some hundred patches decides where rays look, the scene decides what they see.
 
+use super::Settings;
 use super::growth::{self, Growth};
 use super::sampled::{self, Estimator, Sampled, annotated, spread};
-use super::{Observer, Settings};
 use crate::estimator::{Branching, PathTracer, Plan, Prefix, Roulette, SingleTerm};
 use crate::math::Key;
 use crate::operator::SceneTransport;
 use crate::operator::guided::{Guide, GuidedTransport, Recipe};
+use crate::progress::Progress;
 use crate::scene::{Description, Scene, SceneError};
 use crate::terms::World;
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Patches of a guide unless told otherwise.
@@ -36,15 +36,13 @@ pub fn prepare(
     description: &Description,
     patches: usize,
     settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Result<Option<Prepared>, SceneError> {
     let started = Instant::now();
     // where nothing connects to the lamps, rays must find them
     let recipe = Recipe { patches, emission: !settings.technique.connects(), ..Recipe::default() };
     let key = Key::new(settings.seed, "guide");
-    let begin = |n: usize| observer.begin(&format!("guide, {n} patches"), n as u64);
-    let guide = Guide::new(description, recipe, key, begin, &|| observer.advance(1), stop)?;
+    let guide = Guide::new(description, recipe, key, progress)?;
     Ok(guide.map(|guide| Prepared { guide, recipe, time: started.elapsed() }))
 }
 
@@ -70,20 +68,17 @@ impl Prepared {
         scene: &Scene,
         estimator: Estimator,
         settings: &Settings,
-        observer: &dyn Observer,
-        stop: &AtomicBool,
+        progress: Progress<'_>,
     ) -> Option<Sampled> {
         let (t, settings) = (self.transport(scene, settings), &self.rest(settings));
         let (plan, camera, stream) = (settings.plan(), &scene.camera, format!("guided {estimator}"));
         let name = (World::Terms, self.label(&estimator.to_string(), settings));
         let result = match estimator {
-            Estimator::Prefix => sampled::sample(&t, camera, &Prefix(plan), &stream, name, settings, observer, stop),
-            Estimator::Single => {
-                sampled::sample(&t, camera, &SingleTerm(plan), &stream, name, settings, observer, stop)
-            }
+            Estimator::Prefix => sampled::sample(&t, camera, &Prefix(plan), &stream, name, settings, progress),
+            Estimator::Single => sampled::sample(&t, camera, &SingleTerm(plan), &stream, name, settings, progress),
             Estimator::Branching { children } => {
                 let tree = Branching { plan, children };
-                sampled::sample(&t, camera, &tree, &stream, name, settings, observer, stop)
+                sampled::sample(&t, camera, &tree, &stream, name, settings, progress)
             }
             Estimator::Light | Estimator::Bidirectional => return None,
         };
@@ -92,13 +87,13 @@ impl Prepared {
     }
 
     /// The full path tracer.
-    pub fn path(&self, scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &AtomicBool) -> Sampled {
+    pub fn path(&self, scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
         let (t, settings) = (self.transport(scene, settings), &self.rest(settings));
         let plan = Plan { roulette: settings.path_roulette.clone(), ..settings.plan() };
         let label = self.label("path tracer", settings) + &format!(", roulette {}", settings.path_roulette);
         let name = (World::Path, label);
         let path = PathTracer(plan);
-        let result = sampled::sample(&t, &scene.camera, &path, "guided path", name, settings, observer, stop);
+        let result = sampled::sample(&t, &scene.camera, &path, "guided path", name, settings, progress);
         let doubt = self.doubt(&t, &settings.path_roulette, settings);
         annotated(result, scene, None, settings).judged(doubt)
     }

@@ -45,11 +45,9 @@ pub mod unsampled;
 pub mod walk;
 pub mod zero_variance;
 
-use crate::estimator::render::Watch;
 use crate::estimator::{Plan, Roulette, Technique};
 use crate::math::{Key, Points};
 use crate::scene::bsdf::Sampling;
-use crate::terms::TermFilm;
 use std::time::Duration;
 
 /// What a run is made with.
@@ -114,32 +112,5 @@ impl Settings {
     /// The plan of the term estimators.
     pub fn plan(&self) -> Plan {
         Plan { max_bounces: self.max_bounces, technique: self.technique, roulette: self.roulette.clone() }
-    }
-}
-
-/// Who watches a long run.
-pub trait Observer: Sync {
-    /// A stretch of work begins, with so many units to do.
-    fn begin(&self, _what: &str, _units: u64) {}
-    /// Some units are done.
-    fn advance(&self, _units: u64) {}
-    /// The next number of samples per pixel, beyond `done`, at which to show the film, beside the usual ones.
-    fn stop(&self, _done: u32) -> Option<u32> {
-        None
-    }
-    /// The film after a complete pass.
-    fn preview(&self, _film: &TermFilm) {}
-}
-
-/// Nobody watches.
-pub struct Unobserved;
-impl Observer for Unobserved {}
-
-/// Passes on how far a render has come, and nothing else.
-struct Advance<'a>(&'a dyn Observer);
-
-impl Watch for Advance<'_> {
-    fn paths(&self, paths: u64) {
-        self.0.advance(paths);
     }
 }

@@ -3,14 +3,14 @@
 //! `T^k E = Σ_s (w_s-weighted strategy s)`: the weighted images of a row add up to the term, to rounding, because the same
 //! walks are walked as by the estimator itself.
 
-use super::{Advance, Observer, Settings, sampled::Estimator, sampled::amount};
+use super::{Settings, sampled::Estimator, sampled::amount};
 use crate::estimator::Pyramid;
 use crate::estimator::render::{Amount, render};
 use crate::operator::SceneTransport;
+use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::terms::functional::image_replicates;
 use crate::terms::{Estimate, TermImage, variance};
-use std::sync::atomic::AtomicBool;
 
 /// One strategy of one term.
 #[derive(Clone, Debug)]
@@ -33,13 +33,13 @@ pub struct Strategy {
 const REPLICATES: u32 = 4;
 
 /// Every strategy of every term k ≤ K.
-pub fn strategies(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &AtomicBool) -> Vec<Strategy> {
+pub fn strategies(scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Vec<Strategy> {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let usual = amount(settings, &Estimator::Bidirectional.to_string());
     let amount = Amount { replicates: settings.spp.min(REPLICATES) as usize, ..usual };
     let [w, h] = scene.camera.size;
-    observer.begin("strategies", u64::from(w) * u64::from(h) * u64::from(settings.spp));
-    let film = render(&t, &scene.camera, &Pyramid(settings.plan()), amount, &mut Advance(observer), stop);
+    progress.begin("strategies", u64::from(w) * u64::from(h) * u64::from(settings.spp));
+    let film = render(&t, &scene.camera, &Pyramid(settings.plan()), amount, progress);
     let (replicates, spp) = (image_replicates(&film), f64::from(film.least_samples()));
     let variances = variance::snapshot(&film).slots;
     let behind = Pyramid::len(settings.max_bounces);

@@ -15,18 +15,18 @@
 //! All meshes are read along the same camera rays, so that what changes from one to the next is the mesh. T⁰ and T¹ are no
 //! question to a matrix (what is read is E itself) and serve as controls.
 
+use super::Settings;
 use super::discrete::{self, MatrixError};
 use super::radius::Radius;
 use super::sampled::{self, Estimator, Sampled};
-use super::{Observer, Settings};
 use crate::operator::edges::essential_band;
 use crate::operator::matrix::{Ritz, leading};
+use crate::progress::Progress;
 use crate::scene::{Description, Scene};
 use crate::solver::Radiosity;
 use crate::stats::Evidence;
 use crate::terms::Estimate;
 use glam::DVec3;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// One mesh.
@@ -158,23 +158,22 @@ pub fn refine(
     patches: &[usize],
     eigenvalues: usize,
     settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Result<Refinement, MatrixError> {
-    let truth = sampled::terms(scene, Estimator::Prefix, settings, observer, stop);
+    let truth = sampled::terms(scene, Estimator::Prefix, settings, progress);
     let mut meshes = vec![];
     for &n in patches {
-        if stop.load(Ordering::Relaxed) {
+        if progress.stopped() {
             break;
         }
         let started = Instant::now();
-        let matrix = match discrete::matrix(description, scene, n, settings, observer, stop) {
+        let matrix = match discrete::matrix(description, scene, n, settings, progress) {
             Ok(m) => m,
             Err(MatrixError::Stopped) => break,
             Err(e) => return Err(e),
         };
         let seconds = started.elapsed().as_secs_f64();
-        let picture = matrix.through_camera(scene, settings, observer, stop);
+        let picture = matrix.through_camera(scene, settings, progress);
         let Some(&radius) = matrix.radii.last() else { continue };
         let spectrum = matrix.radiosity.dense().filter(|_| eigenvalues > 0).map(|r| ends(r, radius.value, eigenvalues));
         let patches = matrix.radiosity.patches().len();

@@ -18,20 +18,20 @@
 //! Without a matrix the largest albedo stands for F: then a radius below 1 proves that the moment is finite, and one above 1
 //! proves nothing. Both speak of directions drawn like the reflectance, whose weights are albedos.
 
+use super::Settings;
 use super::growth::{CLEAR, FromLight, growth};
-use super::{Advance, Observer, Settings};
 use crate::estimator::record::record;
-use crate::estimator::render::{Amount, Unwatched, render};
+use crate::estimator::render::{Amount, render};
 use crate::estimator::{Plan, Prefix, Roulette, Vertices};
 use crate::math::Key;
 use crate::operator::SceneTransport;
+use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::solver::Radiosity;
 use crate::stats::optimal::{optimal_reach, schedule};
 use crate::stats::schedule::{Noise, Part, Separable, gain};
 use crate::terms::Variance;
 use crate::terms::cross_moments::{Recorded, Value};
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Paths of a pilot: enough for a schedule that is as good as the best to a percent or two.
@@ -73,19 +73,13 @@ fn amount(spp: u32, settings: &Settings, stream: &str) -> Amount {
 }
 
 /// The cross moments of paths without roulette before vertex K = `settings.max_bounces`; nothing if interrupted.
-pub fn pilot(
-    scene: &Scene,
-    settings: &Settings,
-    spp: u32,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
-) -> Option<Recorded> {
+pub fn pilot(scene: &Scene, settings: &Settings, spp: u32, progress: Progress<'_>) -> Option<Recorded> {
     let roulette = Roulette::Constant { from: settings.max_bounces, q: beyond(scene) };
     let t = SceneTransport { scene, sampling: settings.sampling };
     let [w, h] = scene.camera.size;
-    observer.begin("cross moments", u64::from(w) * u64::from(h) * u64::from(spp));
+    progress.begin("cross moments", u64::from(w) * u64::from(h) * u64::from(spp));
     let estimator = Vertices(Plan { roulette, ..settings.plan() });
-    record(&t, &scene.camera, &estimator, amount(spp, settings, "cross moments"), &Advance(observer), stop)
+    record(&t, &scene.camera, &estimator, amount(spp, settings, "cross moments"), progress)
 }
 
 /// Terms under a schedule as the path tracer would use it, from vertex 0 on; nothing if interrupted. Read with
@@ -95,29 +89,27 @@ pub fn measure(
     settings: &Settings,
     schedule: &Roulette,
     spp: u32,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Option<Recorded> {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let [w, h] = scene.camera.size;
-    observer.begin(&format!("roulette {schedule}"), u64::from(w) * u64::from(h) * u64::from(spp));
+    progress.begin(&format!("roulette {schedule}"), u64::from(w) * u64::from(h) * u64::from(spp));
     let estimator = Prefix(Plan { roulette: schedule.clone(), ..settings.plan() });
     let amount = amount(spp, settings, &format!("roulette {schedule}"));
-    record(&t, &scene.camera, &estimator, amount, &Advance(observer), stop)
+    record(&t, &scene.camera, &estimator, amount, progress)
 }
 
 /// Wall-clock seconds per path that the terms take under each schedule without any bookkeeping: the least of three rounds of
 /// `spp` samples, taken in turn so that a busy machine is unfair to all alike.
 pub fn seconds_per_path(scene: &Scene, settings: &Settings, schedules: &[Roulette], spp: u32) -> Vec<f64> {
     let t = SceneTransport { scene, sampling: settings.sampling };
-    let never = AtomicBool::new(false);
     let paths = f64::from(scene.camera.size[0]) * f64::from(scene.camera.size[1]) * f64::from(spp);
     let mut least = vec![f64::INFINITY; schedules.len()];
     for _ in 0..3 {
         for (least, schedule) in least.iter_mut().zip(schedules) {
             let estimator = Prefix(Plan { roulette: schedule.clone(), ..settings.plan() });
             let started = Instant::now();
-            let film = render(&t, &scene.camera, &estimator, amount(spp, settings, "time"), &mut Unwatched, &never);
+            let film = render(&t, &scene.camera, &estimator, amount(spp, settings, "time"), Progress::NONE);
             *least = least.min(started.elapsed().as_secs_f64() / paths);
             drop(film);
         }
@@ -151,20 +143,19 @@ pub fn best(recorded: &Recorded, scene: &Scene) -> Option<Optimal> {
 ///
 /// ```
 /// use fredholm::scene::{Scene, load};
-/// use fredholm::worlds::{Settings, Unobserved, roulette};
-/// use std::sync::atomic::AtomicBool;
-///
+/// use fredholm::worlds::{Settings, roulette};
+/// ///
 /// let options = load::Options { set: vec!["camera.size=[8,8]".into()], ..Default::default() };
 /// let scene = Scene::new(&load::scene("cornell", &options)?.description);
-/// let best = roulette::optimal(&scene, &Settings::default(), &Unobserved, &AtomicBool::new(false));
+/// let best = roulette::optimal(&scene, &Settings::default(), Progress::NONE);
 /// assert!(best.is_some_and(|b| b.gain.value > 1.0));
 /// # Ok::<(), fredholm::scene::SceneError>(())
 /// ```
-pub fn optimal(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &AtomicBool) -> Option<Optimal> {
+pub fn optimal(scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Option<Optimal> {
     let settings = Settings { max_bounces: settings.max_bounces.clamp(DEPTH[0], DEPTH[1]), ..settings.clone() };
     let [w, h] = scene.camera.size.map(u64::from);
     let spp = (PILOT / (w * h)).clamp(8, 1 << 12) as u32;
-    best(&pilot(scene, &settings, spp, observer, stop)?, scene)
+    best(&pilot(scene, &settings, spp, progress)?, scene)
 }
 
 /// Spectral radii that decide whether moments are finite under constant survival.

@@ -1,18 +1,20 @@
 //! The continuous world: terms and path tracer, from rays to series and images.
 
 use super::{
-    Observer, Settings,
+    Settings,
+    convergence::Recorder,
     coplanar::undecided,
     doubts::doubts,
     growth::{self, Growth},
     unsampled::unsampled,
 };
-use crate::estimator::render::{Amount, Watch, render};
+use crate::estimator::render::{Amount, render_in_passes};
 use crate::estimator::{
     Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm, TermEstimator,
 };
 use crate::math::Points;
 use crate::operator::{Adjoint, SceneTransport, Sensor, Transport};
+use crate::progress::{Clock, Progress};
 use crate::scene::Scene;
 use crate::terms::functional::{Replicates, functionals, image_replicates};
 use crate::terms::image::events_of_pixels;
@@ -20,7 +22,6 @@ use crate::terms::norms::{SquaredNorm, squared_norm};
 use crate::terms::variance::{Snapshot, snapshot};
 use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, Variance, World};
 use std::fmt;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Which estimator of the terms.
@@ -83,23 +84,46 @@ pub struct Sampled {
 }
 
 /// Every term by its own estimator.
-pub fn terms(
+pub fn terms(scene: &Scene, estimator: Estimator, settings: &Settings, progress: Progress<'_>) -> Sampled {
+    recorded(scene, Some(estimator), settings, progress, None)
+}
+
+/// The full path tracer.
+pub fn path(scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
+    recorded(scene, None, settings, progress, None)
+}
+
+/// The terms, or the path tracer where no estimator is given; a recorder looks on.
+pub fn recorded(
     scene: &Scene,
-    estimator: Estimator,
+    estimator: Option<Estimator>,
     settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
+    recorder: Option<&mut Recorder<'_>>,
 ) -> Sampled {
     let t = SceneTransport { scene, sampling: settings.sampling };
-    let amount = amount(settings, &estimator.to_string());
-    let mut run = Run::new(&format!("terms, {estimator}"), scene.camera.size, settings, observer);
-    let film = film(&t, &scene.camera, estimator, settings.plan(), amount, &mut run, stop);
-    // a walk from the light has no use for a technique
-    let technique = if estimator == Estimator::Light { String::new() } else { format!(", {}", settings.technique) };
-    let label = format!("{estimator}{technique}{}", spread(settings.points));
-    let result = run.finish(&film, World::Terms, label);
-    let doubt = doubt(&t, Some(estimator), settings);
-    annotated(result, scene, Some(estimator), settings).judged(doubt)
+    let (camera, points) = (&scene.camera, spread(settings.points));
+    let stream = estimator.map_or("path".into(), |e| e.to_string());
+    let (amount, clock) = (amount(settings, &stream), settings.time.map(Clock::start));
+    let what = estimator.map_or("path".into(), |e| format!("terms, {e}"));
+    let mut passes = Passes::begin(&what, camera.size, settings, progress, clock.as_ref());
+    passes.recorder = recorder;
+    let Settings { technique, path_roulette, .. } = settings;
+    let result = match estimator {
+        Some(estimator) => {
+            let film = film(&t, camera, estimator, settings.plan(), amount, &mut passes);
+            // a walk from the light has no use for a technique
+            let technique = if estimator == Estimator::Light { String::new() } else { format!(", {technique}") };
+            passes.finish(&film, World::Terms, format!("{estimator}{technique}{points}"))
+        }
+        None => {
+            let path = PathTracer(Plan { roulette: path_roulette.clone(), ..settings.plan() });
+            let film = passes.render(&t, camera, &path, amount);
+            passes.finish(&film, World::Path, format!("path tracer, {technique}, roulette {path_roulette}{points}"))
+        }
+    };
+    let doubt = doubt(&t, estimator, settings);
+    annotated(result, scene, estimator, settings).judged(doubt)
 }
 
 /// Whether what an estimator (`None` for the path tracer) says beyond its terms has a finite variance.
@@ -173,27 +197,15 @@ pub(super) fn film<T: Adjoint>(
     estimator: Estimator,
     plan: Plan,
     amount: Amount,
-    watch: &mut impl Watch,
-    stop: &AtomicBool,
+    passes: &mut Passes<'_, '_>,
 ) -> TermFilm {
     match estimator {
-        Estimator::Prefix => render(t, sensor, &Prefix(plan), amount, watch, stop),
-        Estimator::Single => render(t, sensor, &SingleTerm(plan), amount, watch, stop),
-        Estimator::Light => render(t, sensor, &LightTracer(plan), amount, watch, stop),
-        Estimator::Bidirectional => render(t, sensor, &Bidirectional(plan), amount, watch, stop),
-        Estimator::Branching { children } => render(t, sensor, &Branching { plan, children }, amount, watch, stop),
+        Estimator::Prefix => passes.render(t, sensor, &Prefix(plan), amount),
+        Estimator::Single => passes.render(t, sensor, &SingleTerm(plan), amount),
+        Estimator::Light => passes.render(t, sensor, &LightTracer(plan), amount),
+        Estimator::Bidirectional => passes.render(t, sensor, &Bidirectional(plan), amount),
+        Estimator::Branching { children } => passes.render(t, sensor, &Branching { plan, children }, amount),
     }
-}
-
-/// The full path tracer.
-pub fn path(scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &AtomicBool) -> Sampled {
-    let plan = Plan { roulette: settings.path_roulette.clone(), ..settings.plan() };
-    let t = SceneTransport { scene, sampling: settings.sampling };
-    let Settings { technique, path_roulette, points, .. } = settings;
-    let label = format!("path tracer, {technique}, roulette {path_roulette}{}", spread(*points));
-    let result = sample(&t, &scene.camera, &PathTracer(plan), "path", (World::Path, label), settings, observer, stop);
-    let doubt = doubt(&t, None, settings);
-    annotated(result, scene, None, settings).judged(doubt)
 }
 
 /// Replicates of a render of many samples.
@@ -217,7 +229,6 @@ pub(crate) fn cut(series: &mut Series, settings: &Settings) {
 }
 
 /// Any estimator through any sensor.
-#[allow(clippy::too_many_arguments)] // the list of what a render is; a struct would only rename it
 pub(crate) fn sample<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
@@ -225,32 +236,43 @@ pub(crate) fn sample<T: Transport>(
     stream: &str,
     (world, label): (World, String),
     settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Sampled {
-    let amount = amount(settings, stream);
-    let mut run = Run::new(stream, sensor.size(), settings, observer);
-    let film = render(t, sensor, estimator, amount, &mut run, stop);
-    run.finish(&film, world, label)
+    let clock = settings.time.map(Clock::start);
+    let mut passes = Passes::begin(stream, sensor.size(), settings, progress, clock.as_ref());
+    let film = passes.render(t, sensor, estimator, amount(settings, stream));
+    passes.finish(&film, world, label)
 }
 
-/// A render under way.
-pub(super) struct Run<'a> {
-    observer: &'a dyn Observer,
+/// A render under way, pass by pass.
+pub(super) struct Passes<'a, 'r> {
+    progress: Progress<'a>,
     started: Instant,
     snapshots: Vec<Snapshot>,
-    /// How long it may take, and how many milliseconds of that have been reported.
-    time: Option<(Duration, AtomicU64)>,
+    clock: Option<&'a Clock>,
+    /// Who keeps what the film says.
+    recorder: Option<&'a mut Recorder<'r>>,
 }
 
-impl<'a> Run<'a> {
-    pub(super) fn new(what: &str, size: [u32; 2], settings: &Settings, observer: &'a dyn Observer) -> Self {
-        let paths = u64::from(size[0]) * u64::from(size[1]) * u64::from(settings.spp);
-        observer.begin(what, settings.time.map_or(paths, |t| t.as_millis() as u64));
-        let time = settings.time.map(|t| (t, AtomicU64::new(0)));
-        Self { observer, started: Instant::now(), snapshots: vec![], time }
+impl<'a> Passes<'a, '_> {
+    /// Passes that double, of which nothing is kept.
+    pub(super) fn of(progress: Progress<'a>) -> Self {
+        Self { progress, started: Instant::now(), snapshots: vec![], clock: None, recorder: None }
     }
 
+    /// The clock is for a render that may take so long.
+    pub(super) fn begin(
+        what: &str,
+        size: [u32; 2],
+        settings: &Settings,
+        progress: Progress<'a>,
+        clock: Option<&'a Clock>,
+    ) -> Self {
+        let paths = u64::from(size[0]) * u64::from(size[1]) * u64::from(settings.spp);
+        progress.begin(what, clock.map_or(paths, |c| c.time.as_millis() as u64));
+        let progress = clock.map_or(progress, |clock| progress.by_clock(clock));
+        Self { progress, started: Instant::now(), snapshots: vec![], clock, recorder: None }
+    }
     pub(super) fn finish(self, film: &TermFilm, world: World, label: String) -> Sampled {
         let slots = film.shape.slots;
         let paths = film.samples.iter().map(|&n| u64::from(n)).sum();
@@ -288,31 +310,37 @@ impl<'a> Run<'a> {
     }
 }
 
-impl Watch for Run<'_> {
-    fn paths(&self, paths: u64) {
-        match &self.time {
-            None => self.observer.advance(paths),
-            Some((_, reported)) => {
-                let now = self.started.elapsed().as_millis() as u64;
-                self.observer.advance(now.saturating_sub(reported.fetch_max(now, Ordering::Relaxed)));
-            }
-        }
+impl Passes<'_, '_> {
+    pub(super) fn render<T: Transport>(
+        &mut self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        estimator: &impl TermEstimator<T>,
+        amount: Amount,
+    ) -> TermFilm {
+        let progress = self.progress;
+        render_in_passes(t, sensor, estimator, amount, progress, &mut |film, planned| self.look(film, planned))
     }
+
+    /// After a pass: keeps what the film says, and decides how far the next one goes.
+    fn look(&mut self, film: &TermFilm, planned: u32) -> u32 {
+        self.progress.film(film);
+        if film.shape.replicates > 1 {
+            self.snapshots.push(snapshot(film));
+        }
+        let done = film.least_samples();
+        let asked = self.recorder.as_mut().and_then(|r| r.look(film));
+        let planned = asked.map_or(planned, |n| planned.min(n));
+        self.clock.map_or(planned, |clock| self.in_time(clock.time, done, planned))
+    }
+
     /// As many samples of whole replicates as fit into the time at the speed so far; the decision does not look at any value, so that
     /// means stay unbiased, and every pixel gets the same number.
-    fn until(&self, done: u32, planned: u32) -> u32 {
-        let planned = self.observer.stop(done).filter(|&n| n > done).map_or(planned, |n| planned.min(n));
-        let Some((time, _)) = &self.time else { return planned };
+    fn in_time(&self, time: Duration, done: u32, planned: u32) -> u32 {
         let each = self.started.elapsed().as_secs_f64() / f64::from(done);
         let fits = (time.as_secs_f64() / each) as u32;
         // a pass that would leave less than a quarter for the last one takes it along
         let until = if f64::from(fits) < 1.25 * f64::from(planned) { fits } else { planned };
         until / REPLICATES * REPLICATES
-    }
-    fn pass(&mut self, film: &TermFilm) {
-        self.observer.preview(film);
-        if film.shape.replicates > 1 {
-            self.snapshots.push(snapshot(film));
-        }
     }
 }

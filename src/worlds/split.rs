@@ -17,15 +17,15 @@
 //!
 //! Terms with films and streams of their own are independent, so that the variance of their sum is the sum of variances.
 
-use super::{Advance, Observer, Settings};
+use super::Settings;
 use crate::estimator::render::{Amount, render};
 use crate::estimator::{OneTerm, Prefix, SingleTerm};
 use crate::math::Key;
 use crate::operator::{SceneTransport, Sensor, Transport};
+use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::terms::covariance::{Covariance, covariance};
 use crate::terms::scatter::Scatter;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// What one term gave.
@@ -144,18 +144,16 @@ pub fn measure<T: Transport>(
     single: &SingleTerm,
     counts: &[u32],
     key: Key,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Option<Vec<Term>> {
     let pixels = f64::from(sensor.size()[0]) * f64::from(sensor.size()[1]);
     let mut terms = vec![];
     for (slot, &spp) in counts.iter().enumerate() {
-        observer.begin(&format!("term {slot}, {spp} spp"), pixels as u64 * u64::from(spp));
+        progress.begin(&format!("term {slot}, {spp} spp"), pixels as u64 * u64::from(spp));
         let (started, estimator) = (Instant::now(), OneTerm { single: single.clone(), slot });
-        let film =
-            render(t, sensor, &estimator, Amount { spp, replicates: REPLICATES, key }, &mut Advance(observer), stop);
+        let film = render(t, sensor, &estimator, Amount { spp, replicates: REPLICATES, key }, progress);
         let seconds = started.elapsed().as_secs_f64();
-        if stop.load(Ordering::Relaxed) {
+        if progress.stopped() {
             return None;
         }
         let (scatter, n, paths) = (Scatter::of(&film, 0..1, None), f64::from(spp), f64::from(spp) * pixels);
@@ -177,15 +175,14 @@ pub fn reuse<T: Transport>(
     prefix: &Prefix,
     spp: u32,
     key: Key,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Option<Reuse> {
     let pixels = f64::from(sensor.size()[0]) * f64::from(sensor.size()[1]);
-    observer.begin(&format!("prefix, {spp} spp"), pixels as u64 * u64::from(spp));
+    progress.begin(&format!("prefix, {spp} spp"), pixels as u64 * u64::from(spp));
     let started = Instant::now();
-    let film = render(t, sensor, prefix, Amount { spp, replicates: REPLICATES, key }, &mut Advance(observer), stop);
+    let film = render(t, sensor, prefix, Amount { spp, replicates: REPLICATES, key }, progress);
     let seconds = started.elapsed().as_secs_f64();
-    if stop.load(Ordering::Relaxed) {
+    if progress.stopped() {
         return None;
     }
     let paths = f64::from(spp) * pixels;
@@ -210,23 +207,16 @@ pub struct Study {
 
 /// Measures the three ways at about the rays that `settings.spp` samples of every term take; the pilot takes `pilot` samples
 /// of its own. Counts are rounded to multiples of [`REPLICATES`]. None if interrupted.
-pub fn study(
-    scene: &Scene,
-    settings: &Settings,
-    pilot: u32,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
-) -> Option<Study> {
+pub fn study(scene: &Scene, settings: &Settings, pilot: u32, progress: Progress<'_>) -> Option<Study> {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let (single, prefix) = (SingleTerm(settings.plan()), Prefix(settings.plan()));
     let slots = settings.max_bounces + 1 + usize::from(settings.roulette.ends());
     let round = |n: f64| whole(n, REPLICATES as u32);
     let (pilot, spp) = (round(pilot.into()), round(settings.spp.into()));
     let terms = |counts: &[u32], stream: &str| {
-        measure(&t, &scene.camera, &single, counts, settings.key(stream, REPLICATES), observer, stop)
+        measure(&t, &scene.camera, &single, counts, settings.key(stream, REPLICATES), progress)
     };
-    let paths =
-        |spp, stream: &str| reuse(&t, &scene.camera, &prefix, spp, settings.key(stream, REPLICATES), observer, stop);
+    let paths = |spp, stream: &str| reuse(&t, &scene.camera, &prefix, spp, settings.key(stream, REPLICATES), progress);
     let (known, known_reuse) = (terms(&vec![pilot; slots], "pilot, single")?, paths(pilot, "pilot, prefix")?);
     let budget = f64::from(spp) * known.iter().map(|t| t.rays).sum::<f64>();
     let counts = optimal(&known, Unit::Rays, budget, REPLICATES as u32);

@@ -15,17 +15,17 @@
 //!
 //! Reference: Kajiya, *The Rendering Equation* (1986); Pharr, Jakob and Humphreys, *Physically Based Rendering*, on fireflies.
 
+use super::Settings;
 use super::convergence::Reference;
 use super::sampled::{self, Estimator};
-use super::{Advance, Observer, Settings};
-use crate::estimator::render::{Amount, Watch, render};
+use crate::estimator::render::{Amount, render_in_passes};
 use crate::estimator::{PathTracer, Plan};
 use crate::operator::SceneTransport;
+use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::terms::functional::image_replicates;
 use crate::terms::scatter::Scatter;
 use crate::terms::{Estimate, TermFilm, TermImage};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is to be made: data, so that a command, a chapter and a test make the same figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,67 +94,43 @@ pub struct Grown {
 
 /// Renders `recipe` by path tracing, and its reference from an independent stream. None if interrupted before the first
 /// stage.
-pub fn render_stages(
-    scene: &Scene,
-    recipe: &Recipe,
-    settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
-) -> Option<Grown> {
+pub fn render_stages(scene: &Scene, recipe: &Recipe, settings: &Settings, progress: Progress<'_>) -> Option<Grown> {
     let reference = sampled::terms(
         scene,
         recipe.reference,
         &Settings { spp: recipe.reference_spp, seed: reference_seed(settings.seed), ..settings.clone() },
-        observer,
-        stop,
+        progress,
     );
-    if stop.load(Ordering::Relaxed) {
+    if progress.stopped() {
         return None;
     }
     let reference_mean = reference.series.image().total;
     let reference = Reference::from(reference);
     let (first, last) = (*recipe.paths.first()?, *recipe.paths.last()?);
     let pixels = u64::from(scene.camera.size[0]) * u64::from(scene.camera.size[1]);
-    observer.begin(recipe.id, pixels * u64::from(last));
+    progress.begin(recipe.id, pixels * u64::from(last));
     let replicates = first.clamp(2, 16);
     let amount = Amount { spp: last, replicates: replicates as usize, key: settings.key("path", replicates as usize) };
     let tracer = PathTracer(Plan { roulette: settings.path_roulette.clone(), ..settings.plan() });
     let t = SceneTransport { scene, sampling: settings.sampling };
-    let mut keeper = Keeper { advance: Advance(observer), at: recipe.paths, reference: &reference, stages: vec![] };
-    render(&t, &scene.camera, &tracer, amount, &mut keeper, stop);
-    let stages = keeper.stages;
+    let mut stages = vec![];
+    let mut look = |film: &TermFilm, planned: u32| {
+        let paths = film.least_samples();
+        if recipe.paths.contains(&paths) {
+            stages.push(Stage {
+                paths,
+                pixels: TermImage::of(film, 0..1).mean,
+                mean: image_replicates(film).estimate(0..1),
+                scatter: Scatter::of(film, 0..1, Some(&reference.total)),
+            });
+        }
+        recipe.paths.iter().copied().find(|&n| n > paths).map_or(planned, |n| planned.min(n))
+    };
+    render_in_passes(&t, &scene.camera, &tracer, amount, progress, &mut look);
     (!stages.is_empty()).then_some(Grown { stages, reference, reference_mean })
 }
 
 /// A seed for a reference that shares no numbers with the run of seed `seed`.
 pub fn reference_seed(seed: u64) -> u64 {
     crate::math::fnv1a(b"reference".iter().copied().chain(seed.to_le_bytes()))
-}
-
-/// Keeps the film at chosen numbers of samples.
-struct Keeper<'a> {
-    advance: Advance<'a>,
-    at: &'a [u32],
-    reference: &'a Reference,
-    stages: Vec<Stage>,
-}
-
-impl Watch for Keeper<'_> {
-    fn paths(&self, paths: u64) {
-        self.advance.paths(paths);
-    }
-    fn until(&self, done: u32, planned: u32) -> u32 {
-        self.at.iter().copied().find(|&n| n > done).map_or(planned, |n| planned.min(n))
-    }
-    fn pass(&mut self, film: &TermFilm) {
-        let paths = film.least_samples();
-        if self.at.contains(&paths) {
-            self.stages.push(Stage {
-                paths,
-                pixels: TermImage::of(film, 0..1).mean,
-                mean: image_replicates(film).estimate(0..1),
-                scatter: Scatter::of(film, 0..1, Some(&self.reference.total)),
-            });
-        }
-    }
 }

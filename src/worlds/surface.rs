@@ -3,13 +3,13 @@
 //! `∫∫ (T^k E)(x, ω) cos θ dω dA / (πA)`, the plain mean over uniform surface points and cosine-distributed directions: camera-free,
 //! unbiased, and the same number as `Σ A_i (T_h^k E)_i / A` of the matrix. The bounds of ‖T‖₁ ≤ max albedo hold for it.
 
+use super::Settings;
 use super::sampled::{self, Estimator};
-use super::{Advance, Observer, Settings};
 use crate::estimator::render::Amount;
 use crate::operator::{SceneTransport, scene_transport::SurfaceStrip};
+use crate::progress::Progress;
 use crate::scene::{Scene, SurfaceSensor};
 use crate::terms::functional::{Replicates, image_replicates};
-use std::sync::atomic::AtomicBool;
 
 /// Replicates behind the errors: enough for a covariance of ten terms.
 const REPLICATES: u32 = 64;
@@ -22,21 +22,19 @@ pub fn norms(
     estimator: Estimator,
     paths: u32,
     settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Replicates {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let strip = SurfaceStrip { sensor: SurfaceSensor::new(scene), pixels: STRIP };
     let spp = (paths / STRIP).next_multiple_of(REPLICATES).max(REPLICATES);
     let key = settings.key(&format!("surface {estimator}"), REPLICATES as usize);
     let amount = Amount { spp, replicates: REPLICATES as usize, key };
-    observer.begin(&format!("surface norms, {estimator}"), u64::from(spp) * u64::from(STRIP));
-    let mut watch = Advance(observer);
+    progress.begin(&format!("surface norms, {estimator}"), u64::from(spp) * u64::from(STRIP));
     // walks from the light cannot be led to this sensor
     let estimator = match estimator {
         Estimator::Light | Estimator::Bidirectional => Estimator::Prefix,
         other => other,
     };
-    let film = sampled::film(&t, &strip, estimator, settings.plan(), amount, &mut watch, stop);
+    let film = sampled::film(&t, &strip, estimator, settings.plan(), amount, &mut sampled::Passes::of(progress));
     image_replicates(&film)
 }

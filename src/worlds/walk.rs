@@ -12,19 +12,18 @@
 //!
 //! The picture of such a run has a pixel for every patch, in one row. The zero-variance walk is [`super::zero_variance`].
 
+use super::Settings;
 use super::discrete::Matrix;
-use super::sampled::{self, Estimator, Run, Sampled};
-use super::{Observer, Settings};
-use crate::estimator::render::render;
+use super::sampled::{self, Estimator, Passes, Sampled};
 use crate::estimator::{Absorption, PathTracer, Plan, Roulette};
 use crate::operator::MatrixWalk;
 use crate::operator::matrix_walk::Rows;
+use crate::progress::{Clock, Progress};
 use crate::solver::Radiosity;
 use crate::terms::functional::exact_functionals;
 use crate::terms::{Cost, Estimate, Series, Variance, World};
 use glam::DVec3;
 use std::fmt;
-use std::sync::atomic::AtomicBool;
 
 /// What walks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,33 +66,29 @@ pub fn transport(matrix: &Matrix<Radiosity>) -> MatrixWalk {
 }
 
 /// Walks on a matrix from every patch, `settings.spp` times.
-pub fn walk(
-    matrix: &Matrix<Radiosity>,
-    walker: Walker,
-    settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
-) -> Walked {
+pub fn walk(matrix: &Matrix<Radiosity>, walker: Walker, settings: &Settings, progress: Progress<'_>) -> Walked {
     let t = transport(matrix);
     let n = matrix.radiosity.patches.len();
     let rows = Rows(n as u32);
     let amount = sampled::amount(settings, &format!("walk {walker}"));
-    let mut run = Run::new(&format!("walk, {walker}"), [n as u32, 1], settings, observer);
+    let clock = settings.time.map(Clock::start);
+    let what = format!("walk, {walker}");
+    let mut passes = Passes::begin(&what, [n as u32, 1], settings, progress, clock.as_ref());
     let plan = settings.plan();
     let (film, ends) = match walker {
         Walker::Terms(estimator) => {
             let ends = plan.roulette.ends();
-            (sampled::film(&t, &rows, estimator, plan, amount, &mut run, stop), ends)
+            (sampled::film(&t, &rows, estimator, plan, amount, &mut passes), ends)
         }
         Walker::Path => {
             let plan = Plan { roulette: settings.path_roulette.clone(), ..plan };
             let ends = plan.roulette.ends();
-            (render(&t, &rows, &PathTracer(plan), amount, &mut run, stop), ends)
+            (passes.render(&t, &rows, &PathTracer(plan), amount), ends)
         }
         Walker::Absorption => {
             // a walk scores where it ends, so that it must be able to end anywhere
             let estimator = Absorption(Plan { roulette: everywhere(matrix), ..plan });
-            (render(&t, &rows, &estimator, amount, &mut run, stop), true)
+            (passes.render(&t, &rows, &estimator, amount), true)
         }
     };
     let technique = match walker {
@@ -101,7 +96,7 @@ pub fn walk(
         _ => format!(", {}", settings.technique),
     };
     let world = if walker == Walker::Path { World::Path } else { World::Terms };
-    let mut found = run.finish(&film, world, format!("walk, {walker}{technique}"));
+    let mut found = passes.finish(&film, world, format!("walk, {walker}{technique}"));
     let exact = exact(matrix, settings.max_bounces, walker == Walker::Path, ends);
     if !ends {
         sampled::cut(&mut found.series, settings);

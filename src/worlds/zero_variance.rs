@@ -14,19 +14,19 @@
 //! A channel is a problem of its own: a walk led by red light is not led by blue. Reference: see
 //! [`guided_walk`](crate::operator::guided_walk).
 
+use super::Settings;
 use super::discrete::Matrix;
-use super::{Observer, Settings};
-use crate::estimator::{Absorption, Batch, Paths, Plan, Prefix, Roulette, Technique, TermEstimator, TermSink};
+use crate::estimator::{Absorption, Batch, Job, Paths, Plan, Prefix, Roulette, Technique, TermEstimator, TermSink};
 use crate::math::{Columns, Key};
 use crate::operator::guided_walk::GuidedRows;
 use crate::operator::matrix::PatchOperator;
 use crate::operator::matrix_walk::Rows;
 use crate::operator::patches::Patch;
 use crate::operator::{GuidedWalk, MatrixWalk, Sensor, Transport};
+use crate::progress::Progress;
 use crate::solver::{Neumann, Radiosity};
 use rayon::prelude::*;
 use std::fmt;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How the samples of all patches lie about the truth; patches where the truth is 0 are left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -100,8 +100,7 @@ pub fn study(
     coarse: &[Matrix<Radiosity>],
     channel: usize,
     settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> ZeroVariance {
     let samples = settings.spp.min(MOST);
     let (t, e) = (matrix.radiosity.operator(channel), matrix.radiosity.emission(channel));
@@ -111,13 +110,13 @@ pub fn study(
     guides.extend(coarse.iter().map(|m| Guide::Mesh(m.radiosity.patches.len())));
     guides.push(Guide::Exact);
     let work = (guides.len() + settings.max_bounces) * b.len();
-    observer.begin(&format!("guided walks, {}", ["red", "green", "blue"][channel]), work as u64);
+    progress.begin(&format!("guided walks, {}", ["red", "green", "blue"][channel]), work as u64);
     let mut found = ZeroVariance { channel, guides: vec![], terms: vec![] };
     // the analog walk of the matrix; a led walk knows itself where to end
     let roulette = Roulette::Albedo { from: 0 };
     let estimator = Absorption(Plan { max_bounces: 0, technique: Technique::Scatter, roulette });
     for (stream, guide) in guides.into_iter().enumerate() {
-        if stop.load(Ordering::Relaxed) {
+        if progress.stopped() {
             return found;
         }
         let key = settings.key(&format!("guided {channel}"), 1).branch(stream as u32);
@@ -131,12 +130,12 @@ pub fn study(
             }
         };
         found.guides.push(Led { guide, error, spread });
-        observer.advance(b.len() as u64);
+        progress.advance(b.len() as u64);
     }
     // one term at a time, led by the terms below it: nothing is left to chance
     let powers: Vec<Vec<f64>> = Neumann::new(&t, e.clone()).take(settings.max_bounces + 1).collect();
     for k in 1..=settings.max_bounces {
-        if stop.load(Ordering::Relaxed) {
+        if progress.stopped() {
             return found;
         }
         let led = GuidedWalk::term(&t, &e, powers[..k].to_vec());
@@ -144,7 +143,7 @@ pub fn study(
         let key = settings.key(&format!("guided term {channel}"), 1).branch(k as u32);
         let rows = GuidedRows { rows: b.len() as u32, left: k as u32 };
         found.terms.push(spread(&led, &rows, &Prefix(plan), Some(k), &powers[k], (samples.min(64), key)));
-        observer.advance(b.len() as u64);
+        progress.advance(b.len() as u64);
     }
     found
 }
@@ -230,7 +229,7 @@ fn spread<T: Transport>(
         let mut values = Values { first, samples, slot, x: vec![0.0; pixels.len() * samples as usize], rays: 0 };
         for s in (0..samples).step_by(ROWS as usize) {
             let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + ROWS).min(samples) };
-            estimator.sample(t, sensor, &batch, &mut Paths::default(), &mut values);
+            estimator.sample(&Job { t, sensor, batch: &batch }, &mut Paths::default(), &mut values);
         }
         values
     };

@@ -47,11 +47,11 @@ pub use walk::Walk;
 
 use crate::estimator::{Plan, Roulette, Technique};
 use crate::operator::SceneTransport;
+use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::terms::World;
+use crate::worlds::Settings;
 use crate::worlds::sampled::{self, Sampled};
-use crate::worlds::{Observer, Settings};
-use std::sync::atomic::AtomicBool;
 
 /// How the paths of a member end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,19 +133,13 @@ impl Bug {
 }
 
 /// What the wrong renderer gives: terms, tail, and `total`, which it would call its image.
-pub fn render(bug: &Bug, scene: &Scene, settings: &Settings, observer: &dyn Observer, stop: &AtomicBool) -> Sampled {
-    of(&bug.plan(settings), bug.mistake, bug.name, scene, settings, observer, stop)
+pub fn render(bug: &Bug, scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
+    of(&bug.plan(settings), bug.mistake, bug.name, scene, settings, progress)
 }
 
 /// What the right renderer of the same plan gives, from numbers of its own.
-pub fn render_right(
-    bug: &Bug,
-    scene: &Scene,
-    settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
-) -> Sampled {
-    of(&bug.plan(settings), &Right, "right", scene, settings, observer, stop)
+pub fn render_right(bug: &Bug, scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
+    of(&bug.plan(settings), &Right, "right", scene, settings, progress)
 }
 
 /// The walk of a plan with a mistake, through the camera of the scene; `stream` names its random numbers.
@@ -155,16 +149,15 @@ pub fn of(
     stream: &str,
     scene: &Scene,
     settings: &Settings,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Sampled {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let walk = || Walk { plan: plan.clone(), mistake };
     let label = (World::Terms, format!("walk, {}", plan.technique));
-    let mut result = sampled::sample(&t, &scene.camera, &walk(), stream, label.clone(), settings, observer, stop);
+    let mut result = sampled::sample(&t, &scene.camera, &walk(), stream, label.clone(), settings, progress);
     if mistake.finishes() {
         // the image is no sum of its terms: the same paths again, of which only the sum is finished
-        let whole = sampled::sample(&t, &scene.camera, &walk::Whole(walk()), stream, label, settings, observer, stop);
+        let whole = sampled::sample(&t, &scene.camera, &walk::Whole(walk()), stream, label, settings, progress);
         result.total = whole.total;
         for (f, w) in result.series.functionals.iter_mut().zip(whole.series.functionals) {
             f.total = w.total;

@@ -14,7 +14,7 @@
 //! rounding (`tests/zoo.rs`). Reference: Kajiya, *The Rendering Equation* (1986).
 
 use super::mistake::{Connection, Mistake};
-use crate::estimator::{Batch, Paths, Plan, TermEstimator, TermSink};
+use crate::estimator::{Batch, Job, Paths, Plan, TermEstimator, TermSink};
 use crate::math::direction::Frame;
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};
@@ -209,14 +209,13 @@ impl<'s> TermEstimator<SceneTransport<'s>> for Walk<'_> {
         self.plan.max_bounces + 2
     }
 
-    fn sample(
+    fn sample<S: Sensor<SceneTransport<'s>>>(
         &self,
-        t: &SceneTransport<'s>,
-        sensor: &impl Sensor<SceneTransport<'s>>,
-        batch: &Batch,
+        job: &Job<'_, SceneTransport<'s>, S>,
         _: &mut Paths<VertexWave>,
         sink: &mut impl TermSink,
     ) {
+        let &Job { t, sensor, batch } = job;
         let rays = self.each(t, sensor, batch, |pixel, sample, slots| {
             for (slot, &value) in slots.iter().enumerate() {
                 add(sink, slot, pixel, sample, self.mistake.finish(value));
@@ -231,14 +230,13 @@ impl<'s> TermEstimator<SceneTransport<'s>> for Whole<'_> {
         1
     }
 
-    fn sample(
+    fn sample<S: Sensor<SceneTransport<'s>>>(
         &self,
-        t: &SceneTransport<'s>,
-        sensor: &impl Sensor<SceneTransport<'s>>,
-        batch: &Batch,
+        job: &Job<'_, SceneTransport<'s>, S>,
         _: &mut Paths<VertexWave>,
         sink: &mut impl TermSink,
     ) {
+        let &Job { t, sensor, batch } = job;
         let rays = self.0.each(t, sensor, batch, |pixel, sample, slots| {
             add(sink, 0, pixel, sample, self.0.mistake.finish(slots.iter().sum()));
         });

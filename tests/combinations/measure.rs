@@ -2,17 +2,17 @@
 
 use super::array::Combination;
 use super::rules::{Eye, Weight};
-use fredholm::estimator::render::{Amount, Unwatched, render};
+use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm};
 use fredholm::estimator::{Technique, TermEstimator};
 use fredholm::math::{Key, Points};
 use fredholm::operator::{Adjoint, Sensor};
+use fredholm::progress::Progress;
 use fredholm::scene::description::Description;
 use fredholm::scene::{Scene, Selection};
 use fredholm::terms::functional::functionals;
 use fredholm::terms::{Functional, TermFilm};
 use fredholm::worlds::sampled::Estimator;
-use std::sync::atomic::AtomicBool;
 
 /// K.
 pub const K: usize = 4;
@@ -72,7 +72,7 @@ fn run<T: Adjoint>(
     amount: Amount,
     eye: Weight,
 ) -> TermFilm {
-    render(t, camera, &Eye { estimator, eye }, amount, &mut Unwatched, &AtomicBool::new(false))
+    render(t, camera, &Eye { estimator, eye }, amount, Progress::NONE)
 }
 
 /// Terms by functional.

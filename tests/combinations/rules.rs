@@ -6,7 +6,7 @@
 //!
 //! Walks from the light do not read that table. They are broken by [`Ruled::scale`]: a strategy that counts too much.
 
-use fredholm::estimator::{Batch, Paths, Technique, TermEstimator, TermSink};
+use fredholm::estimator::{Job, Paths, Technique, TermEstimator, TermSink};
 use fredholm::math::{Columns, Rgb, Rng};
 use fredholm::operator::adjoint::{AdjointStep, Toward};
 use fredholm::operator::{Adjoint, Role, SceneTransport, Seen, Sensor, Step, Transport};
@@ -214,11 +214,9 @@ impl<T: Transport, E: TermEstimator<T>> TermEstimator<T> for Eye<E> {
     fn splats(&self) -> bool {
         self.estimator.splats()
     }
-    fn sample(&self, t: &T, s: &impl Sensor<T>, b: &Batch, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
+    fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
         self.estimator.sample(
-            t,
-            s,
-            b,
+            job,
             paths,
             &mut EyeSink { sink, eye: if self.estimator.slots() > 1 { self.eye } else { All } },
         );

@@ -1,14 +1,14 @@
 //! Running estimators by name, with films or sample by sample.
 
-use fredholm::estimator::render::{Amount, Unwatched, render};
-use fredholm::estimator::{Batch, Paths, Plan, Prefix, SingleTerm, TermEstimator, TermSink};
+use fredholm::estimator::render::{Amount, render};
+use fredholm::estimator::{Batch, Job, Paths, Plan, Prefix, SingleTerm, TermEstimator, TermSink};
 use fredholm::estimator::{PathTracer, Roulette, Technique};
 use fredholm::math::{Columns, Key, Rng};
 use fredholm::operator::{SceneTransport, Sensor, Transport};
+use fredholm::progress::Progress;
 use fredholm::scene::{Scene, Side, Vertex};
 use fredholm::terms::{Estimate, TermFilm};
 use glam::{DVec3, Vec3};
-use std::sync::atomic::AtomicBool;
 
 pub const TECHNIQUES: [Technique; 3] = [Technique::Scatter, Technique::Connect, Technique::Mis];
 
@@ -27,11 +27,11 @@ pub fn plan(max_bounces: usize, technique: Technique, roulette: &Roulette) -> Pl
 /// A film of R = 256 replicates.
 pub fn film<T: Transport>(t: &T, sensor: &impl Sensor<T>, kind: Kind, plan: &Plan, spp: u32, key: Key) -> TermFilm {
     let amount = Amount { spp, replicates: 256, key };
-    let (plan, stop) = (plan.clone(), AtomicBool::new(false));
+    let plan = plan.clone();
     match kind {
-        Kind::Single => render(t, sensor, &SingleTerm(plan), amount, &mut Unwatched, &stop),
-        Kind::Prefix => render(t, sensor, &Prefix(plan), amount, &mut Unwatched, &stop),
-        Kind::Path => render(t, sensor, &PathTracer(plan), amount, &mut Unwatched, &stop),
+        Kind::Single => render(t, sensor, &SingleTerm(plan), amount, Progress::NONE),
+        Kind::Prefix => render(t, sensor, &Prefix(plan), amount, Progress::NONE),
+        Kind::Path => render(t, sensor, &PathTracer(plan), amount, Progress::NONE),
     }
 }
 
@@ -91,7 +91,7 @@ pub fn collect<T: Transport>(
     let mut paths = Paths::default();
     for s in (0..samples).step_by(wave as usize) {
         let batch = Batch { key, pixels: 0..pixels, samples: s..(s + wave).min(samples) };
-        estimator.sample(t, sensor, &batch, &mut paths, &mut sink);
+        estimator.sample(&Job { t, sensor, batch: &batch }, &mut paths, &mut sink);
     }
     sink
 }

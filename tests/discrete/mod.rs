@@ -1,8 +1,9 @@
 //! Scenes for the tests of the discrete world, built without any file.
 #![allow(dead_code, unreachable_pub)]
 
-use fredholm::operator::form_factor::{FormFactors, VisibilitySampling, Watch};
+use fredholm::operator::form_factor::{FormFactors, VisibilitySampling};
 use fredholm::operator::patches::{BruteForce, Patches};
+use fredholm::progress::Progress;
 use fredholm::scene::description::*;
 use glam::DVec3;
 
@@ -62,7 +63,7 @@ pub fn cornell() -> Description {
 }
 
 pub fn factors(scene: &Description, patches: &Patches) -> FormFactors {
-    FormFactors::new(patches, &BruteForce::new(scene), VisibilitySampling::default(), Watch::default()).unwrap()
+    FormFactors::new(patches, &BruteForce::new(scene), VisibilitySampling::default(), Progress::NONE).unwrap()
 }
 
 /// Mesh and form factors.

@@ -3,13 +3,13 @@
 use super::*;
 use fredholm::operator::algebra::Expression;
 use fredholm::operator::rays::{Half, RayOperator, Rays};
+use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::description::Description;
 
 /// Rows of few rays, so that T is far from self-adjoint.
 fn shoot(description: &Description, patches: &Patches, per_row: usize) -> Rays {
-    let watch = fredholm::operator::form_factor::Watch::default();
-    Rays::new(patches, &Scene::new(description), per_row, 5, watch).unwrap()
+    Rays::new(patches, &Scene::new(description), per_row, 5, Progress::NONE).unwrap()
 }
 
 fn ball() -> Description {

@@ -19,7 +19,7 @@ use fredholm::stats::{Criterion, Detector, Finding, Outcome};
 use fredholm::terms::{Functional, Series, World};
 use serde::Serialize;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 pub(super) const EXAMPLES: &str = "Examples:
@@ -161,16 +161,16 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
     let most = args.spp.map_or(u32::MAX, |n| n.div_ceil(spp));
     let time = args.time.or(args.spp.is_none().then_some(Duration::from_secs(60)));
     // batches are short: one that is begun is finished, so that all are alike
-    let (never, stop) = (AtomicBool::new(false), stop_flag());
+    let stop = stop_flag();
     let (mut curve, mut cost, mut found) = (vec![], [0u64; 3], None);
     let mut said = Instant::now();
     for i in 0..most {
-        let a = first.batch(scene, "first", i, &never);
+        let a = first.batch(scene, "first", i);
         cost = [cost[0] + a.paths, cost[1] + a.rays, cost[2] + a.non_finite];
         let a = cut(a.functionals, gap.as_ref());
         match &against {
             Against::Rendered(side) => {
-                let b = side.batch(scene, "second", i, &never);
+                let b = side.batch(scene, "second", i);
                 cost = [cost[0] + b.paths, cost[1] + b.rays, cost[2] + b.non_finite];
                 detector.push(&a, &b.functionals);
             }

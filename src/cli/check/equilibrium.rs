@@ -1,7 +1,7 @@
 //! `fredholm check equilibrium SCENE`: the rendering equation itself as a test.
 
 use super::super::args;
-use super::super::progress::{Progress, stop_flag};
+use super::super::progress::Bar;
 use super::super::{Ending, Failure, note, notes, output, paragraphs, preflight, print, write};
 use super::{Common, fraction, usage};
 use crate::cli::open::Opened;
@@ -18,7 +18,6 @@ use fredholm::worlds::equilibrium::{self, Balance, Group, Judgement, Origin, jud
 use fredholm::worlds::{Settings, coplanar};
 use serde_json::json;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 pub(super) const EXAMPLES: &str = "Examples:
@@ -110,19 +109,20 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
     let name = format!("equilibrium-{}", loaded.description.name);
     let folder = output::folder(args.common.shared.out.as_deref(), &name, &loaded.command, args.common.shared.force)?;
 
-    let (progress, stop) = (Progress::new(args.common.shared.quiet, |_| ()), stop_flag());
+    let bar = Bar::plain(args.common.shared.quiet);
+    let progress = bar.progress();
     let half = (args.points / 2).max(1);
     let at = |from| {
         let points = equilibrium::points(&loaded.scene, from, half, args.common.seed);
         // streams of the two halves must not be the same
         let seed = settings.seed ^ ((from as u64) << 63);
         let settings = Settings { seed, ..settings.clone() };
-        equilibrium::at_points(&loaded.scene, &points, &settings, args.factor, &progress, stop)
+        equilibrium::at_points(&loaded.scene, &points, &settings, args.factor, progress)
     };
     let groups = [("surface", at(Origin::Surface)), ("camera", at(Origin::Camera))];
     let seen = Settings { spp: (args.spp / 32).max(16), ..settings.clone() };
-    let images = equilibrium::through_camera(&loaded.scene, &seen, args.factor, &progress, stop);
-    progress.finish();
+    let images = equilibrium::through_camera(&loaded.scene, &seen, args.factor, progress);
+    bar.finish();
     let parts: Vec<(&str, &[Balance])> = groups.iter().map(|(n, b)| (*n, b.as_slice())).collect();
     let mut judgement = judge(&parts, args.alpha, args.delta);
     let undecided = coplanar::undecided(&loaded.scene);
@@ -137,7 +137,7 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
     } else {
         print(&people(&found, &folder, &files))?;
     }
-    if stop.load(Ordering::Relaxed) {
+    if progress.stopped() {
         note("interrupted: some points have fewer samples than asked for");
         return Ok(Ending::Interrupted);
     }

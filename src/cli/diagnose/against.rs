@@ -1,18 +1,18 @@
 //! What a suspect is held against: terms rendered here, or those of an existing run.
 
-use super::super::progress::{Progress, stop_flag};
 use super::super::{Failure, args, solve};
 use super::Diagnose;
 use clap::Parser;
 use fredholm::diagnosis::candidates::own_seed;
 use fredholm::diagnosis::picture::{Code, Layer, Pictures, Slot, shrink_factor};
 use fredholm::diagnosis::{Region, WIDEST, regions};
+use fredholm::progress::Progress;
 use fredholm::report::{exr, summary};
 use fredholm::scene::load;
 use fredholm::scene::{Description, Scene};
+use fredholm::worlds::Settings;
 use fredholm::worlds::resort::with_last_resort;
 use fredholm::worlds::sampled::{self, Estimator};
-use fredholm::worlds::{Settings, Unobserved};
 use std::path::Path;
 
 /// Where the reference comes from.
@@ -140,7 +140,7 @@ impl Source {
         args: &Diagnose,
         size: [usize; 2],
         max_bounces: usize,
-        progress: &Progress,
+        progress: Progress<'_>,
     ) -> Result<Right, Failure> {
         let factor = shrink_factor(size, WIDEST);
         let small = size.map(|s| (s / factor) as u32);
@@ -163,8 +163,7 @@ impl Source {
         let settings = Settings { spp, seed: own_seed(args.seed), max_bounces, roulette, ..usual };
         super::super::preflight::fits_in_memory(&settings, small)?;
         super::super::preflight::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
-        let observer: &dyn fredholm::worlds::Observer = if args.shared.quiet { &Unobserved } else { progress };
-        let result = sampled::terms(&scene, Estimator::Prefix, &settings, observer, stop_flag());
+        let result = sampled::terms(&scene, Estimator::Prefix, &settings, progress);
         let missing = result.series.unsampled.iter().map(|u| format!("from k = {} on: {}", u.from, u.what));
         for missing in missing {
             super::super::note(&format!("note: not supported by the reference, {missing}"));

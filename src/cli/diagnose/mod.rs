@@ -4,19 +4,19 @@ mod against;
 mod read;
 mod text;
 
-use super::progress::{Progress, stop_flag};
+use super::progress::Bar;
 use super::{Ending, Failure, output};
 use against::Right;
 use clap::Args;
 use fredholm::diagnosis::candidates::Members;
 use fredholm::diagnosis::picture::{Code, Pictures, Slot};
-use fredholm::diagnosis::{self, Case, Diagnosis, Effort, Verdict, Watch, evidence};
+use fredholm::diagnosis::{self, Case, Diagnosis, Effort, Verdict, evidence};
+use fredholm::progress::Progress;
 use fredholm::report::{diagnosis as figure, summary, typeset::Caption};
-use fredholm::worlds::{Observer, coplanar};
+use fredholm::worlds::coplanar;
 use read::{File, Grouping};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 /// Arguments of `diagnose`.
 #[derive(Clone, Debug, Args)]
@@ -117,7 +117,8 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     }
     let command = output::canonical_command();
     let folder = output::folder(args.shared.out.as_deref(), "diagnose", &command, args.shared.force)?;
-    let progress = Progress::new(args.shared.quiet, |_| {});
+    let bar = Bar::plain(args.shared.quiet);
+    let progress = bar.progress();
 
     // suspects of one size and one K share a reference and the pictures of the candidates
     let mut groups: Groups = BTreeMap::new();
@@ -127,7 +128,7 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     let mut found: BTreeMap<usize, Diagnosed> = BTreeMap::new();
     let (mut rare_paths, mut label) = (None, String::new());
     for ((size, max_bounces), members) in &groups {
-        let right = source.right(args, *size, *max_bounces, &progress)?;
+        let right = source.right(args, *size, *max_bounces, progress)?;
         rare_paths = rare_paths.or(right.rare_paths.clone());
         label.clone_from(&right.label);
         if scaled.is_some() && right.scene.as_ref().is_some_and(|s| s.lights.any_delta()) {
@@ -140,17 +141,19 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
                 "error: {why}, so no picture of this scene is the right one\nhelp: move one of them by a thousandth of the scene"
             )));
         }
-        let candidates = right.scene.as_ref().map(|s| Members::new(s, *max_bounces, args.seed, stop_flag()));
+        let candidates = right.scene.as_ref().map(|s| Members::new(s, *max_bounces, args.seed, progress));
         for (i, suspect) in members {
-            if stop_flag().load(Ordering::SeqCst) {
+            if progress.stopped() {
                 break;
             }
-            let named = Named { progress: &progress, name: &suspect.name };
-            found.insert(*i, one(args, suspect, scaled.as_ref(), &right, candidates.as_ref(), &named));
+            found.insert(
+                *i,
+                one(args, suspect, scaled.as_ref(), &right, candidates.as_ref(), progress.named(&suspect.name)),
+            );
         }
     }
-    progress.finish();
-    let stopped = stop_flag().load(Ordering::SeqCst);
+    bar.finish();
+    let stopped = progress.stopped();
     let found: Vec<Diagnosed> = found.into_values().collect();
     let page =
         text::Text { args, how, label: &label, rare_paths: rare_paths.as_deref(), command: &command, folder: &folder };
@@ -220,21 +223,6 @@ fn suspects(args: &Diagnose) -> Result<(Vec<Suspect>, Grouping), Failure> {
     Ok((all, how))
 }
 
-/// Progress that says whose candidates are being rendered.
-struct Named<'a> {
-    progress: &'a Progress,
-    name: &'a str,
-}
-
-impl Watch for Named<'_> {
-    fn begin(&self, spp: u32, candidates: usize) {
-        self.progress.begin(&format!("{}: {candidates} candidates, {spp} spp", self.name), candidates as u64);
-    }
-    fn done(&self) {
-        self.progress.advance(1);
-    }
-}
-
 /// One suspect, brought to the size of the reference.
 fn one(
     args: &Diagnose,
@@ -242,7 +230,7 @@ fn one(
     scaled: Option<&(f64, File)>,
     right: &Right,
     candidates: Option<&Members>,
-    watch: &dyn Watch,
+    progress: Progress<'_>,
 ) -> Diagnosed {
     let file = &suspect.file;
     let gain = args.gain.unwrap_or(if file.pictures.code == Code::EightBit { 0.0 } else { 1.0 });
@@ -268,7 +256,7 @@ fn one(
         alpha: args.alpha,
         effort: Effort { paths: args.paths, any_gain, ..Effort::default() },
     };
-    let diagnosis = diagnosis::diagnose(&case, watch);
+    let diagnosis = diagnosis::diagnose(&case, progress);
     let terms = pictures.last_term().is_some();
     let told = file.attribute("spp").and_then(|n| n.parse().ok());
     let (name, ignored) = (suspect.name.clone(), file.ignored.clone());

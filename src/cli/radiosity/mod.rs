@@ -5,20 +5,19 @@ mod modes;
 mod solvers;
 
 use super::args::Run;
-use super::progress::{Progress, stop_flag};
+use super::progress::Bar;
 use super::{Ending, Failure, args::WorldName, notes, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
+use fredholm::progress::Progress;
 use fredholm::report::summary;
 use fredholm::report::typeset::Caption;
 use fredholm::solver::{self, study::Solver};
-use fredholm::terms::TermFilm;
 use fredholm::worlds::Settings;
 use fredholm::worlds::discrete::{self, Matrix, MatrixError};
 use fredholm::worlds::discretisation::{Factors, Stored};
 use glam::DVec3;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 /// Arguments of `radiosity`.
 #[derive(Clone, Debug, Args)]
@@ -149,9 +148,9 @@ struct Laboratory<R = solver::Radiosity> {
 impl Laboratory {
     /// Loads, meshes and computes form factors as a matrix; `None` if interrupted.
     fn new(run: &Run, what: &str) -> Result<Option<Self>, Failure> {
-        Laboratory::prepare(run, what, Factors::Dense, |opened, s, progress, stop| {
+        Laboratory::prepare(run, what, Factors::Dense, |opened, s, progress| {
             let Opened { description, scene, .. } = opened;
-            let matrix = discrete::dense_matrix(description, scene, s.patches, s.grading, 0, progress, stop)?;
+            let matrix = discrete::dense_matrix(description, scene, s.patches, s.grading, 0, progress)?;
             Ok((matrix.radiosity.patches.len(), matrix))
         })
     }
@@ -160,9 +159,9 @@ impl Laboratory {
 impl Laboratory<Stored> {
     /// The same as stored rays.
     fn sampled(run: &Run, what: &str, per_row: u32) -> Result<Option<Self>, Failure> {
-        Laboratory::prepare(run, what, Factors::Rays(per_row), |opened, s, progress, stop| {
+        Laboratory::prepare(run, what, Factors::Rays(per_row), |opened, s, progress| {
             let Opened { description, scene, .. } = opened;
-            let matrix = discrete::sampled_matrix(description, scene, s.patches, per_row, s, progress, stop)?;
+            let matrix = discrete::sampled_matrix(description, scene, s.patches, per_row, s, progress)?;
             Ok((matrix.radiosity.patches.len(), matrix))
         })
     }
@@ -173,7 +172,7 @@ impl<R> Laboratory<R> {
         run: &Run,
         what: &str,
         factors: Factors,
-        make: impl FnOnce(&Opened, &Settings, &Progress, &AtomicBool) -> Result<(usize, Matrix<R>), MatrixError>,
+        make: impl FnOnce(&Opened, &Settings, Progress<'_>) -> Result<(usize, Matrix<R>), MatrixError>,
     ) -> Result<Option<Self>, Failure> {
         let opened = open::run(run)?;
         let mut worlds = vec![WorldName::Radiosity];
@@ -185,9 +184,10 @@ impl<R> Laboratory<R> {
         preflight::rows_fit_in_memory(&opened.scene, &settings)?;
         let name = format!("{}-{what}", opened.description.name);
         let folder = output::folder(run.shared.out.as_deref(), &name, &opened.command, run.shared.force)?;
-        let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
-        let made = make(&opened, &settings, &progress, stop_flag());
-        progress.finish();
+        let bar = Bar::plain(run.shared.quiet);
+        let progress = bar.progress();
+        let made = make(&opened, &settings, progress);
+        bar.finish();
         match made {
             Ok((patches, matrix)) => {
                 if let Some(what) = notes::unlit(&matrix.unlit, &opened.description) {

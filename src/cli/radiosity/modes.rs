@@ -1,6 +1,6 @@
 //! `--modes`: the spectrum of T, what bounds it, and its modes through the camera.
 
-use super::super::progress::{Progress, stop_flag};
+use super::super::progress::Bar;
 use super::super::{Ending, Failure, paragraphs, preflight, print};
 use super::{Laboratory, NAMES, Radiosity};
 use fredholm::operator::edges::{Band, essential_band};
@@ -9,10 +9,8 @@ use fredholm::operator::modes::{Modes, norm_2, radius_bounds};
 use fredholm::report::modes::{self, Painted, Row, Spectrum};
 use fredholm::report::write_atomically;
 use fredholm::solver::Neumann;
-use fredholm::terms::TermFilm;
-use fredholm::worlds::{Observer, Settings};
+use fredholm::worlds::Settings;
 use serde_json::json;
-use std::sync::atomic::Ordering;
 
 /// Bounces over which modes are seen to die.
 const BOUNCES: usize = 12;
@@ -25,15 +23,16 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
         Settings { spp: run.spp.unwrap_or(64), seed: run.seed, max_bounces: count + 1, ..Settings::default() };
     let size = lab.opened.description.camera.size;
     preflight::fits_in_memory(&settings, size)?;
-    let stopped = || stop_flag().load(Ordering::Relaxed);
-    let progress = Progress::new(run.shared.quiet, |_: &TermFilm| {});
+    let bar = Bar::plain(run.shared.quiet);
+    let progress = bar.progress();
+    let stopped = || progress.stopped();
 
     // eigenvalues, channel by channel
     progress.begin(&format!("eigenvalues, {} patches", lab.patches()), 3);
     let (mut all, mut spectra, mut bands): (Vec<Modes>, Vec<Spectrum>, Vec<Band>) = (vec![], vec![], vec![]);
     for channel in 0..3 {
         if stopped() {
-            progress.finish();
+            bar.finish();
             super::super::note("nothing to save yet");
             let _ = std::fs::remove_dir(&lab.folder); // only if it is empty
             return Ok(Ending::Interrupted);
@@ -50,8 +49,8 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     let shown: Vec<usize> =
         (0..all[channel].leading.len()).filter(|&i| spectra[channel].modes[i].value.abs() > modes::ROUNDING).collect();
     let fields: Vec<Vec<f64>> = shown.iter().map(|&i| all[channel].leading[i].vector.clone()).collect();
-    let images = lab.matrix.paint(&lab.opened.scene, &fields, &settings, &progress, stop_flag());
-    progress.finish();
+    let images = lab.matrix.paint(&lab.opened.scene, &fields, &settings, progress);
+    bar.finish();
     let paint = |(&i, image): (&usize, &fredholm::terms::TermImage)| {
         let value = spectra[channel].modes[i].value;
         let where_it_belongs =

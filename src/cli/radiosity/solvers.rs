@@ -5,7 +5,7 @@
 //! | solved | (I − T) L = E | (I − T) u = D, u = L − E, D the direct light by pairs of points |
 //! | reference | LU | GMRES to rounding |
 
-use super::super::progress::{Progress, stop_flag};
+use super::super::progress::Bar;
 use super::super::{Ending, Failure, args::FactorsName, paragraphs, preflight, print};
 use super::{Laboratory, NAMES, Radiosity, SolverName};
 use fredholm::operator::matrix::Transposed;
@@ -13,12 +13,9 @@ use fredholm::report::solvers::{self, Extrapolated};
 use fredholm::report::write_atomically;
 use fredholm::solver::Neumann;
 use fredholm::solver::study::{History, Limits, Reference, Solver, System};
-use fredholm::terms::TermFilm;
-use fredholm::worlds::Observer;
 use fredholm::worlds::discrete::MatrixError;
 use fredholm::worlds::discretisation::{Factors, Stored};
 use serde_json::{Value, json};
-use std::sync::atomic::Ordering;
 
 /// Good enough, and too many.
 const ERROR: f64 = 1e-12;
@@ -79,9 +76,10 @@ impl<'a, R> Study<'a, R> {
 
     fn run<T: Transposed>(&self, system: &System<'_, T>) -> Result<Ending, Failure> {
         let Self { args, lab, .. } = self;
-        let stopped = || stop_flag().load(Ordering::Relaxed);
+        let bar = Bar::plain(args.run.shared.quiet);
+        let progress = bar.progress();
+        let stopped = || progress.stopped();
         let limits = Limits { error: ERROR, applications: APPLICATIONS, stopped: &stopped };
-        let progress = Progress::new(args.run.shared.quiet, |_: &TermFilm| {});
         let possible = system.solvers();
         // the direct solution is the reference, and always there
         let wanted = |s: &Solver| self.name.solver().is_none_or(|one| one == *s) || *s == Solver::Lu;
@@ -95,7 +93,7 @@ impl<'a, R> Study<'a, R> {
                 histories.push(history);
             }
         }
-        progress.finish();
+        bar.finish();
         let files = self.write(&histories)?;
         let series = extrapolations(system, lab.matrix.spectral[self.channel].radius);
         let record = self.record(system, &histories, &series);

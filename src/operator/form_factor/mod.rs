@@ -21,6 +21,7 @@ mod shaft;
 mod visibility;
 
 use crate::operator::patches::{BruteForce, LANES, Patch, Patches, Segments, polygon::radius_about};
+use crate::progress::Progress;
 use crate::scene::description::Sides;
 use geometry::{Side, exchange, facing};
 pub use geometry::{point_to_polygon, polygon_to_polygon};
@@ -28,7 +29,7 @@ pub use invariants::Invariants;
 use rayon::prelude::*;
 use shaft::{Blocker, End};
 use std::f64::consts::TAU;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use visibility::visible_share;
 pub use visibility::{Visibility, VisibilitySampling};
 
@@ -45,15 +46,6 @@ pub struct FormFactors {
     pub rays: u64,
 }
 
-/// How to watch and stop a long computation.
-#[derive(Clone, Copy, Default)]
-pub struct Watch<'a> {
-    /// Called with (rows done, rows in all), from any thread.
-    pub progress: Option<&'a (dyn Fn(usize, usize) + Sync)>,
-    /// Set it to stop early.
-    pub stop: Option<&'a AtomicBool>,
-}
-
 /// The computation was stopped before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the form factors were stopped before their end")]
@@ -67,12 +59,12 @@ impl FormFactors {
     /// of threads.
     ///
     /// # Errors
-    /// [`Stopped`] when the flag in `watch` was set.
+    /// [`Stopped`] when `progress` says so.
     pub fn new(
         patches: &Patches,
         visibility: &dyn Visibility,
         sampling: VisibilitySampling,
-        watch: Watch<'_>,
+        progress: Progress<'_>,
     ) -> Result<Self, Stopped> {
         let n = patches.len();
         let area = patches.areas();
@@ -80,12 +72,11 @@ impl FormFactors {
         let sides: Vec<Side> = patches.iter().map(side).collect();
         let bodies = BruteForce::of(patches.primitives().iter().map(|p| (*p, Sides::Both)));
         let pairs = Pairs { patches, sides, blockers, bodies, visibility, sampling };
-        let stopped = || watch.stop.is_some_and(|s| s.load(Relaxed));
-        let (done, rays) = (AtomicUsize::new(0), AtomicU64::new(0));
+        let rays = AtomicU64::new(0);
 
         let mut f = vec![0.0f32; n * n];
         f.par_chunks_mut(n).with_max_len(1).enumerate().for_each(|(i, row)| {
-            if stopped() {
+            if progress.stopped() {
                 return;
             }
             let mut work = Scratch::new(&pairs.bodies);
@@ -93,12 +84,9 @@ impl FormFactors {
                 *entry = (pairs.exchange(i, j, &mut work) / area[i]) as f32;
             }
             rays.fetch_add(work.sight.rays, Relaxed);
-            let done = done.fetch_add(1, Relaxed) + 1;
-            if let Some(report) = watch.progress {
-                report(done, n);
-            }
+            progress.advance(1);
         });
-        if stopped() {
+        if progress.stopped() {
             return Err(Stopped);
         }
         mirror(&mut f, &area);
@@ -234,8 +222,10 @@ impl Pairs<'_> {
 mod tests {
     use super::*;
     use crate::operator::patches::BruteForce;
+    use crate::progress::Listener;
     use crate::scene::description::*;
     use glam::DVec3;
+    use std::sync::atomic::AtomicBool;
 
     /// A room with a turned block, a ball and a disk in it.
     fn clutter() -> Description {
@@ -335,21 +325,24 @@ mod tests {
         let scene = clutter();
         let patches = Patches::new(&scene, 100).unwrap();
         let caster = BruteForce::new(&scene);
-        let make = |watch| FormFactors::new(&patches, &caster, VisibilitySampling::default(), watch);
+        let make =
+            |progress: Progress<'_>| FormFactors::new(&patches, &caster, VisibilitySampling::default(), progress);
         let in_pool = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| make(Watch::default()).unwrap())
+            pool.install(|| make(Progress::NONE).unwrap())
         };
         assert_eq!(in_pool(1), in_pool(3));
 
-        let stop = AtomicBool::new(false);
-        let seen = AtomicUsize::new(0);
-        let progress = |done: usize, all: usize| {
-            assert_eq!(all, patches.len());
-            seen.fetch_max(done, Relaxed);
-            stop.store(done >= 10, Relaxed);
-        };
-        assert_eq!(make(Watch { progress: Some(&progress), stop: Some(&stop) }), Err(Stopped));
-        assert!(seen.into_inner() < patches.len());
+        /// Stops after ten rows.
+        #[derive(Default)]
+        struct Ten(AtomicU64, AtomicBool);
+        impl Listener for Ten {
+            fn advance(&self, rows: u64) {
+                self.1.store(self.0.fetch_add(rows, Relaxed) + rows >= 10, Relaxed);
+            }
+        }
+        let ten = Ten::default();
+        assert_eq!(make(Progress::to(&ten).stopped_by(&ten.1)), Err(Stopped));
+        assert!(ten.0.into_inner() < patches.len() as u64);
     }
 }

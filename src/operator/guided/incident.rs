@@ -20,10 +20,10 @@ use crate::math::direction::cosine_hemisphere;
 use crate::math::{Key, Purpose, Rgb, Rng};
 use crate::operator::patches::{Patch, Patches, polygon};
 use crate::operator::{SceneTransport, Transport};
+use crate::progress::Progress;
 use crate::scene::{Side, Vertex, offset_origin};
 use glam::Vec3;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A ray that meets no patch.
 pub const NOTHING: u32 = u32::MAX;
@@ -52,23 +52,22 @@ pub struct Incident {
 }
 
 impl Incident {
-    /// Sends the rays. `scene` must be the one that was meshed. `advance` is called once per patch. Nothing when stopped.
+    /// Sends the rays. `scene` must be the one that was meshed. Nothing when stopped.
     pub fn new(
         scene: &SceneTransport<'_>,
         patches: &Patches,
         fineness: Fineness,
         key: Key,
-        advance: &(dyn Fn() + Sync),
-        stop: &AtomicBool,
+        progress: Progress<'_>,
     ) -> Option<Self> {
         let Fineness { rays, .. } = fineness;
         let per_patch = CELLS * CELLS * rays;
         let mut hits = vec![NOTHING; patches.len() * per_patch];
         let row = |(i, row): (usize, &mut [u32])| {
-            if stop.load(Ordering::Relaxed) {
+            if progress.stopped() {
                 return Rgb::ZERO;
             }
-            advance();
+            progress.advance(1);
             for (ray, hit) in row.iter_mut().enumerate() {
                 let u = Rng::at(key, i as u32, ray as u32, 0, Purpose::Scatter).four();
                 let at = vertex(&patches[i], [u[2], u[3]]);
@@ -89,7 +88,7 @@ impl Incident {
         };
         let direct = hits.par_chunks_mut(per_patch).with_max_len(1).enumerate().map(row).collect();
         let reflectance = patches.iter().map(|p| p.reflectance.as_vec3()).collect();
-        (!stop.load(Ordering::Relaxed)).then_some(Self { fineness, hits, direct, reflectance })
+        (!progress.stopped()).then_some(Self { fineness, hits, direct, reflectance })
     }
 
     /// Number of patches.

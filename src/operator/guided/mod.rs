@@ -37,13 +37,13 @@ use super::scene_transport::SceneTransport;
 use super::transport::{self, Expected, Samples, Seen, Sensor, Step, Transport};
 use crate::math::{Columns, Key, Rgb, Rng, Streams};
 use crate::operator::patches::Patches;
+use crate::progress::Progress;
 use crate::scene::bsdf::{Bsdf, Sampling, diffuse, diffuse::Diffuse};
 use crate::scene::{Camera, Scene, SceneError, Side, Vertex, VertexWave, numbers, offset_origin, stand_in};
 use glam::Vec3;
 use incident::{Fineness, Incident};
 use lamps::Lamps;
 use places::{Place, Places};
-use std::sync::atomic::AtomicBool;
 use warp::Warp;
 
 /// How a guide is made.
@@ -83,8 +83,7 @@ pub struct Guide {
 }
 
 impl Guide {
-    /// Meshes the scene, sends the rays, solves, and makes the tables; nothing when stopped. `advance` is called once per
-    /// patch, of which `begin` tells the number.
+    /// Meshes the scene, sends the rays, solves, and makes the tables; nothing when stopped.
     ///
     /// # Errors
     /// If the scene cannot be meshed ([`Patches::new`]).
@@ -92,16 +91,14 @@ impl Guide {
         description: &crate::scene::Description,
         recipe: Recipe,
         key: Key,
-        begin: impl FnOnce(usize),
-        advance: &(dyn Fn() + Sync),
-        stop: &AtomicBool,
+        progress: Progress<'_>,
     ) -> Result<Option<Self>, SceneError> {
         let lambertian = stand_in(description);
         let scene = Scene::new(&lambertian);
         let patches = Patches::new(&crate::scene::Description { lights: vec![], ..lambertian }, recipe.patches)?;
-        begin(patches.len());
+        progress.begin(&format!("guide, {} patches", patches.len()), patches.len() as u64);
         let transport = SceneTransport::new(&scene);
-        let Some(incident) = Incident::new(&transport, &patches, recipe.fineness, key, advance, stop) else {
+        let Some(incident) = Incident::new(&transport, &patches, recipe.fineness, key, progress) else {
             return Ok(None);
         };
         let mut light = incident.radiance();

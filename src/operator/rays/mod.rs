@@ -39,17 +39,18 @@ pub use hit::Hit;
 pub use operator::{Coarse, Half, RayOperator};
 pub use solution::{Light, Record, Solved, record};
 
-use super::form_factor::{Stopped, Watch};
+use super::form_factor::Stopped;
 use super::patches::{Lookup, Patches};
 use crate::math::direction::cosine_hemisphere;
 use crate::math::{Key, Purpose};
+use crate::progress::Progress;
 use crate::scene::{Scene, Vertex, VertexWave, error, offset_origin};
 use direct::Lamps;
 use glam::{DVec3, Vec3};
 use lattice::Lattice;
 use origin::Origins;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Of a row being traced: a ray that left the scene, or met a side that takes no part.
 const NOTHING: u32 = u32::MAX;
@@ -71,26 +72,34 @@ pub struct Rays {
     pub lost: u64,
 }
 
+/// Rows that are told together: they are short.
+const ROWS: u64 = 64;
+
 impl Rays {
     /// Traces `per_row` rays (rounded up to an even number; powers of two are best) from every patch. The result does
     /// not depend on the number of threads.
     ///
     /// # Errors
-    /// [`Stopped`] when the flag in `watch` was set.
+    /// [`Stopped`] when `progress` says so.
     ///
     /// # Panics
     /// If the mesh has more than [`Hit::MOST`] patches.
-    pub fn new(patches: &Patches, scene: &Scene, per_row: usize, seed: u64, watch: Watch<'_>) -> Result<Self, Stopped> {
+    pub fn new(
+        patches: &Patches,
+        scene: &Scene,
+        per_row: usize,
+        seed: u64,
+        progress: Progress<'_>,
+    ) -> Result<Self, Stopped> {
         let (n, per_row) = (patches.len(), per_row.max(2).next_multiple_of(2));
         assert!(n <= Hit::MOST, "patches are numbered in three bytes");
         let caster = Caster { patches, scene, lamps: Lamps::new(patches), key: Key::new(seed, "form factors") };
-        let stopped = || watch.stop.is_some_and(|s| s.load(Relaxed));
-        let (done, lost) = (AtomicUsize::new(0), AtomicU64::new(0));
+        let (done, lost) = (AtomicU64::new(0), AtomicU64::new(0));
         let (mut hits, mut direct) = (vec![Hit::NOTHING; n * per_row], vec![[[0.0f32; 3]; 2]; n]);
         hits.par_chunks_mut(per_row).zip(&mut direct).enumerate().with_min_len(16).for_each_init(
             || Scratch::new(per_row),
             |scratch, (i, (row, direct))| {
-                if stopped() {
+                if progress.stopped() {
                     return;
                 }
                 let mut met = std::mem::take(&mut scratch.row);
@@ -100,12 +109,12 @@ impl Rays {
                 row.iter_mut().zip(&met).for_each(|(hit, patch)| *hit = Hit::new(*patch));
                 scratch.row = met;
                 let done = done.fetch_add(1, Relaxed) + 1;
-                if let Some(report) = watch.progress.filter(|_| done % 64 == 0 || done == n) {
-                    report(done, n);
+                if done % ROWS == 0 || done == n as u64 {
+                    progress.advance(if done % ROWS == 0 { ROWS } else { done % ROWS });
                 }
             },
         );
-        if stopped() {
+        if progress.stopped() {
             return Err(Stopped);
         }
         Ok(Self { n, per_row, area: patches.areas(), hits, direct, lost: lost.into_inner() })

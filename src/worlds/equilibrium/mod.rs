@@ -18,17 +18,17 @@ mod judge;
 
 pub use judge::{Group, Judgement, judge};
 
+use super::Settings;
 use super::sampled::variance;
-use super::{Advance, Observer, Settings};
 use crate::estimator::render::{Amount, render};
 use crate::estimator::{Equilibrium, Plan};
 use crate::math::{Key, Purpose, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};
+use crate::progress::Progress;
 use crate::scene::{Scene, SurfaceSensor, Vertex};
 use crate::stats::{Evidence, Measured, estimate, two_sided_p};
 use crate::terms::{Estimate, Events, TermFilm, TermImage, Variance};
 use glam::DVec3;
-use std::sync::atomic::AtomicBool;
 
 /// Replicates at every point.
 pub const REPLICATES: usize = 32;
@@ -144,34 +144,27 @@ pub fn at_points(
     at: &[Vertex],
     settings: &Settings,
     factor: f32,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
+    progress: Progress<'_>,
 ) -> Vec<Balance> {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let key = settings.key("equilibrium at points", REPLICATES);
     let amount = Amount { spp: settings.spp, replicates: REPLICATES.min(settings.spp as usize), key };
-    observer.begin("L and E + T L at points", at.len() as u64 * u64::from(settings.spp));
-    let film = render(&t, &Fixed(at), &estimator(settings, factor), amount, &mut Advance(observer), stop);
+    progress.begin("L and E + T L at points", at.len() as u64 * u64::from(settings.spp));
+    let film = render(&t, &Fixed(at), &estimator(settings, factor), amount, progress);
     let variance = variance(&t, None, settings);
     let balance = |(i, x): (usize, &Vertex)| Balance::of(&film, i, *x, t.emission(x).as_dvec3(), variance);
     at.iter().enumerate().map(balance).collect()
 }
 
 /// Both sides through the camera: images of L and of E + T L.
-pub fn through_camera(
-    scene: &Scene,
-    settings: &Settings,
-    factor: f32,
-    observer: &dyn Observer,
-    stop: &AtomicBool,
-) -> [TermImage; 2] {
+pub fn through_camera(scene: &Scene, settings: &Settings, factor: f32, progress: Progress<'_>) -> [TermImage; 2] {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let replicates = REPLICATES.min(settings.spp as usize);
     let amount =
         Amount { spp: settings.spp, replicates, key: settings.key("equilibrium through the camera", replicates) };
     let [w, h] = scene.camera.size;
-    observer.begin("L and E + T L through the camera", u64::from(w) * u64::from(h) * u64::from(settings.spp));
-    let film = render(&t, &scene.camera, &estimator(settings, factor), amount, &mut Advance(observer), stop);
+    progress.begin("L and E + T L through the camera", u64::from(w) * u64::from(h) * u64::from(settings.spp));
+    let film = render(&t, &scene.camera, &estimator(settings, factor), amount, progress);
     [0, 1].map(|slot| TermImage::of(&film, slot..slot + 1))
 }
 
