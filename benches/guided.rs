@@ -12,8 +12,8 @@
 
 use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, Technique};
+use fredholm::guide::{Guide, GuidedTransport, Recipe};
 use fredholm::math::Key;
-use fredholm::operator::guided::{Guide, GuidedTransport, Recipe};
 use fredholm::operator::{SceneTransport, Sensor, Transport};
 use fredholm::progress::Progress;
 use fredholm::scene::{Camera, Scene, load};

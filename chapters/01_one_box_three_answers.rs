@@ -8,6 +8,9 @@
 //! `fredholm chapter 1`, or `cargo run --release --example 01_one_box_three_answers -- --out DIR`.
 #![allow(clippy::print_stdout)] // a program, not the library
 
+use fredholm::engine::Settings;
+use fredholm::engine::by_matrix::{Discrete, MatrixError, radiosity};
+use fredholm::engine::by_rays::{self, Estimator, Sampled};
 use fredholm::progress::Progress;
 use fredholm::report::decay::{self, Decay, RateLine};
 use fredholm::report::plot::{Curve, Look};
@@ -17,10 +20,8 @@ use fredholm::report::{
 };
 use fredholm::scene::{Description, Scene, SceneError, load};
 use fredholm::stats::{Comparison, Criterion, Outcome, TermMeans, compare, discretisation};
+use fredholm::study::surface;
 use fredholm::terms::{TermImage, functional::Replicates};
-use fredholm::worlds::discrete::{Discrete, MatrixError, radiosity};
-use fredholm::worlds::sampled::{self, Estimator, Sampled};
-use fredholm::worlds::{Settings, surface};
 use glam::Vec3;
 use std::{error::Error, path::Path, process::ExitCode};
 
@@ -46,8 +47,8 @@ struct Answers {
 fn solve(room: &Description, scene: &Scene, settings: &Settings) -> Result<Answers, MatrixError> {
     let nobody = Progress::NONE; // nobody watches, and nothing stops it
     Ok(Answers {
-        series: sampled::terms(scene, Estimator::Single, settings, nobody),
-        path: sampled::path(scene, settings, nobody),
+        series: by_rays::terms(scene, Estimator::Single, settings, nobody),
+        path: by_rays::path(scene, settings, nobody),
         matrix: radiosity(room, scene, settings, nobody)?,
         norms: surface::norms(scene, Estimator::Single, 1 << 18, settings, nobody),
     })

@@ -19,13 +19,13 @@
 //! | T_h = diag(ρ) F, applied | the matrix over patches | [`operator::matrix::LinearOperator`] |
 //! | `X_k`, E\[X_k\] = (T^k E)(x) | one sample of a term | [`estimator::TermEstimator`] |
 //! | R | independent replicates, the unit of every error | [`terms::TermFilm`] |
-//! | ‖T^k E‖₁ | over all surfaces | [`worlds::surface`] |
+//! | ‖T^k E‖₁ | over all surfaces | [`study::surface`] |
 //! | α, δ | level and margin of a verdict | [`stats::Criterion`] |
 //!
 //! Data flows one way, and so do imports:
 //!
 //! ```text
-//! math → scene → terms → operator → estimator | solver → stats → worlds → zoo → diagnosis → report
+//! math → scene → terms → progress → operator → estimator | solver → guide → stats → engine → study → zoo → diagnosis → report
 //! ```
 //!
 //! One scene, solved two ways, in a few lines:
@@ -34,19 +34,21 @@
 //! use fredholm::scene::{Scene, load};
 //! use fredholm::stats::{Criterion, Outcome, compare};
 //! use fredholm::progress::Progress;
-//! use fredholm::worlds::{Settings, sampled};
+//! use fredholm::engine::{Settings, by_rays};
 //!
 //! let options = load::Options { set: vec!["camera.size=[8,8]".into()], ..Default::default() };
 //! let scene = Scene::new(&load::scene("furnace", &options)?.description);
 //! let settings = Settings { spp: 64, ..Settings::default() };
-//! let terms = sampled::terms(&scene, sampled::Estimator::Prefix, &settings, Progress::NONE);
-//! let path = sampled::path(&scene, &settings, Progress::NONE);
+//! let terms = by_rays::terms(&scene, by_rays::Estimator::Prefix, &settings, Progress::NONE);
+//! let path = by_rays::path(&scene, &settings, Progress::NONE);
 //! assert_ne!(compare(&terms.series, &path.series, &Criterion::default(), &[]).outcome, Outcome::Differs);
 //! # Ok::<(), fredholm::scene::SceneError>(())
 //! ```
 
 pub mod diagnosis;
+pub mod engine;
 pub mod estimator;
+pub mod guide;
 pub mod math;
 pub mod operator;
 pub mod progress;
@@ -54,6 +56,6 @@ pub mod report;
 pub mod scene;
 pub mod solver;
 pub mod stats;
+pub mod study;
 pub mod terms;
-pub mod worlds;
 pub mod zoo;

@@ -14,9 +14,9 @@ use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::load::{self, Options};
 use fredholm::stats::{Measured, critical, two_sided_p};
+use fredholm::study::convergence::Part;
 use fredholm::terms::scatter::Scatter;
 use fredholm::terms::{TermFilm, TermImage, Variance};
-use fredholm::worlds::convergence::Part;
 use std::ops::Range;
 
 /// The curve of a sum of slots from 1 to `spp / replicates` samples per replicate.

@@ -5,6 +5,11 @@
 mod common;
 
 use common::scenes::quad;
+use fredholm::engine::Settings;
+use fredholm::engine::by_matrix;
+use fredholm::engine::by_matrix::Matrix;
+use fredholm::engine::by_rays::{self, Estimator};
+use fredholm::engine::known::coplanar;
 use fredholm::estimator::Technique;
 use fredholm::progress::Progress;
 use fredholm::scene::coplanar::{Kind, Overlap, Surfaces};
@@ -13,9 +18,6 @@ use fredholm::scene::{Primitive, Scene, builtin, load};
 use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, Outcome, compare};
 use fredholm::terms::{Estimate, Series};
-use fredholm::worlds::discrete::Matrix;
-use fredholm::worlds::sampled::{self, Estimator};
-use fredholm::worlds::{Settings, coplanar, discrete};
 use glam::{DQuat, DVec3};
 
 /// The room of `faults/lamp_in_ceiling.toml`, two metres wide, 0.6 grey.
@@ -400,7 +402,7 @@ fn values(scene: &Scene, estimator: Estimator, technique: Technique, spp: u32, s
     let runs: Vec<Values> = (0..4)
         .map(|i| {
             let settings = settings(technique, spp / 4, seed ^ (i << 60));
-            let s = sampled::terms(scene, estimator, &settings, Progress::NONE).series;
+            let s = by_rays::terms(scene, estimator, &settings, Progress::NONE).series;
             let f = s.image();
             [f.terms[0], f.terms[1], f.terms[2], f.total]
         })
@@ -423,7 +425,7 @@ const WAYS: [(&str, Estimator, Technique, u32, &[usize]); 5] = [
 ];
 
 fn matrix(d: &Description, patches: usize) -> Matrix<Radiosity> {
-    discrete::dense_matrix(d, &Scene::new(d), patches, 1.0, 3, Progress::NONE).unwrap()
+    by_matrix::dense_matrix(d, &Scene::new(d), patches, 1.0, 3, Progress::NONE).unwrap()
 }
 
 fn apart(a: &Estimate, b: &Estimate) -> Estimate {
@@ -545,7 +547,7 @@ fn both_engines_see_the_same_lamp() {
     let d = in_plane(vec![square], Sides::Front);
     let run = |scene: &Scene| {
         let settings = settings(Technique::Mis, 64, 5);
-        sampled::terms(scene, Estimator::Prefix, &settings, Progress::NONE).series.functionals
+        by_rays::terms(scene, Estimator::Prefix, &settings, Progress::NONE).series.functionals
     };
     let packets = run(&Scene::new(&d));
     assert_eq!(packets, run(&Scene::new(&d).one_by_one()));
@@ -581,7 +583,7 @@ fn what_a_lamp_covers_sends_no_light() {
     let norms = |d: &Description, seed| {
         let scene = Scene::new(d);
         let area = fredholm::scene::SurfaceSensor::new(&scene).area;
-        let of = fredholm::worlds::surface::norms;
+        let of = fredholm::study::surface::norms;
         let r = of(&scene, Estimator::Prefix, 1 << 21, &settings(Technique::Mis, 1, seed), Progress::NONE);
         [0, 1, 2, 3].map(|k| {
             let e = r.estimate(k..k + 1);
@@ -652,7 +654,7 @@ fn comparisons_of_a_scene_without_a_right_answer_are_undecided() {
     let d = scene(vec![dark(room()), lamp(below([-0.3, -0.3], [0.3, 0.3], 0.9)), rug]);
     let scene = Scene::new(&d);
     let run =
-        |seed| sampled::terms(&scene, Estimator::Prefix, &settings(Technique::Mis, 64, seed), Progress::NONE).series;
+        |seed| by_rays::terms(&scene, Estimator::Prefix, &settings(Technique::Mis, 64, seed), Progress::NONE).series;
     let (a, mut b) = (run(1), run(2));
     assert!(a.undecided.as_deref().unwrap().contains("`shapes[0]` and `shapes[2]`"), "{:?}", a.undecided);
     // far off, and certainly so

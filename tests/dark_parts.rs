@@ -4,14 +4,15 @@
 mod common;
 
 use common::scenes::{Surface, description, room, sphere};
+use fredholm::engine::Settings;
+use fredholm::engine::by_matrix::{Matrix, MatrixError, dense_matrix, matrix, sampled_matrix};
+use fredholm::engine::by_rays;
+use fredholm::engine::discretisation::Factors;
+use fredholm::engine::known::resort::with_last_resort;
+use fredholm::engine::known::trap::trapped;
 use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::description::{BsdfDescription, Choice, Description, Geometry, LightDescription, Sides, Sky};
-use fredholm::worlds::discrete::{Matrix, MatrixError, dense_matrix, matrix, sampled_matrix};
-use fredholm::worlds::discretisation::Factors;
-use fredholm::worlds::resort::with_last_resort;
-use fredholm::worlds::trap::trapped;
-use fredholm::worlds::{Settings, sampled};
 use glam::DVec3;
 
 fn block(min: DVec3, max: DVec3) -> Geometry {
@@ -44,14 +45,14 @@ fn a_white_block_in_a_room_is_no_trap() {
     let (vertex, q) = scene.last_resort().unwrap();
     assert!(vertex < 40 && q > 0.05, "{vertex} {q}");
     let settings = Settings { spp: 64, max_bounces: 3, ..Settings::default() };
-    let path = sampled::path(&scene, &settings, Progress::NONE).series;
+    let path = by_rays::path(&scene, &settings, Progress::NONE).series;
     let total = path.image().total;
     assert!((total.mean - 2.0).abs().max_element() < 0.05 + 6.0 * total.std_error.max_element(), "{total:?}");
     // the camera inside of the block sees nothing, and comes to an end
     let mut inside = d;
     inside.camera.origin = DVec3::new(0.0, -0.5, 0.0);
     let scene = with_last_resort(Scene::new(&inside));
-    let seen = sampled::path(&scene, &settings, Progress::NONE).series;
+    let seen = by_rays::path(&scene, &settings, Progress::NONE).series;
     assert_eq!(seen.image().total.mean, DVec3::ZERO);
     assert!(seen.cost.rays < 200 * seen.cost.paths, "{:?}", seen.cost);
 }
@@ -143,7 +144,7 @@ fn a_glass_box_in_a_white_sky_is_no_trap() {
     assert_eq!(trapped(&scene), None);
     assert!(scene.last_resort().is_some());
     let settings = Settings { spp: 64, max_bounces: 3, ..Settings::default() };
-    let path = sampled::path(&scene, &settings, Progress::NONE).series;
+    let path = by_rays::path(&scene, &settings, Progress::NONE).series;
     let total = path.image().total;
     assert!((total.mean - 1.0).abs().max_element() < 0.01 + 6.0 * total.std_error.max_element(), "{total:?}");
 }

@@ -9,12 +9,12 @@ use fredholm::diagnosis::candidates::{Members, own_seed};
 use fredholm::diagnosis::{
     Basis, Case, Diagnosis, Effort, Pictures, Region, Simulate, Slot, Verdict, diagnose, evidence, regions,
 };
+use fredholm::engine::Settings;
+use fredholm::engine::by_rays::{self, Estimator};
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
-use fredholm::worlds::Settings;
-use fredholm::worlds::sampled::{self, Estimator};
 use fredholm::zoo::{self, Bug, Stage};
 use std::fmt::Write;
 
@@ -37,7 +37,7 @@ struct Bench {
 impl Bench {
     fn new(stage: Stage, spp: u32) -> Self {
         let scene = Scene::new(&stage.load(SIZE).unwrap());
-        let render = sampled::terms(&scene, Estimator::Prefix, &settings(spp, own_seed(0)), Progress::NONE);
+        let render = by_rays::terms(&scene, Estimator::Prefix, &settings(spp, own_seed(0)), Progress::NONE);
         Self { right: Pictures::of(&render, SIZE), seen: regions::seen(&scene), scene }
     }
 
@@ -172,7 +172,7 @@ fn right_renderers(scene: &Scene, seed: u64) -> Vec<(String, Pictures)> {
     let with = |technique, sampling| Settings { technique, sampling, ..base.clone() };
     // whoever does not see all light says so, and is no right renderer of the scene
     let terms = |e, s: &Settings| {
-        let render = sampled::terms(scene, e, s, Progress::NONE);
+        let render = by_rays::terms(scene, e, s, Progress::NONE);
         render.series.unsampled.is_empty().then(|| Pictures::of(&render, SIZE))
     };
     let mut all: Vec<(String, Option<Pictures>)> = vec![];
@@ -196,7 +196,7 @@ fn right_renderers(scene: &Scene, seed: u64) -> Vec<(String, Pictures)> {
     all.push(("uniform directions".into(), terms(Estimator::Prefix, &with(Technique::Mis, Sampling::Uniform))));
     let albedo = Settings { roulette: Roulette::Albedo { from: 2 }, ..base.clone() };
     all.push(("roulette".into(), terms(Estimator::Prefix, &albedo)));
-    let path = sampled::path(scene, &base, Progress::NONE);
+    let path = by_rays::path(scene, &base, Progress::NONE);
     all.push(("path tracer".into(), Some(Pictures::of(&path, SIZE))));
     all.into_iter().filter_map(|(name, p)| Some((name, p?))).collect()
 }
@@ -230,7 +230,7 @@ fn false_alarms_keep_their_level() {
     for errors in [true, false] {
         let wrong = (0..runs).filter(|i| {
             let seed = account.seed().wrapping_add(*i);
-            let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(32, seed), Progress::NONE);
+            let render = by_rays::terms(&bench.scene, Estimator::Prefix, &settings(32, seed), Progress::NONE);
             let suspect = Pictures::of(&render, SIZE);
             let suspect = if errors { suspect } else { without_errors(suspect) };
             bench.judge(&suspect, None, alpha).p < alpha
@@ -246,7 +246,7 @@ fn a_bias_of_the_size_that_is_promised_is_seen() {
     let mut account = ledger::open("a_bias_of_the_size_that_is_promised_is_seen", 0);
     let bench = Bench::new(Stage::CORNELL, 1024);
     let alpha = account.spend(1);
-    let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(256, account.seed()), Progress::NONE);
+    let render = by_rays::terms(&bench.scene, Estimator::Prefix, &settings(256, account.seed()), Progress::NONE);
     let suspect = Pictures::of(&render, SIZE);
     let d = bench.judge(&suspect, None, alpha);
     assert_eq!(d.verdict, Verdict::Correct, "{}", d.worst);
@@ -260,7 +260,7 @@ fn a_bias_of_the_size_that_is_promised_is_seen() {
 #[test]
 fn an_unknown_mistake_has_no_name() {
     let bench = Bench::new(Stage::CORNELL, 1024);
-    let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(256, 5), Progress::NONE);
+    let render = by_rays::terms(&bench.scene, Estimator::Prefix, &settings(256, 5), Progress::NONE);
     let mut suspect = Pictures::of(&render, SIZE);
     // a gradient of brightness from left to right: a vignette, say
     for layer in &mut suspect.layers {
@@ -290,7 +290,7 @@ fn rules_name_the_number() {
         (|k| 0.5f64.powi(k - 1), "half-bounce", "1/2"),
         (|k| if k > 2 { 0.0 } else { 1.0 }, "truncated", "T2"),
     ] {
-        let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(256, 6), Progress::NONE);
+        let render = by_rays::terms(&bench.scene, Estimator::Prefix, &settings(256, 6), Progress::NONE);
         let mut suspect = without_errors(Pictures::of(&render, SIZE)).only(|s| matches!(s, Slot::Term(_)));
         for layer in &mut suspect.layers {
             let Slot::Term(k) = layer.slot else { continue };
@@ -306,7 +306,7 @@ fn rules_name_the_number() {
 #[test]
 fn turned_broken_and_repeated_pictures_are_noticed() {
     let bench = Bench::new(Stage::CORNELL, 1024);
-    let render = sampled::terms(&bench.scene, Estimator::Prefix, &settings(64, 7), Progress::NONE);
+    let render = by_rays::terms(&bench.scene, Estimator::Prefix, &settings(64, 7), Progress::NONE);
     let right = Pictures::of(&render, SIZE);
     let names = |p: &Pictures| {
         let d = bench.judge(p, None, 1e-6);
@@ -372,7 +372,7 @@ fn the_command_says_correct_or_names_the_mistake() {
     let scene = Scene::new(&Stage::CORNELL.load([16, 16]).unwrap());
     let s = Settings { spp: 256, seed: 9, max_bounces: 3, ..Settings::default() };
     let s = Settings { roulette: Roulette::Albedo { from: 2 }.after(3), ..s };
-    let good = sampled::terms(&scene, Estimator::Prefix, &s, Progress::NONE);
+    let good = by_rays::terms(&scene, Estimator::Prefix, &s, Progress::NONE);
     let bad = zoo::render(zoo::find("missing-pi-connection").unwrap(), &scene, &s, Progress::NONE);
     for (file, render) in [("good.exr", &good), ("bad.exr", &bad)] {
         let names: Vec<String> = (0..4).map(|k| format!("T{k:02}")).collect();
@@ -433,7 +433,7 @@ fn growing_samples_show_what_one_picture_cannot() {
             let s = settings(spp, 40 + u64::from(spp) * u64::from(bug != Some("same-numbers")));
             let render = match bug {
                 Some(bug) => zoo::render(zoo::find(bug).unwrap(), &scene, &s, Progress::NONE),
-                None => sampled::path(&scene, &s, Progress::NONE),
+                None => by_rays::path(&scene, &s, Progress::NONE),
             };
             write_exr(&desk, &format!("{name}_{spp}.exr"), [24, 24], &[("", render.total.mean.as_slice())]);
         }

@@ -7,6 +7,7 @@ use common::judge::{Judged, Jury, at};
 use common::open;
 use common::sampling::plan;
 use common::scenes::{bands, description};
+use fredholm::engine::Settings;
 use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Equilibrium, Roulette, Technique};
 use fredholm::math::{Key, Rgb};
@@ -15,8 +16,7 @@ use fredholm::operator::matrix_walk::Rows;
 use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::stats::Outcome;
-use fredholm::worlds::Settings;
-use fredholm::worlds::equilibrium::{Balance, Judgement, Origin, aggregate, at_points, judge, points};
+use fredholm::study::equilibrium::{Balance, Judgement, Origin, aggregate, at_points, judge, points};
 use glam::DVec3;
 
 const END: Roulette = Roulette::Albedo { from: 2 };

@@ -11,14 +11,14 @@
 mod common;
 
 use common::{assert_rate_at_most, open};
+use fredholm::engine::Settings;
+use fredholm::engine::by_rays::{self, Estimator, Sampled};
 use fredholm::estimator::Technique;
 use fredholm::progress::Progress;
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Scene, builtin};
 use fredholm::stats::{Comparison, Criterion, Evidence, Outcome, compare, half_width_95};
 use fredholm::terms::Series;
-use fredholm::worlds::Settings;
-use fredholm::worlds::sampled::{self, Estimator, Sampled};
 use rayon::prelude::*;
 
 /// One glowing square before black.
@@ -126,11 +126,11 @@ fn settings(technique: Technique, spp: u32, seed: u64) -> Settings {
 }
 
 fn terms(s: &Scene, estimator: Estimator, settings: &Settings) -> Sampled {
-    sampled::terms(s, estimator, settings, Progress::NONE)
+    by_rays::terms(s, estimator, settings, Progress::NONE)
 }
 
 fn path(s: &Scene, settings: &Settings) -> Sampled {
-    sampled::path(s, settings, Progress::NONE)
+    by_rays::path(s, settings, Progress::NONE)
 }
 
 fn judged(a: &Series, b: &Series) -> Comparison {

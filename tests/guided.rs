@@ -15,9 +15,9 @@ use common::judge::{Judged, Jury, at};
 use common::sampling::{Kind, TECHNIQUES, collect, film, plan};
 use common::scenes::{description, quad, room, sphere};
 use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, Technique};
+use fredholm::guide::{Guide, GuidedTransport, Recipe};
 use fredholm::math::direction::Frame;
 use fredholm::math::{Key, Purpose, Rgb, Rng};
-use fredholm::operator::guided::{Guide, GuidedTransport, Recipe};
 use fredholm::operator::{SceneTransport, Sensor, Step, Transport};
 use fredholm::progress::Progress;
 use fredholm::scene::description::{BsdfDescription, Colour, Description};
@@ -63,7 +63,7 @@ fn guide(description: &Description, recipe: Recipe) -> Guide {
 
 const COARSE: Recipe = Recipe {
     patches: 300,
-    fineness: fredholm::operator::guided::incident::Fineness { rays: 4, connections: 16 },
+    fineness: fredholm::guide::incident::Fineness { rays: 4, connections: 16 },
     bsdf: 0.1,
     emission: false,
 };

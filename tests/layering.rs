@@ -6,19 +6,22 @@ use std::{fs, path::Path};
 /// Rank of each folder of `src/`; a module may use modules of lower rank, and itself. Equal ranks are siblings that do
 /// not know each other. `main.rs`, `lib.rs` and `cli/` tie everything together and are exempt as users; nobody may use
 /// `cli`.
-const ORDER: [(&str, u32); 12] = [
+const ORDER: [(&str, u32); 15] = [
     ("math", 0),
     ("scene", 1),
     ("terms", 2),
-    ("operator", 3),
-    ("estimator", 4),
-    ("solver", 4),
-    ("stats", 5),
-    ("worlds", 6),
-    ("zoo", 7),
-    ("diagnosis", 8),
-    ("report", 9),
-    ("cli", 10),
+    ("progress", 3),
+    ("operator", 4),
+    ("estimator", 5),
+    ("solver", 5),
+    ("guide", 6),
+    ("stats", 7),
+    ("engine", 8),
+    ("study", 9),
+    ("zoo", 10),
+    ("diagnosis", 11),
+    ("report", 12),
+    ("cli", 13),
 ];
 
 fn rank(module: &str) -> Option<u32> {

@@ -317,7 +317,7 @@ fn a_mirror_wall_doubles_the_light() {
     for way in [Way::Light, Way::Bidirectional(Technique::Mis), Way::Bidirectional(Technique::Power)] {
         check_image(&mut jury, "image of a point", &d, way, 8192, &terms);
     }
-    // and the eye's walks cannot, which is said in `worlds::unsampled`
+    // and the eye's walks cannot, which is said in `engine::known::unsampled`
     let mut direct = terms.clone();
     direct[2] = DVec3::ZERO;
     check_image(&mut jury, "image of a point", &d, Way::Prefix(Technique::Mis), 1024, &direct);

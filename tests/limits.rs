@@ -6,6 +6,7 @@
 
 mod discrete;
 use discrete::*;
+use fredholm::engine::radius::{Radius, radius_limit};
 use fredholm::operator::form_factor::{FormFactors, VisibilitySampling, point_to_polygon};
 use fredholm::operator::matrix::PatchOperator;
 use fredholm::operator::patches::Patches;
@@ -14,7 +15,6 @@ use fredholm::scene::description::{Material, Sides};
 use fredholm::scene::{Description, Scene, load};
 use fredholm::solver::{Neumann, Radiosity, direct};
 use fredholm::stats::{convergence_order, limit};
-use fredholm::worlds::radius::{Radius, radius_limit};
 use glam::DVec3;
 use serde_json::Value;
 

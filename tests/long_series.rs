@@ -4,6 +4,11 @@
 mod common;
 
 use common::scenes::{bands, description, room, sphere};
+use fredholm::engine::Settings;
+use fredholm::engine::batches::Side;
+use fredholm::engine::by_rays::{self, Estimator};
+use fredholm::engine::known::growth::{FromEye, growth, proved};
+use fredholm::engine::known::resort::with_last_resort;
 use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, Technique, TermEstimator};
 use fredholm::math::Key;
@@ -12,16 +17,11 @@ use fredholm::progress::Progress;
 use fredholm::scene::{Scene, bsdf::Sampling};
 use fredholm::stats::evidence::Reason;
 use fredholm::stats::{Criterion, Detector, Outcome, compare};
+use fredholm::study::convergence::{Part, Recorder};
+use fredholm::study::equilibrium::{self, Origin, judge};
+use fredholm::study::roulette::beyond;
 use fredholm::terms::functional::image_replicates;
 use fredholm::terms::{Estimate, Variance};
-use fredholm::worlds::Settings;
-use fredholm::worlds::batches::Side;
-use fredholm::worlds::convergence::{Part, Recorder};
-use fredholm::worlds::equilibrium::{self, Origin, judge};
-use fredholm::worlds::growth::{FromEye, growth, proved};
-use fredholm::worlds::resort::with_last_resort;
-use fredholm::worlds::roulette::beyond;
-use fredholm::worlds::sampled::{self, Estimator};
 use glam::DVec3;
 
 const K: usize = 4;
@@ -114,8 +114,8 @@ fn infinite_variance_is_said_in_place_of_an_error() {
     let scene = furnace(0.999);
     let settings = Settings { spp: 32, max_bounces: K, ..Settings::default() };
     let lecture = Settings { roulette: Roulette::LECTURE, path_roulette: Roulette::LECTURE, ..settings.clone() };
-    let short = sampled::terms(&scene, Estimator::Prefix, &lecture, Progress::NONE);
-    let path = sampled::path(&scene, &lecture, Progress::NONE);
+    let short = by_rays::terms(&scene, Estimator::Prefix, &lecture, Progress::NONE);
+    let path = by_rays::path(&scene, &lecture, Progress::NONE);
     for s in [&short, &path] {
         assert_eq!(s.series.variance, Variance::Infinite);
         let image = s.series.image();
@@ -147,7 +147,13 @@ fn infinite_variance_is_said_in_place_of_an_error() {
     // and where noise falls: samples whose variance were finite would have a slope
     let mut recorder = Recorder::new(None, vec![64, 128, 256]);
     let longer = Settings { spp: 256, ..lecture.clone() };
-    let swept = sampled::recorded(&scene, Some(Estimator::Prefix), &longer, Progress::NONE, Some(&mut recorder));
+    let swept = by_rays::watched(
+        &scene,
+        Some(Estimator::Prefix),
+        &longer,
+        Progress::NONE,
+        Some(&mut |film| recorder.look(film)),
+    );
     let stands = recorder.stands();
     for (variance, known) in [(Variance::Finite, true), (swept.series.variance, false)] {
         let parts = Part::all(&stands, true, variance);
@@ -155,7 +161,7 @@ fn infinite_variance_is_said_in_place_of_an_error() {
         assert_eq!(all.slope().is_some(), known, "{variance:?}");
     }
     // by albedo everything keeps its error
-    let usual = sampled::path(&scene, &settings, Progress::NONE);
+    let usual = by_rays::path(&scene, &settings, Progress::NONE);
     assert!(usual.doubt.is_none() && usual.series.image().total.std_error.is_finite());
 }
 
@@ -169,7 +175,7 @@ fn a_channel_without_light_has_no_say() {
     )]));
     assert_eq!(scene.lit().as_dvec3(), DVec3::new(1.0, 1.0, 0.0));
     let settings = Settings { spp: 16, max_bounces: K, ..Settings::default() };
-    let path = sampled::path(&scene, &settings, Progress::NONE);
+    let path = by_rays::path(&scene, &settings, Progress::NONE);
     let mean = path.series.image().total.mean;
     assert!((mean - DVec3::new(2.0, 2.0, 0.0)).abs().max_element() < 0.2, "{mean}");
     assert!(path.series.cost.rays < 20 * path.series.cost.paths);

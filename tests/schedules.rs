@@ -15,6 +15,8 @@ mod common;
 use common::Account;
 use common::judge::{Judged, Jury};
 use common::sampling::{TECHNIQUES, collect, plan};
+use fredholm::engine::Settings;
+use fredholm::engine::by_matrix;
 use fredholm::estimator::record::record;
 use fredholm::estimator::render::Amount;
 use fredholm::estimator::{Prefix, Roulette, Technique, Vertices};
@@ -25,11 +27,9 @@ use fredholm::progress::Progress;
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
 use fredholm::stats::Noise;
+use fredholm::study::roulette::{self, Radii};
 use fredholm::terms::cross_moments::{CrossMoments, Value};
 use fredholm::terms::{Estimate, Recorded};
-use fredholm::worlds::Settings;
-use fredholm::worlds::discrete;
-use fredholm::worlds::roulette::{self, Radii};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 
@@ -250,7 +250,7 @@ fn compare(mut account: Account, scenes: &[(&str, u32)], schedules: &[&str], pat
         // not into the lamp: its rim would be all the noise there is
         let floor = ["camera.origin=[0,0.6,0.9]", "camera.target=[0,-0.9,-0.5]"];
         let (description, scene) = seen(name, side, if name == "cornell" { &floor } else { &[] });
-        let matrix = discrete::dense_matrix(&description, &scene, 100, 1.0, 0, Progress::NONE).unwrap();
+        let matrix = by_matrix::dense_matrix(&description, &scene, 100, 1.0, 0, Progress::NONE).unwrap();
         let radii = Radii::new(Some(&matrix.radiosity), &scene, LARGEST);
         assert!(radii.fourth < 0.95, "{name} at q = {LARGEST}: {radii:?}");
         let settings = Settings { max_bounces: 12, seed: account.seed(), ..Settings::default() };

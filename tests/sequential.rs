@@ -7,6 +7,9 @@ mod common;
 
 use common::sampling::plan;
 use common::{Noise, assert_rate_at_most, open};
+use fredholm::engine::Settings;
+use fredholm::engine::batches::Side;
+use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{PathTracer, Prefix, Roulette, Technique};
 use fredholm::math::{Key, Rgb};
@@ -19,9 +22,6 @@ use fredholm::stats::sequential::planned_batches;
 use fredholm::stats::{Criterion, Detector, MeanSequence, Outcome, critical};
 use fredholm::terms::functional::image_replicates;
 use fredholm::terms::{Functional, TermFilm};
-use fredholm::worlds::Settings;
-use fredholm::worlds::batches::Side;
-use fredholm::worlds::sampled::Estimator;
 use rayon::prelude::*;
 
 /// Batches of mean 0, in three shapes.

@@ -9,7 +9,7 @@ use fredholm::operator::form_factor::FormFactors;
 use fredholm::operator::matrix::*;
 use fredholm::operator::patches::Patches;
 use fredholm::scene::description::Geometry;
-use fredholm::solver::study::{History, Limits, Solver, System};
+use fredholm::solver::comparison::{History, Limits, Solver, System};
 use fredholm::solver::*;
 use glam::DVec3;
 use nalgebra::{DMatrix, SymmetricEigen};

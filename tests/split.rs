@@ -14,9 +14,9 @@ use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
 use fredholm::stats::critical;
+use fredholm::study::split::{Term, Unit, best, measure, optimal, reuse, work};
 use fredholm::terms::covariance::covariance;
 use fredholm::terms::scatter::Scatter;
-use fredholm::worlds::split::{Term, Unit, best, measure, optimal, reuse, work};
 
 const K: usize = 6;
 

@@ -8,6 +8,9 @@ use common::judge::{Judged, Jury};
 use common::sampling::{Collected, Start, Starts, collect, point};
 use common::scenes::{bands, description, quad};
 use common::truth::case;
+use fredholm::engine::Settings;
+use fredholm::engine::by_rays;
+use fredholm::engine::by_rays::Sampled;
 use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Plan, Prefix, Roulette, Technique, TermEstimator};
 use fredholm::math::Key;
@@ -18,8 +21,6 @@ use fredholm::scene::description::{BsdfDescription, Choice, Geometry, LightDescr
 use fredholm::scene::{Description, Scene, Selection, Vertex};
 use fredholm::terms::Estimate;
 use fredholm::terms::functional::{Replicates, image_replicates};
-use fredholm::worlds::sampled::Sampled;
-use fredholm::worlds::{Settings, sampled};
 use fredholm::zoo::bookkeeping::{Clamped, Truncated};
 use fredholm::zoo::judge::{Judgement, judge};
 use fredholm::zoo::walk::Whole;
@@ -338,7 +339,7 @@ fn settings(spp: u32, seed: u64) -> Settings {
 /// The terms of a stage to many digits, by the estimator of the house.
 fn reference(scene: &Scene, seed: u64) -> Sampled {
     let chosen = if scene.any_delta_surface() { 4096 } else { 8192 };
-    sampled::terms(scene, sampled::Estimator::Prefix, &settings(chosen, seed), Progress::NONE)
+    by_rays::terms(scene, by_rays::Estimator::Prefix, &settings(chosen, seed), Progress::NONE)
 }
 
 struct Stages(BTreeMap<&'static str, (Scene, Sampled)>, u64);

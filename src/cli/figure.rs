@@ -3,13 +3,13 @@
 use super::progress::{Bar, stop_flag};
 use super::{Ending, Failure, args, output, preflight, solve};
 use clap::{Args, Parser};
+use fredholm::engine::Settings;
+use fredholm::engine::known::resort::with_last_resort;
 use fredholm::estimator::Roulette;
 use fredholm::report::{stages as report, summary, typeset::Caption, write_atomically};
 use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
-use fredholm::worlds::Settings;
-use fredholm::worlds::resort::with_last_resort;
-use fredholm::worlds::stages::{KAJIYA, NOISE, Recipe, reference_seed, render_stages};
+use fredholm::study::stages::{KAJIYA, NOISE, Recipe, reference_seed, render_stages};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;

@@ -2,13 +2,13 @@
 
 use super::{Ending, Failure};
 use clap::Args;
+use fredholm::engine::known::coplanar;
 use fredholm::report::table;
 use fredholm::scene::coplanar::{Kind, Relation};
 use fredholm::scene::description::{
     BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
 };
 use fredholm::scene::{Scene, SurfaceSensor, builtin, load};
-use fredholm::worlds::coplanar;
 use serde_json::json;
 
 /// Arguments of `info`.

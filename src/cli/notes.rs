@@ -1,8 +1,13 @@
 //! What a run says beside its tables: the judgement, facts about the matrix and the decay, warnings.
 
 use super::solve::Solved;
+use fredholm::engine::by_matrix::{Discrete, Unlit};
+use fredholm::engine::by_rays::Estimator;
+use fredholm::engine::discretisation::{Difference, SampledRows};
+use fredholm::engine::guided::Prepared;
+use fredholm::engine::known::growth;
 use fredholm::estimator::Roulette;
-use fredholm::operator::guided::warp::CELLS;
+use fredholm::guide::warp::CELLS;
 use fredholm::report::extrapolation::{self, Measured};
 use fredholm::report::refine::limit_words;
 use fredholm::scene::{Description, bsdf};
@@ -10,11 +15,6 @@ use fredholm::stats::evidence::{JUDGED, SHOWN};
 use fredholm::stats::{self, Comparison, Evidence, TermMeans, observed_rate};
 use fredholm::terms::Series;
 use fredholm::terms::functional::Replicates;
-use fredholm::worlds::discrete::{Discrete, Unlit};
-use fredholm::worlds::discretisation::{Difference, SampledRows};
-use fredholm::worlds::growth;
-use fredholm::worlds::guided::Prepared;
-use fredholm::worlds::sampled::Estimator;
 use glam::DVec3;
 use nalgebra::DMatrix;
 

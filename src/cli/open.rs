@@ -2,10 +2,10 @@
 
 use super::{Failure, args::Run, output, solve};
 use clap::Args;
+use fredholm::engine::known::coplanar;
+use fredholm::engine::known::resort::with_last_resort;
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Description, Scene};
-use fredholm::worlds::coplanar;
-use fredholm::worlds::resort::with_last_resort;
 use std::path::PathBuf;
 
 /// What changes a scene.

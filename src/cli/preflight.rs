@@ -2,13 +2,15 @@
 
 use super::Failure;
 use super::args::{FactorsName, Run, WorldName};
+use fredholm::engine::Settings;
+use fredholm::engine::by_matrix::MatrixError;
+use fredholm::engine::by_rays::Estimator;
+use fredholm::engine::discretisation::Factors;
+use fredholm::engine::known::length::{Length, length};
+use fredholm::engine::known::trap::trapped;
+use fredholm::engine::known::unsampled::unsampled;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::scene::{Description, Scene, bsdf::Sampling};
-use fredholm::worlds::Settings;
-use fredholm::worlds::discrete::MatrixError;
-use fredholm::worlds::discretisation::Factors;
-use fredholm::worlds::length::{Length, length};
-use fredholm::worlds::{sampled::Estimator, trap::trapped, unsampled::unsampled};
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 /// The sums of all terms, pixels and replicates are held at once: better refused now than killed later.

@@ -3,9 +3,9 @@
 use super::progress::Bar;
 use super::zoo::{Zoo, brief, introduction, settings, whole};
 use super::{Ending, Failure, paragraphs, print};
+use fredholm::engine::by_rays;
 use fredholm::math::{Key, Purpose, Rng};
 use fredholm::scene::Scene;
-use fredholm::worlds::sampled;
 use fredholm::zoo::signature::measured;
 use fredholm::zoo::{self, Bug};
 use std::io::BufRead;
@@ -23,7 +23,7 @@ pub fn run(args: &Zoo) -> Result<Ending, Failure> {
     print("Which mistake was made? rₖ = Tₖ of the suspect / Tₖ of the right renderer. Answer with a number.")?;
     for (round, &bug) in order.iter().cycle().take(args.rounds as usize).enumerate() {
         let scene = Scene::new(&bug.exposed_by.load(args.size)?);
-        let truth = sampled::terms(&scene, sampled::Estimator::Prefix, &settings, progress);
+        let truth = by_rays::terms(&scene, by_rays::Estimator::Prefix, &settings, progress);
         let suspect = zoo::render(bug, &scene, &settings, progress);
         bar.finish();
         if progress.stopped() {

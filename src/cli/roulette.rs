@@ -3,6 +3,8 @@
 
 use super::progress::Bar;
 use super::{Ending, Failure, args, output, preflight, solve, sweep};
+use fredholm::engine::Settings;
+use fredholm::engine::known::resort::with_last_resort;
 use fredholm::estimator::{self, Technique};
 use fredholm::report::roulette::{self as rows, Row};
 use fredholm::report::typeset::Caption;
@@ -11,10 +13,8 @@ use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::load;
 use fredholm::scene::{Description, Scene, Selection};
 use fredholm::stats::Noise;
+use fredholm::study::roulette::{self, Radii};
 use fredholm::terms::cross_moments::{Recorded, Value};
-use fredholm::worlds::Settings;
-use fredholm::worlds::resort::with_last_resort;
-use fredholm::worlds::roulette::{self, Radii};
 use std::time::Instant;
 
 /// Shown below the help.
@@ -97,7 +97,7 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
         sampling: args.sampling,
         ..Settings::default()
     };
-    preflight::light_is_seen(&scene, &[fredholm::worlds::sampled::Estimator::Prefix], &settings, &[])?;
+    preflight::light_is_seen(&scene, &[fredholm::engine::by_rays::Estimator::Prefix], &settings, &[])?;
     preflight::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
     let name = format!("{}-roulette", description.name);
     let folder = output::folder(args.shared.out.as_deref(), &name, &command, args.shared.force)?;

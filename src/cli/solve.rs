@@ -5,6 +5,11 @@ use super::progress::Bar;
 use super::radiosity::Export;
 use super::{Ending, Failure, notes, output, preflight, write};
 use crate::cli::open::{self, Opened};
+use fredholm::engine::Settings;
+use fredholm::engine::by_matrix::{self, Discrete, Matrix, MatrixError};
+use fredholm::engine::by_rays::{self, Estimator, Sampled};
+use fredholm::engine::discretisation::{Difference, Factors};
+use fredholm::engine::guided::{self, Prepared};
 use fredholm::estimator::Roulette;
 use fredholm::math::Points;
 use fredholm::progress::Progress;
@@ -13,15 +18,12 @@ use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::{Description, Scene};
 use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, compare, discretisation};
+use fredholm::study::roulette;
+use fredholm::study::roulette::Radii;
+use fredholm::study::strategies::{self, Strategy};
+use fredholm::study::surface;
 use fredholm::terms::functional::Replicates;
 use fredholm::terms::{Recorded, Series, Variance};
-use fredholm::worlds::discrete::{self, Discrete, Matrix, MatrixError};
-use fredholm::worlds::discretisation::{Difference, Factors};
-use fredholm::worlds::guided::{self, Prepared};
-use fredholm::worlds::pyramid::{self, Strategy};
-use fredholm::worlds::roulette::Radii;
-use fredholm::worlds::sampled::{self, Estimator, Sampled};
-use fredholm::worlds::{Settings, roulette, surface};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -223,22 +225,22 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         if !stopped() {
             let (scene, settings) = (&found.scene, &found.settings);
             let guided = found.guide.as_ref().and_then(|g| g.terms(scene, estimator, settings, progress));
-            let result = guided.unwrap_or_else(|| sampled::terms(scene, estimator, settings, progress));
+            let result = guided.unwrap_or_else(|| by_rays::terms(scene, estimator, settings, progress));
             found.terms.insert(0, result);
         }
     }
     if run.strategies && !stopped() {
-        found.strategies = pyramid::strategies(&found.scene, &found.settings, progress);
+        found.strategies = strategies::strategies(&found.scene, &found.settings, progress);
     }
     if worlds.contains(&WorldName::Path) && !stopped() {
         let (scene, settings) = (&found.scene, &found.settings);
         found.path = Some(match &found.guide {
             Some(guide) => guide.path(scene, settings, progress),
-            None => sampled::path(scene, settings, progress),
+            None => by_rays::path(scene, settings, progress),
         });
     }
     if worlds.contains(&WorldName::Radiosity) && !stopped() {
-        match discrete::radiosity(&found.description, &found.scene, &found.settings, progress) {
+        match by_matrix::radiosity(&found.description, &found.scene, &found.settings, progress) {
             Ok(result) => found.radiosity = Some(result),
             Err(MatrixError::Stopped) => {}
             Err(e) => return Err(e.into()),
@@ -323,7 +325,7 @@ pub fn coarse(description: &Description, scene: &Scene) -> Option<Matrix<Radiosi
     if scene.sides() > 400 || description.radiosity_suits().is_err() {
         return None;
     }
-    discrete::dense_matrix(description, scene, 150, 1.0, 0, Progress::NONE).ok()
+    by_matrix::dense_matrix(description, scene, 150, 1.0, 0, Progress::NONE).ok()
 }
 
 /// The schedule that was typed; none if there is none, or if it is yet to be found.
@@ -363,7 +365,7 @@ fn apart(run: &Run, found: &Solved, progress: Progress<'_>) -> Result<Option<Dif
 /// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.
 fn orders(found: &Solved, progress: Progress<'_>) -> Result<Vec<Series>, Failure> {
     let coarsest = (found.settings.patches / 16).max(1);
-    let matrix = discrete::matrix(&found.description, &found.scene, coarsest, &found.settings, progress);
+    let matrix = by_matrix::matrix(&found.description, &found.scene, coarsest, &found.settings, progress);
     let picture = match matrix {
         Ok(m) => m.through_camera(&found.scene, &found.settings, progress),
         Err(MatrixError::Stopped) => return Ok(vec![]),

@@ -4,7 +4,7 @@ use super::Failure;
 use fredholm::report::pyramid::{Stone, draw};
 use fredholm::report::typeset::Caption;
 use fredholm::report::{exr, table};
-use fredholm::worlds::pyramid::Strategy;
+use fredholm::study::strategies::Strategy;
 use std::path::Path;
 
 /// Names of the files.

@@ -7,15 +7,16 @@ use super::args::{self, EstimatorName, Over, WorldName};
 use super::progress::Bar;
 use super::{Ending, Failure, output, preflight, solve};
 use crate::cli::open::{self, Opened};
+use fredholm::engine::Settings;
+use fredholm::engine::by_rays::{self, Estimator};
 use fredholm::estimator::Roulette;
 use fredholm::progress::Progress;
 use fredholm::report::sweep::{self, Row, Sweep};
 use fredholm::report::typeset::Caption;
 use fredholm::report::{summary, write_atomically};
 use fredholm::scene::{Description, Scene};
+use fredholm::study::roulette;
 use fredholm::terms::Series;
-use fredholm::worlds::sampled::{self, Estimator};
-use fredholm::worlds::{Settings, roulette};
 use std::path::Path;
 use std::time::Instant;
 
@@ -74,7 +75,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
             break;
         }
         let name = format!("{over} {}", case.value);
-        let mut result = sampled::terms(&scene, case.estimator, &case.settings, progress.named(&name));
+        let mut result = by_rays::terms(&scene, case.estimator, &case.settings, progress.named(&name));
         rows.push(Row::new(&case.value, &result));
         result.series.label = format!("{over} {}: {}", case.value, result.series.label);
         series.push(result.series);
@@ -255,7 +256,7 @@ pub(super) fn number(text: &str, most: u32) -> Result<u32, String> {
 fn share_rays(cases: &mut [Case], scene: &Scene) {
     let price = |case: &Case| {
         let trial = Settings { spp: 1, ..case.settings.clone() };
-        let cost = sampled::terms(scene, case.estimator, &trial, Progress::NONE).series.cost;
+        let cost = by_rays::terms(scene, case.estimator, &trial, Progress::NONE).series.cost;
         cost.rays as f64 / cost.paths as f64
     };
     let prices: Vec<f64> = cases.iter().map(price).collect();

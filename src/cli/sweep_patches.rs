@@ -3,10 +3,12 @@
 use super::progress::Bar;
 use super::{Ending, Failure, args, output, preflight, solve};
 use crate::cli::open::{self, Opened};
+use fredholm::engine::Settings;
+use fredholm::engine::discretisation::Factors;
 use fredholm::estimator::Roulette;
 use fredholm::report::typeset::Caption;
 use fredholm::report::{drift, refine as report, summary, write_atomically};
-use fredholm::worlds::{Settings, discretisation::Factors, refine};
+use fredholm::study::refinement;
 use std::time::Instant;
 
 /// Meshes of these sizes unless told otherwise: h halves from one to the next.
@@ -59,7 +61,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let bar = Bar::plain(run.shared.quiet);
     let progress = bar.progress();
     let eigenvalues = args.eigenvalues.unwrap_or(0).into();
-    let found = refine::refine(&description, &scene, &sizes, eigenvalues, &settings, progress)?;
+    let found = refinement::refine(&description, &scene, &sizes, eigenvalues, &settings, progress)?;
     bar.finish();
     let stopped = progress.stopped();
     if found.meshes.is_empty() {

@@ -5,9 +5,11 @@ use super::progress::Bar;
 use super::sweep::usage;
 use super::{Ending, Failure, output, preflight, solve};
 use crate::cli::open::{self, Opened};
+use fredholm::engine::Settings;
+use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::Roulette;
 use fredholm::report::{split as report, summary, typeset::Caption, write_atomically};
-use fredholm::worlds::{Settings, sampled::Estimator, split};
+use fredholm::study::split;
 use std::time::Instant;
 
 /// Measures the three ways.

@@ -7,6 +7,9 @@ use super::sweep::{number, usage, values};
 use super::{Ending, Failure, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
+use fredholm::engine::Settings;
+use fredholm::engine::by_rays::{self, Estimator};
+use fredholm::engine::known::unsampled::unsampled;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::math::Points;
 use fredholm::report::sweep::fall::{self, Fall};
@@ -14,11 +17,10 @@ use fredholm::report::typeset::Caption;
 use fredholm::report::{exr, summary, write_atomically};
 use fredholm::scene::{Description, Scene};
 use fredholm::stats::Evidence;
+use fredholm::study::convergence::{Recorder, Reference};
+use fredholm::study::roulette;
+use fredholm::study::stages::reference_seed;
 use fredholm::terms::TermImage;
-use fredholm::worlds::convergence::{Recorder, Reference};
-use fredholm::worlds::sampled::{self, Estimator};
-use fredholm::worlds::stages::reference_seed;
-use fredholm::worlds::{Settings, roulette, unsampled::unsampled};
 use std::path::Path;
 use std::time::Instant;
 
@@ -221,7 +223,7 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
     let reference = match planned {
         Some(Planned::Read(reference)) => Some(*reference),
         Some(Planned::Render(estimator, settings)) => {
-            let result = sampled::terms(&scene, estimator, &settings, progress.named("reference"));
+            let result = by_rays::terms(&scene, estimator, &settings, progress.named("reference"));
             let mut reference = Reference::from(result);
             reference.label = format!("{}, {} spp, seed {}", reference.label, settings.spp, settings.seed);
             Some(reference)
@@ -237,7 +239,8 @@ pub fn run(args: &args::Sweep) -> Result<Ending, Failure> {
         }
         let mut recorder = Recorder::new(reference.as_ref(), at.clone());
         let progress = progress.named(&case.label);
-        let result = sampled::recorded(&scene, case.estimator, &case.settings, progress, Some(&mut recorder));
+        let result =
+            by_rays::watched(&scene, case.estimator, &case.settings, progress, Some(&mut |film| recorder.look(film)));
         let tail = !result.series.image().tail.is_none();
         let stands = recorder.stands();
         if !stands.is_empty() {

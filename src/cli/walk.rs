@@ -4,18 +4,18 @@ use super::progress::Bar;
 use super::{Ending, Failure, args, notes, output, preflight};
 use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
+use fredholm::engine::Settings;
+use fredholm::engine::by_matrix::{self, Matrix, MatrixError};
+use fredholm::engine::by_rays::Estimator;
+use fredholm::engine::discretisation::Factors;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::report::typeset::Caption;
 use fredholm::report::{summary, table, walk as report, write_atomically};
 use fredholm::scene::Description;
 use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, Outcome, compare};
-use fredholm::worlds::Settings;
-use fredholm::worlds::discrete::{self, Matrix, MatrixError};
-use fredholm::worlds::discretisation::Factors;
-use fredholm::worlds::sampled::Estimator;
-use fredholm::worlds::walk::{self, Walked, Walker};
-use fredholm::worlds::zero_variance::{self, ZeroVariance};
+use fredholm::study::walk::{self, Walked, Walker};
+use fredholm::study::zero_variance::{self, ZeroVariance};
 use std::path::Path;
 use std::time::Instant;
 
@@ -121,7 +121,7 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
     let bar = Bar::plain(args.shared.quiet);
     let progress = bar.progress();
     let mesh = |patches: usize| -> Result<Option<Matrix<Radiosity>>, Failure> {
-        match discrete::dense_matrix(&description, &scene, patches, 1.0, max_bounces, progress) {
+        match by_matrix::dense_matrix(&description, &scene, patches, 1.0, max_bounces, progress) {
             Ok(m) => Ok(Some(m)),
             Err(MatrixError::Stopped) => Ok(None),
             Err(e) => Err(e.into()),

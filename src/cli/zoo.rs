@@ -3,6 +3,8 @@
 use super::progress::Bar;
 use super::{Ending, Failure, output, paragraphs, print, quiz};
 use clap::Args;
+use fredholm::engine::Settings;
+use fredholm::engine::by_rays::Sampled;
 use fredholm::report::contact_sheet::{self, Cell};
 use fredholm::report::picture::auto_gain_beside_lamps;
 use fredholm::report::plot::Point;
@@ -12,11 +14,9 @@ use fredholm::report::typeset::{Caption, superscript};
 use fredholm::report::{ReportError, exr, half_width_95, write_atomically};
 use fredholm::scene::Scene;
 use fredholm::terms::Functional;
-use fredholm::worlds::Settings;
-use fredholm::worlds::sampled::Sampled;
 use fredholm::zoo::signature::{Ratio, measured};
 use fredholm::zoo::{self, Bug, Stage};
-use fredholm::{estimator::Roulette, worlds::sampled};
+use fredholm::{engine::by_rays, estimator::Roulette};
 use std::path::{Path, PathBuf};
 
 /// K of the zoo.
@@ -185,7 +185,7 @@ fn everyone(args: &Zoo) -> Result<Ending, Failure> {
         if !rights.iter().any(|r| r.0 == stage) {
             let scene = Scene::new(&stage.load(args.size)?);
             let few = Settings { spp: 4 * settings.spp, ..settings.clone() };
-            let right = sampled::terms(&scene, sampled::Estimator::Prefix, &few, progress);
+            let right = by_rays::terms(&scene, by_rays::Estimator::Prefix, &few, progress);
             write(&place(&folder, stage, "correct")?, args.size, &right)?;
             rights.push((stage, scene, right.series.image().clone()));
         }

@@ -4,11 +4,11 @@
 
 use super::elimination::Simulate;
 use super::picture::Pictures;
+use crate::engine::Settings;
+use crate::engine::by_rays::Sampled;
 use crate::math::fnv1a;
 use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::worlds::Settings;
-use crate::worlds::sampled::Sampled;
 use crate::zoo;
 use std::collections::BTreeMap;
 use std::sync::Mutex;

@@ -6,8 +6,8 @@
 //! | S | the whole image, Σ_k S_k with the tail | [`Slot::Whole`] |
 //! | s | standard error of a pixel, where the file has it | [`Layer::std_error`] |
 
+use crate::engine::by_rays::Sampled;
 use crate::terms::TermImage;
-use crate::worlds::sampled::Sampled;
 use serde::Serialize;
 
 /// Which part of L = Σ T^k E a picture shows.

@@ -10,7 +10,7 @@
 //!
 //! There are as many particles as there are camera paths, one for each (pixel, sample), and each may add to any pixel:
 //! a splat is divided by the number of pixels, and errors come from whole replicates. What the eye sees in a mirror or
-//! through glass no particle can reach, because no connection to the eye passes a delta vertex there: `worlds::unsampled`.
+//! through glass no particle can reach, because no connection to the eye passes a delta vertex there: `engine::known::unsampled`.
 //! Reference: Arvo, *Backward Ray Tracing* (1986); Dutré, Lafortune, Willems, *Monte Carlo Light Tracing* (1993).
 
 use super::{Job, Paths, Plan, TermEstimator, TermSink};

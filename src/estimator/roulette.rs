@@ -6,7 +6,7 @@
 //!
 //! How large q may be is another matter: with constant survival s the variance is finite only where the spectral radius of
 //! ρ²F/s is below 1 (`q < 1 − ρ²` in a furnace), and the *measured* variance can be trusted only where the fourth moment is
-//! finite (`ρ⁴ < (1 − q)³`). With s = ρ that operator is T itself. `worlds::growth` measures the radius where it is not known.
+//! finite (`ρ⁴ < (1 − q)³`). With s = ρ that operator is T itself. `engine::known::growth` measures the radius where it is not known.
 //!
 //! Roulette by albedo ends no path where the albedo is 1, or is only known to be at most 1. Two rules end those, and neither makes
 //! an infinite variance out of a finite one:
@@ -80,7 +80,7 @@ pub enum Roulette {
 }
 
 /// A path that is one of so many copies splits no more: unbiased, since it goes on with weight 1 for certain. Where weights still grow
-/// then, `worlds::growth` sees it.
+/// then, `engine::known::growth` sees it.
 const CROWD: u32 = 64;
 
 /// Survivors of roulette by contribution weigh no more than ten times what they did; what is lighter still is tested at every

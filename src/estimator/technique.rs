@@ -13,7 +13,7 @@
 //! | through a connection, p° = 0 (a point light) | 0 | 1 | 1 | 1 |
 //!
 //! The fourth column is the balance heuristic, the fifth the power heuristic with exponent 2. `Scatter` alone breaks the rule, for
-//! lights without area: `worlds::unsampled` says so, and nothing goes dark in silence.
+//! lights without area: `engine::known::unsampled` says so, and nothing goes dark in silence.
 //! Reference: Veach and Guibas, *Optimally Combining Sampling Techniques* (1995).
 
 use crate::math::Columns;

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | continuous | rays in a scene: can be sampled | [`scene_transport`] |
 //! | discrete | a matrix over patches, diag(ρ) F: can be applied | [`patches`]; [`form_factor`] and [`matrix`], or stored [`rays`] |
-//! | walk | a random walk on that matrix: can be sampled, and is known exactly | [`matrix_walk`], [`guided_walk`] |
+//! | walk | a random walk on that matrix: can be sampled, and is known exactly | [`matrix_walk`] |
 //!
 //! Sampling is the trait [`Transport`]; applying is [`matrix::LinearOperator`], and [`algebra`] combines what can be applied.
 
@@ -12,8 +12,6 @@ pub mod adjoint;
 pub mod algebra;
 pub mod edges;
 pub mod form_factor;
-pub mod guided;
-pub mod guided_walk;
 pub mod matrix;
 pub mod matrix_walk;
 pub mod modes;
@@ -24,8 +22,6 @@ pub mod scene_transport;
 pub mod transport;
 
 pub use adjoint::{Adjoint, Role};
-pub use guided::{Guide, GuidedTransport};
-pub use guided_walk::GuidedWalk;
 pub use matrix_walk::MatrixWalk;
 pub use scene_transport::SceneTransport;
 pub use transport::{Expected, Samples, Seen, Sensor, Step, Transport, Wave};

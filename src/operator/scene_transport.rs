@@ -127,14 +127,14 @@ impl SceneTransport<'_> {
 
     /// The step that a ray makes when it arrives at `state`.
     #[inline(always)]
-    pub(super) fn step(&self, at: &Vertex, state: Vertex, weight: Rgb, pdf: f32, delta: bool) -> Step<Vertex> {
+    pub(crate) fn step(&self, at: &Vertex, state: Vertex, weight: Rgb, pdf: f32, delta: bool) -> Step<Vertex> {
         let (pdf, other_pdf) = if delta { (pdf, 0.0) } else { self.densities(at, &state, pdf) };
         Step { state, weight, pdf, other_pdf }
     }
 
     /// A connection before anybody has looked whether it is blocked, and the normal on its side: nothing where it is zero.
     #[inline(always)]
-    pub(super) fn propose(&self, at: &Vertex, u: [f32; 4]) -> Option<(Step<Vertex>, Vec3)> {
+    pub(crate) fn propose(&self, at: &Vertex, u: [f32; 4]) -> Option<(Step<Vertex>, Vec3)> {
         if self.scene.lights.is_empty() || !at.on_surface() {
             return None;
         }
@@ -259,7 +259,7 @@ impl SceneTransport<'_> {
     /// Connections of a wave to the light points in `wave.rays`, in packets. `share` is the part of the cosine in the density of
     /// scattering.
     #[inline(always)]
-    pub(super) fn connect_packets(&self, wave: &mut VertexWave, n: usize, out: &mut Samples, share: f32) {
+    pub(crate) fn connect_packets(&self, wave: &mut VertexWave, n: usize, out: &mut Samples, share: f32) {
         connections(&wave.p, &wave.n, &mut wave.rays, out, n);
         let mut shadow = 0;
         for i in 0..n {
@@ -285,7 +285,7 @@ impl SceneTransport<'_> {
     /// Scatters a wave by the numbers in `wave.rays.u`, in packets. `ratio(out, i)` is the density of number pair i over that of
     /// the cosine, `share` the part of the cosine in it.
     #[inline(always)]
-    pub(super) fn scatter_packets(
+    pub(crate) fn scatter_packets(
         &self,
         wave: &mut VertexWave,
         n: usize,

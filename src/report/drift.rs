@@ -17,7 +17,7 @@ use super::{
     table::{Side, aligned},
     typeset::Caption,
 };
-use crate::worlds::refine::{Ends, Mesh, Refinement};
+use crate::study::refinement::{Ends, Mesh, Refinement};
 use plotters::style::RGBColor;
 
 /// The meshes whose spectrum is known.

@@ -10,7 +10,7 @@ use super::{
     typeset::{Caption, LINE, SANS, caption_elements, page, superscript, text_element, text_width},
 };
 
-use crate::worlds::pyramid::Strategy;
+use crate::study::strategies::Strategy;
 
 const LABEL: f64 = 13.0;
 const NOTE: f64 = 10.5;

@@ -14,9 +14,9 @@ use super::{
     table::{Side, aligned, significant},
     typeset::{Caption, superscript},
 };
+use crate::engine::radius::{Radius, radius_limit};
 use crate::stats::{Limit, Order, convergence_order};
-use crate::worlds::radius::{Radius, radius_limit};
-use crate::worlds::refine::{Mesh, Quantity, Refinement};
+use crate::study::refinement::{Mesh, Quantity, Refinement};
 
 /// Quantity by quantity: the error of the image mean on every mesh and the fitted order, of the mean and of the image.
 pub fn table(r: &Refinement, max_bounces: usize) -> String {
@@ -199,7 +199,7 @@ const TILE: usize = 4;
 /// If the text cannot be drawn, which is a defect.
 pub fn places(r: &Refinement, [w, h]: [usize; 2], range: f64, caption: &Caption) -> Result<Sheet, ReportError> {
     // indirect light: what a matrix is asked for
-    let indirect = |s: &crate::worlds::sampled::Sampled, i: usize| -> f64 {
+    let indirect = |s: &crate::engine::by_rays::Sampled, i: usize| -> f64 {
         let direct: f64 = s.terms.iter().take(2).flat_map(|t| t.mean[i]).map(f64::from).sum();
         s.total.mean[i].iter().map(|&x| f64::from(x)).sum::<f64>() - direct
     };

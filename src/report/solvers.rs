@@ -18,7 +18,7 @@ use super::{
     typeset::Caption,
 };
 use crate::solver::accelerate::{self, Accelerated, METHODS};
-use crate::solver::study::{History, Solver};
+use crate::solver::comparison::{History, Solver};
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
 

@@ -4,7 +4,7 @@
 //! equal: Σσ² · Σc      optimal: (Σ σ√c)²      prefix: 1ᵀC1 · c       each the product of variance and cost of the sum
 //! ```
 //!
-//! Reference and symbols: [`worlds::split`](crate::worlds::split).
+//! Reference and symbols: [`study::split`](crate::study::split).
 
 use super::{
     ReportError,
@@ -14,8 +14,8 @@ use super::{
     table::{Side, aligned, significant},
     typeset::{Caption, superscript},
 };
+use crate::study::split::{REPLICATES, Study, Term, Unit, Work, best, work};
 use crate::terms::covariance::Covariance;
-use crate::worlds::split::{REPLICATES, Study, Term, Unit, Work, best, work};
 use plotters::{prelude::RGBColor, style::text_anchor::HPos};
 
 /// One way to spend the samples.

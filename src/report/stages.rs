@@ -1,6 +1,6 @@
 //! One image as it grows: contact sheet, table and CSV, with the mean that the samples have and the mean that the screen shows.
 //!
-//! Symbols: [`worlds::stages`](crate::worlds::stages). One gain for all images, that of the reference where no lamp is seen.
+//! Symbols: [`study::stages`](crate::study::stages). One gain for all images, that of the reference where no lamp is seen.
 
 use super::{
     ReportError,
@@ -10,7 +10,7 @@ use super::{
     table::{Side, aligned, average, significant},
     typeset::Caption,
 };
-use crate::worlds::stages::Grown;
+use crate::study::stages::Grown;
 
 /// The numbers of one image.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,9 +21,9 @@ mod figure;
 pub use figure::draw;
 
 use super::table::{Side, aligned, average, error, significant};
+use crate::engine::by_rays::Sampled;
 use crate::terms::variance::Variance;
 use crate::terms::{Estimate, Functional};
-use crate::worlds::sampled::Sampled;
 
 /// What one value gave.
 #[derive(Clone, Debug, PartialEq)]

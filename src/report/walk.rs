@@ -18,8 +18,8 @@ use super::{
     table::{Side, aligned, average, error, significant},
     typeset::{Caption, superscript},
 };
-use crate::worlds::walk::Walked;
-use crate::worlds::zero_variance::{Guide, Led, Spread, ZeroVariance};
+use crate::study::walk::Walked;
+use crate::study::zero_variance::{Guide, Led, Spread, ZeroVariance};
 
 const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 

@@ -258,7 +258,7 @@ impl Scene {
         self.lit
     }
 
-    /// From which vertex on, and with which probability at least, paths end that nothing else ends; see `worlds::resort`.
+    /// From which vertex on, and with which probability at least, paths end that nothing else ends; see `engine::known::resort`.
     #[inline(always)]
     pub fn last_resort(&self) -> Option<(usize, f32)> {
         self.last_resort

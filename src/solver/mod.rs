@@ -10,11 +10,12 @@
 //! | by LU | [`direct`] |
 //! | to rounding without a matrix | [`settle`] |
 //! | step by step, to be watched ([`Watched`]) | [`PartialSums`], [`Jacobi`], [`Sor`], [`Southwell`], [`Chebyshev`], [`ConjugateGradients`], [`Gmres`] |
-//! | all of them beside each other | [`study`] |
+//! | all of them beside each other | [`comparison`] |
 //! | by extrapolation of the series | [`accelerate`] |
 
 pub mod accelerate;
 mod chebyshev;
+pub mod comparison;
 pub mod direct;
 mod iteration;
 mod krylov;
@@ -23,7 +24,6 @@ mod radiosity;
 mod settle;
 mod southwell;
 mod stationary;
-pub mod study;
 
 pub use chebyshev::Chebyshev;
 pub use iteration::{Iteration, IterationStep, Watched, residual};

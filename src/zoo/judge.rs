@@ -13,10 +13,10 @@
 //! What the [evidence](crate::stats::evidence) will not carry is not judged. A term that is black altogether is judged by what the
 //! reference, which walks the same way, would have seen in as many paths. Samples that are not finite settle the matter.
 
+use crate::engine::by_rays::Sampled;
 use crate::stats::hypothesis::ROUNDING;
 use crate::stats::{Evidence, Measured, difference, holm, two_sided_p, variance_slope};
 use crate::terms::{Estimate, Events};
-use crate::worlds::sampled::Sampled;
 
 /// Rounding of a walk of a few dozen vertices in `f32`, as a multiple of [`ROUNDING`].
 const LONG_WALKS: f64 = 50.0;

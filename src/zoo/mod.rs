@@ -45,13 +45,13 @@ pub use mistake::{Mistake, Right};
 pub use stage::Stage;
 pub use walk::Walk;
 
+use crate::engine::Settings;
+use crate::engine::by_rays::{self, Sampled};
 use crate::estimator::{Plan, Roulette, Technique};
 use crate::operator::SceneTransport;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::terms::World;
-use crate::worlds::Settings;
-use crate::worlds::sampled::{self, Sampled};
 
 /// How the paths of a member end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,17 +154,17 @@ pub fn of(
     let t = SceneTransport { scene, sampling: settings.sampling };
     let walk = || Walk { plan: plan.clone(), mistake };
     let label = (World::Terms, format!("walk, {}", plan.technique));
-    let mut result = sampled::sample(&t, &scene.camera, &walk(), stream, label.clone(), settings, progress);
+    let mut result = by_rays::sample(&t, &scene.camera, &walk(), stream, label.clone(), settings, progress);
     if mistake.finishes() {
         // the image is no sum of its terms: the same paths again, of which only the sum is finished
-        let whole = sampled::sample(&t, &scene.camera, &walk::Whole(walk()), stream, label, settings, progress);
+        let whole = by_rays::sample(&t, &scene.camera, &walk::Whole(walk()), stream, label, settings, progress);
         result.total = whole.total;
         for (f, w) in result.series.functionals.iter_mut().zip(whole.series.functionals) {
             f.total = w.total;
         }
     }
     if !plan.roulette.ends() {
-        sampled::cut(&mut result.series, settings);
+        by_rays::cut(&mut result.series, settings);
     }
     result
 }

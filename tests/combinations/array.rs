@@ -12,10 +12,10 @@
 //! particular choices may hide from it, and those are for the full product. Greedy construction: each row is, of all
 //! combinations, the one with the most pairs that no row has yet (Cohen, Dalal, Fredman, Patton, *The AETG System*, 1997).
 
+use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::Technique;
 use fredholm::math::Points;
 use fredholm::scene::{Selection, bsdf::Sampling};
-use fredholm::worlds::sampled::Estimator;
 use std::{collections::BTreeSet, fmt};
 
 /// `None` is the path tracer.

@@ -18,7 +18,7 @@
 //! the upper side, which is where anything counted twice shows, is always judged. The lower side is judged where
 //!
 //! 1. no path is hidden that this combination finds by luck only ([`Case::steady`]), and it finds all paths
-//!    ([`unsampled`](fredholm::worlds::unseen)); and
+//!    ([`unsampled`](fredholm::engine::known::unsampled::unsampled)); and
 //! 2. an independent pilot run of the same size found 2 t* s ≤ the term, both as it and as the reference have it. Of equal rare
 //!    events that asks for (2t*)² ≈ 350, whose Poisson tail at t* is about as thin as the level. A pilot run that found nothing
 //!    at all says that a walk without connections had no luck, and of any other that something is wrong: that is judged.
@@ -28,10 +28,10 @@
 use super::array::Combination;
 use super::measure::{K, Measurement};
 use super::scenes::Case;
+use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::Technique;
 use fredholm::stats::{Measured, critical, difference, hypothesis::ROUNDING};
 use fredholm::terms::{Estimate, Functional};
-use fredholm::worlds::sampled::Estimator;
 
 /// δ as a share of the term, and of the image.
 const OF_TERM: f64 = 0.05;

@@ -2,6 +2,7 @@
 
 use super::array::Combination;
 use super::rules::{Eye, Weight};
+use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm};
 use fredholm::estimator::{Technique, TermEstimator};
@@ -12,7 +13,6 @@ use fredholm::scene::description::Description;
 use fredholm::scene::{Scene, Selection};
 use fredholm::terms::functional::functionals;
 use fredholm::terms::{Functional, TermFilm};
-use fredholm::worlds::sampled::Estimator;
 
 /// K.
 pub const K: usize = 4;

@@ -2,12 +2,12 @@
 
 use super::array::Combination;
 use super::measure::K;
+use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::Technique;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::builtin;
 use fredholm::scene::description::{Description, Geometry, LightDescription};
 use fredholm::scene::load::{self, Options};
-use fredholm::worlds::sampled::Estimator;
 use glam::DVec3;
 
 /// What a walk must be lucky to find. A sample that never met it shows neither its light nor its noise, so that its mean is

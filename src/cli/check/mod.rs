@@ -7,8 +7,8 @@ mod sides;
 use super::{Ending, Failure};
 use crate::cli::open::{self, Opened};
 use clap::{Args, Subcommand};
+use fredholm::engine::known::resort::with_last_resort;
 use fredholm::scene::Scene;
-use fredholm::worlds::resort::with_last_resort;
 
 /// Arguments of `check`.
 #[derive(Debug, Args)]

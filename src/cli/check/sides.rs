@@ -5,13 +5,13 @@ use super::super::{Failure, preflight, solve};
 use super::bias::Bias;
 use super::usage;
 use crate::cli::open::Opened;
+use fredholm::engine::Settings;
+use fredholm::engine::batches::Side;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::report::summary;
 use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::terms::{Series, World};
-use fredholm::worlds::Settings;
-use fredholm::worlds::batches::Side;
 use std::path::PathBuf;
 
 /// What the first side is held against.

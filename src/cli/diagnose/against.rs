@@ -6,13 +6,13 @@ use clap::Parser;
 use fredholm::diagnosis::candidates::own_seed;
 use fredholm::diagnosis::picture::{Code, Layer, Pictures, Slot, shrink_factor};
 use fredholm::diagnosis::{Region, WIDEST, regions};
+use fredholm::engine::Settings;
+use fredholm::engine::by_rays::{self, Estimator};
+use fredholm::engine::known::resort::with_last_resort;
 use fredholm::progress::Progress;
 use fredholm::report::{exr, summary};
 use fredholm::scene::load;
 use fredholm::scene::{Description, Scene};
-use fredholm::worlds::Settings;
-use fredholm::worlds::resort::with_last_resort;
-use fredholm::worlds::sampled::{self, Estimator};
 use std::path::Path;
 
 /// Where the reference comes from.
@@ -163,7 +163,7 @@ impl Source {
         let settings = Settings { spp, seed: own_seed(args.seed), max_bounces, roulette, ..usual };
         super::super::preflight::fits_in_memory(&settings, small)?;
         super::super::preflight::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
-        let result = sampled::terms(&scene, Estimator::Prefix, &settings, progress);
+        let result = by_rays::terms(&scene, Estimator::Prefix, &settings, progress);
         let missing = result.series.unsampled.iter().map(|u| format!("from k = {} on: {}", u.from, u.what));
         for missing in missing {
             super::super::note(&format!("note: not supported by the reference, {missing}"));

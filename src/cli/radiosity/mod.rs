@@ -9,13 +9,13 @@ use super::progress::Bar;
 use super::{Ending, Failure, args::WorldName, notes, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
+use fredholm::engine::Settings;
+use fredholm::engine::by_matrix::{self, Matrix, MatrixError};
+use fredholm::engine::discretisation::{Factors, Stored};
 use fredholm::progress::Progress;
 use fredholm::report::summary;
 use fredholm::report::typeset::Caption;
-use fredholm::solver::{self, study::Solver};
-use fredholm::worlds::Settings;
-use fredholm::worlds::discrete::{self, Matrix, MatrixError};
-use fredholm::worlds::discretisation::{Factors, Stored};
+use fredholm::solver::{self, comparison::Solver};
 use glam::DVec3;
 use std::path::PathBuf;
 
@@ -150,7 +150,7 @@ impl Laboratory {
     fn new(run: &Run, what: &str) -> Result<Option<Self>, Failure> {
         Laboratory::prepare(run, what, Factors::Dense, |opened, s, progress| {
             let Opened { description, scene, .. } = opened;
-            let matrix = discrete::dense_matrix(description, scene, s.patches, s.grading, 0, progress)?;
+            let matrix = by_matrix::dense_matrix(description, scene, s.patches, s.grading, 0, progress)?;
             Ok((matrix.radiosity.patches.len(), matrix))
         })
     }
@@ -161,7 +161,7 @@ impl Laboratory<Stored> {
     fn sampled(run: &Run, what: &str, per_row: u32) -> Result<Option<Self>, Failure> {
         Laboratory::prepare(run, what, Factors::Rays(per_row), |opened, s, progress| {
             let Opened { description, scene, .. } = opened;
-            let matrix = discrete::sampled_matrix(description, scene, s.patches, per_row, s, progress)?;
+            let matrix = by_matrix::sampled_matrix(description, scene, s.patches, per_row, s, progress)?;
             Ok((matrix.radiosity.patches.len(), matrix))
         })
     }

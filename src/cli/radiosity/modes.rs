@@ -3,13 +3,13 @@
 use super::super::progress::Bar;
 use super::super::{Ending, Failure, paragraphs, preflight, print};
 use super::{Laboratory, NAMES, Radiosity};
+use fredholm::engine::Settings;
 use fredholm::operator::edges::{Band, essential_band};
 use fredholm::operator::matrix::LinearOperator;
 use fredholm::operator::modes::{Modes, norm_2, radius_bounds};
 use fredholm::report::modes::{self, Painted, Row, Spectrum};
 use fredholm::report::write_atomically;
 use fredholm::solver::Neumann;
-use fredholm::worlds::Settings;
 use serde_json::json;
 
 /// Bounces over which modes are seen to die.

@@ -8,13 +8,13 @@
 use super::super::progress::Bar;
 use super::super::{Ending, Failure, args::FactorsName, paragraphs, preflight, print};
 use super::{Laboratory, NAMES, Radiosity, SolverName};
+use fredholm::engine::by_matrix::MatrixError;
+use fredholm::engine::discretisation::{Factors, Stored};
 use fredholm::operator::matrix::Transposed;
 use fredholm::report::solvers::{self, Extrapolated};
 use fredholm::report::write_atomically;
 use fredholm::solver::Neumann;
-use fredholm::solver::study::{History, Limits, Reference, Solver, System};
-use fredholm::worlds::discrete::MatrixError;
-use fredholm::worlds::discretisation::{Factors, Stored};
+use fredholm::solver::comparison::{History, Limits, Reference, Solver, System};
 use serde_json::{Value, json};
 
 /// Good enough, and too many.

@@ -3,8 +3,8 @@
 use super::super::Failure;
 use super::super::radiosity::Export;
 use super::Files;
+use fredholm::engine::by_matrix::Discrete;
 use fredholm::report::{patches as mesh, summary, write_atomically};
-use fredholm::worlds::discrete::Discrete;
 
 pub(super) fn write_mesh(r: &Discrete, what: Export, out: &mut Files) -> Result<(), Failure> {
     let m = &r.matrix;

@@ -2,15 +2,15 @@
 
 use super::Files;
 use crate::cli::{Failure, solve::Solved};
+use fredholm::engine::by_matrix::Discrete;
+use fredholm::engine::by_rays::{Estimator, Sampled};
 use fredholm::report::decay::{self, Decay, RateLine, independent_ratios};
 use fredholm::report::plot::{Curve, Look, Point};
 use fredholm::report::typeset::{Caption, superscript};
 use fredholm::report::variance::{self, Falling, Variance};
 use fredholm::stats::{TermMeans, observed_rate};
+use fredholm::study::convergence::Part;
 use fredholm::terms::{scatter::Scatter, variance::Snapshot};
-use fredholm::worlds::convergence::Part;
-use fredholm::worlds::discrete::Discrete;
-use fredholm::worlds::sampled::{Estimator, Sampled};
 use std::path::Path;
 
 pub(super) fn write_plots(found: &Solved, out: &mut Files, caption: &Caption) -> Result<(), Failure> {

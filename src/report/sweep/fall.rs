@@ -19,8 +19,8 @@ use super::super::{
 };
 use super::quoted;
 use crate::stats::Slope;
+use crate::study::convergence::{Part, Stand};
 use crate::terms::{Variance, scatter::Scatter};
-use crate::worlds::convergence::{Part, Stand};
 
 /// One render as its noise falls.
 #[derive(Clone, Debug, PartialEq)]

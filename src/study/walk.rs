@@ -10,11 +10,11 @@
 //! | X | samples of the same quantities, n of each patch | [`Walked::sampled`] |
 //! | z_i | (mean − truth)/error, patch by patch | [`Walked::z`] |
 //!
-//! The picture of such a run has a pixel for every patch, in one row. The zero-variance walk is [`super::zero_variance`].
+//! The picture of such a run has a pixel for every patch, in one row. The zero-variance walk is [`crate::study::zero_variance`].
 
-use super::Settings;
-use super::discrete::Matrix;
-use super::sampled::{self, Estimator, Passes, Sampled};
+use crate::engine::Settings;
+use crate::engine::by_matrix::Matrix;
+use crate::engine::by_rays::{self, Estimator, Passes, Sampled};
 use crate::estimator::{Absorption, PathTracer, Plan, Roulette};
 use crate::operator::MatrixWalk;
 use crate::operator::matrix_walk::Rows;
@@ -70,7 +70,7 @@ pub fn walk(matrix: &Matrix<Radiosity>, walker: Walker, settings: &Settings, pro
     let t = transport(matrix);
     let n = matrix.radiosity.patches.len();
     let rows = Rows(n as u32);
-    let amount = sampled::amount(settings, &format!("walk {walker}"));
+    let amount = by_rays::amount(settings, &format!("walk {walker}"));
     let clock = settings.time.map(Clock::start);
     let what = format!("walk, {walker}");
     let mut passes = Passes::begin(&what, [n as u32, 1], settings, progress, clock.as_ref());
@@ -78,7 +78,7 @@ pub fn walk(matrix: &Matrix<Radiosity>, walker: Walker, settings: &Settings, pro
     let (film, ends) = match walker {
         Walker::Terms(estimator) => {
             let ends = plan.roulette.ends();
-            (sampled::film(&t, &rows, estimator, plan, amount, &mut passes), ends)
+            (by_rays::film(&t, &rows, estimator, plan, amount, &mut passes), ends)
         }
         Walker::Path => {
             let plan = Plan { roulette: settings.path_roulette.clone(), ..plan };
@@ -99,7 +99,7 @@ pub fn walk(matrix: &Matrix<Radiosity>, walker: Walker, settings: &Settings, pro
     let mut found = passes.finish(&film, world, format!("walk, {walker}{technique}"));
     let exact = exact(matrix, settings.max_bounces, walker == Walker::Path, ends);
     if !ends {
-        sampled::cut(&mut found.series, settings);
+        by_rays::cut(&mut found.series, settings);
     }
     let roulette = if walker == Walker::Path { &settings.path_roulette } else { &settings.roulette };
     if ends && walker != Walker::Absorption {

@@ -7,7 +7,7 @@
 //! Beyond vertex K the pilot goes on with constant q ≤ 1 − max albedo ([`beyond`]), and so does every schedule that is compared
 //! with it: with survival s ≥ max albedo no weight grows, `ρ²/s ≤ ρ` and `ρ⁴/s³ ≤ ρ`, so that the tail has finite moments of
 //! second and of fourth order whatever stands in the table before. Where the albedo is 1, or is only known to be at most 1, the
-//! growth R of second moments without roulette is [measured](super::growth), and q = (1 − R)/4: then R/(1 − q) < 1 and, since the moments
+//! growth R of second moments without roulette is [measured](crate::engine::known::growth), and q = (1 − R)/4: then R/(1 − q) < 1 and, since the moments
 //! of fourth order grow no faster, R/(1 − q)³ < 1.
 //!
 //! | what | finite where | place |
@@ -18,8 +18,9 @@
 //! Without a matrix the largest albedo stands for F: then a radius below 1 proves that the moment is finite, and one above 1
 //! proves nothing. Both speak of directions drawn like the reflectance, whose weights are albedos.
 
-use super::Settings;
-use super::growth::{CLEAR, FromLight, growth};
+use crate::engine::Settings;
+use crate::engine::known::growth::{CLEAR, FromLight, growth};
+use crate::engine::known::resort::two_digits;
 use crate::estimator::record::record;
 use crate::estimator::render::{Amount, render};
 use crate::estimator::{Plan, Prefix, Roulette, Vertices};
@@ -54,17 +55,6 @@ pub fn beyond(scene: &Scene) -> f64 {
         0.25 * (1.0 - g.rate - CLEAR * g.std_error)
     };
     two_digits(loss).clamp(LEAST, 0.99)
-}
-
-/// Rounded down to two digits, so that it can be typed.
-pub(super) fn two_digits(q: f64) -> f64 {
-    if q <= 0.0 {
-        return 0.0;
-    }
-    let digits = 1 - q.log10().floor() as i32;
-    let unit = 10f64.powi(digits);
-    // what is 0.3 but for rounding is 0.3
-    ((q * unit * (1.0 + 1e-6)).floor() / unit).min(1.0)
 }
 
 fn amount(spp: u32, settings: &Settings, stream: &str) -> Amount {
@@ -143,7 +133,8 @@ pub fn best(recorded: &Recorded, scene: &Scene) -> Option<Optimal> {
 ///
 /// ```
 /// use fredholm::scene::{Scene, load};
-/// use fredholm::worlds::{Settings, roulette};
+/// use fredholm::engine::Settings;
+/// use fredholm::study::roulette;
 /// ///
 /// let options = load::Options { set: vec!["camera.size=[8,8]".into()], ..Default::default() };
 /// let scene = Scene::new(&load::scene("cornell", &options)?.description);

@@ -18,8 +18,8 @@ mod judge;
 
 pub use judge::{Group, Judgement, judge};
 
-use super::Settings;
-use super::sampled::variance;
+use crate::engine::Settings;
+use crate::engine::by_rays::variance;
 use crate::estimator::render::{Amount, render};
 use crate::estimator::{Equilibrium, Plan};
 use crate::math::{Key, Purpose, Rng};

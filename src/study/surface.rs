@@ -3,8 +3,8 @@
 //! `∫∫ (T^k E)(x, ω) cos θ dω dA / (πA)`, the plain mean over uniform surface points and cosine-distributed directions: camera-free,
 //! unbiased, and the same number as `Σ A_i (T_h^k E)_i / A` of the matrix. The bounds of ‖T‖₁ ≤ max albedo hold for it.
 
-use super::Settings;
-use super::sampled::{self, Estimator};
+use crate::engine::Settings;
+use crate::engine::by_rays::{self, Estimator};
 use crate::estimator::render::Amount;
 use crate::operator::{SceneTransport, scene_transport::SurfaceStrip};
 use crate::progress::Progress;
@@ -35,6 +35,6 @@ pub fn norms(
         Estimator::Light | Estimator::Bidirectional => Estimator::Prefix,
         other => other,
     };
-    let film = sampled::film(&t, &strip, estimator, settings.plan(), amount, &mut sampled::Passes::of(progress));
+    let film = by_rays::film(&t, &strip, estimator, settings.plan(), amount, &mut by_rays::Passes::of(progress));
     image_replicates(&film)
 }

@@ -1,13 +1,10 @@
 //! The continuous world: terms and path tracer, from rays to series and images.
 
-use super::{
-    Settings,
-    convergence::Recorder,
-    coplanar::undecided,
-    doubts::doubts,
-    growth::{self, Growth},
-    unsampled::unsampled,
-};
+use crate::engine::Settings;
+use crate::engine::known::coplanar::undecided;
+use crate::engine::known::doubts::doubts;
+use crate::engine::known::growth::{self, Growth};
+use crate::engine::known::unsampled::unsampled;
 use crate::estimator::render::{Amount, render_in_passes};
 use crate::estimator::{
     Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm, TermEstimator,
@@ -85,21 +82,24 @@ pub struct Sampled {
 
 /// Every term by its own estimator.
 pub fn terms(scene: &Scene, estimator: Estimator, settings: &Settings, progress: Progress<'_>) -> Sampled {
-    recorded(scene, Some(estimator), settings, progress, None)
+    watched(scene, Some(estimator), settings, progress, None)
 }
 
 /// The full path tracer.
 pub fn path(scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
-    recorded(scene, None, settings, progress, None)
+    watched(scene, None, settings, progress, None)
 }
 
-/// The terms, or the path tracer where no estimator is given; a recorder looks on.
-pub fn recorded(
+/// Looks at the film after a pass; the next number of samples per pixel at which to look, beside the usual ones.
+pub type Look<'a> = &'a mut dyn FnMut(&TermFilm) -> Option<u32>;
+
+/// The terms, or the path tracer where no estimator is given; somebody looks on.
+pub fn watched(
     scene: &Scene,
     estimator: Option<Estimator>,
     settings: &Settings,
     progress: Progress<'_>,
-    recorder: Option<&mut Recorder<'_>>,
+    look: Option<Look<'_>>,
 ) -> Sampled {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let (camera, points) = (&scene.camera, spread(settings.points));
@@ -107,7 +107,7 @@ pub fn recorded(
     let (amount, clock) = (amount(settings, &stream), settings.time.map(Clock::start));
     let what = estimator.map_or("path".into(), |e| format!("terms, {e}"));
     let mut passes = Passes::begin(&what, camera.size, settings, progress, clock.as_ref());
-    passes.recorder = recorder;
+    passes.look_on = look;
     let Settings { technique, path_roulette, .. } = settings;
     let result = match estimator {
         Some(estimator) => {
@@ -175,7 +175,7 @@ impl Settings {
 }
 
 /// A result with what its estimator (`None` for the path tracer) cannot find in the scene, and where its paths are cut.
-pub(super) fn annotated(
+pub(crate) fn annotated(
     mut result: Sampled,
     scene: &Scene,
     estimator: Option<Estimator>,
@@ -191,7 +191,7 @@ pub(super) fn annotated(
 }
 
 /// Any estimator of the terms over any transport, through any sensor.
-pub(super) fn film<T: Adjoint>(
+pub(crate) fn film<T: Adjoint>(
     t: &T,
     sensor: &impl Sensor<T>,
     estimator: Estimator,
@@ -212,13 +212,13 @@ pub(super) fn film<T: Adjoint>(
 const REPLICATES: u32 = 16;
 
 /// The usual amount, from the stream of that name.
-pub(super) fn amount(settings: &Settings, stream: &str) -> Amount {
+pub(crate) fn amount(settings: &Settings, stream: &str) -> Amount {
     let amount = Amount::new(settings.spp, settings.key(stream, 1));
     Amount { key: settings.key(stream, amount.replicates), ..amount }
 }
 
 /// What a label says of points that are not the usual ones.
-pub(super) fn spread(points: Points) -> &'static str {
+pub(crate) fn spread(points: Points) -> &'static str {
     if points == Points::Sobol { ", Sobol points" } else { "" }
 }
 
@@ -245,23 +245,23 @@ pub(crate) fn sample<T: Transport>(
 }
 
 /// A render under way, pass by pass.
-pub(super) struct Passes<'a, 'r> {
+pub(crate) struct Passes<'a, 'l> {
     progress: Progress<'a>,
     started: Instant,
     snapshots: Vec<Snapshot>,
     clock: Option<&'a Clock>,
-    /// Who keeps what the film says.
-    recorder: Option<&'a mut Recorder<'r>>,
+    /// Who else looks at the film.
+    look_on: Option<Look<'l>>,
 }
 
 impl<'a> Passes<'a, '_> {
     /// Passes that double, of which nothing is kept.
-    pub(super) fn of(progress: Progress<'a>) -> Self {
-        Self { progress, started: Instant::now(), snapshots: vec![], clock: None, recorder: None }
+    pub(crate) fn of(progress: Progress<'a>) -> Self {
+        Self { progress, started: Instant::now(), snapshots: vec![], clock: None, look_on: None }
     }
 
     /// The clock is for a render that may take so long.
-    pub(super) fn begin(
+    pub(crate) fn begin(
         what: &str,
         size: [u32; 2],
         settings: &Settings,
@@ -271,9 +271,9 @@ impl<'a> Passes<'a, '_> {
         let paths = u64::from(size[0]) * u64::from(size[1]) * u64::from(settings.spp);
         progress.begin(what, clock.map_or(paths, |c| c.time.as_millis() as u64));
         let progress = clock.map_or(progress, |clock| progress.by_clock(clock));
-        Self { progress, started: Instant::now(), snapshots: vec![], clock, recorder: None }
+        Self { progress, started: Instant::now(), snapshots: vec![], clock, look_on: None }
     }
-    pub(super) fn finish(self, film: &TermFilm, world: World, label: String) -> Sampled {
+    pub(crate) fn finish(self, film: &TermFilm, world: World, label: String) -> Sampled {
         let slots = film.shape.slots;
         let paths = film.samples.iter().map(|&n| u64::from(n)).sum();
         let cost = Cost {
@@ -311,7 +311,7 @@ impl<'a> Passes<'a, '_> {
 }
 
 impl Passes<'_, '_> {
-    pub(super) fn render<T: Transport>(
+    pub(crate) fn render<T: Transport>(
         &mut self,
         t: &T,
         sensor: &impl Sensor<T>,
@@ -329,7 +329,7 @@ impl Passes<'_, '_> {
             self.snapshots.push(snapshot(film));
         }
         let done = film.least_samples();
-        let asked = self.recorder.as_mut().and_then(|r| r.look(film));
+        let asked = self.look_on.as_mut().and_then(|look| look(film));
         let planned = asked.map_or(planned, |n| planned.min(n));
         self.clock.map_or(planned, |clock| self.in_time(clock.time, done, planned))
     }

@@ -12,17 +12,18 @@
 //! | v = S_n | partial sum of the Neumann series, and one more application of T for what walks can still reach | [`Guide::Partial`] |
 //!
 //! A channel is a problem of its own: a walk led by red light is not led by blue. Reference: see
-//! [`guided_walk`](crate::operator::guided_walk).
+//! [`guide::walk`](crate::guide::walk).
 
-use super::Settings;
-use super::discrete::Matrix;
+use crate::engine::Settings;
+use crate::engine::by_matrix::Matrix;
 use crate::estimator::{Absorption, Batch, Job, Paths, Plan, Prefix, Roulette, Technique, TermEstimator, TermSink};
+use crate::guide::GuidedWalk;
+use crate::guide::walk::GuidedRows;
 use crate::math::{Columns, Key};
-use crate::operator::guided_walk::GuidedRows;
 use crate::operator::matrix::PatchOperator;
 use crate::operator::matrix_walk::Rows;
 use crate::operator::patches::Patch;
-use crate::operator::{GuidedWalk, MatrixWalk, Sensor, Transport};
+use crate::operator::{MatrixWalk, Sensor, Transport};
 use crate::progress::Progress;
 use crate::solver::{Neumann, Radiosity};
 use rayon::prelude::*;

@@ -20,9 +20,9 @@
 //! Reference: Kahn and Marshall, *Methods of Reducing Sample Size in Monte Carlo Computations* (1953); Halton, *Sequential Monte
 //! Carlo* (1962); for light transport Vorba and Křivánek, *Adjoint-Driven Russian Roulette and Splitting* (2016).
 
-use super::matrix::PatchOperator;
-use super::transport::{Sensor, Step, Transport};
 use crate::math::{Rgb, Rng};
+use crate::operator::matrix::PatchOperator;
+use crate::operator::transport::{Sensor, Step, Transport};
 
 /// Where a led walk stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

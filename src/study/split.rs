@@ -17,7 +17,7 @@
 //!
 //! Terms with films and streams of their own are independent, so that the variance of their sum is the sum of variances.
 
-use super::Settings;
+use crate::engine::Settings;
 use crate::estimator::render::{Amount, render};
 use crate::estimator::{OneTerm, Prefix, SingleTerm};
 use crate::math::Key;
@@ -102,7 +102,7 @@ pub fn work(terms: &[Term], counts: &[u32], unit: Unit) -> Work {
 /// (Σ σ_k √c_k)², the least that any split can do, with its error by the delta method.
 ///
 /// ```
-/// use fredholm::worlds::split::{Term, Unit, best, work};
+/// use fredholm::study::split::{Term, Unit, best, work};
 /// // two terms with σ = 1, 3 and c = 1, 4: (1·1 + 3·2)² against (1 + 9)(1 + 4) of the equal split
 /// let term = |variance, rays| Term { spp: 16, variance, std_error: 0.0, rays, seconds: 1.0 };
 /// let terms = [term(1.0, 1.0), term(9.0, 4.0)];

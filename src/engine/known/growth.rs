@@ -21,7 +21,7 @@
 //! Reference: the same is done to find the largest eigenvalue of transfer operators, with walkers that multiply and die; Grassberger,
 //! *Go with the winners* (2002).
 
-use super::Settings;
+use crate::engine::Settings;
 use crate::estimator::Roulette;
 use crate::math::{Key, Purpose, Rgb, Rng};
 use crate::operator::{Adjoint, Role, Sensor, Transport};
@@ -36,7 +36,7 @@ const WALKERS: usize = 256;
 const STEPS: usize = 96;
 const SETTLED: usize = 40;
 /// Standard errors that a rate must be away from 1; with seven degrees of freedom it is wrong once in 200 times.
-pub(super) const CLEAR: f64 = 4.0;
+pub(crate) const CLEAR: f64 = 4.0;
 /// Throughputs above this have grown, and not by rounding.
 const GROWN: f32 = 1.001;
 
@@ -251,7 +251,7 @@ pub fn proved(scene: &Scene, sampling: Sampling, roulette: &Roulette) -> bool {
 }
 
 /// Walks from the eye under a schedule: nothing where their variance is finite.
-pub(super) fn doubt_from_eye<T: Transport>(
+pub(crate) fn doubt_from_eye<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
     roulette: &Roulette,

@@ -3,11 +3,11 @@
 //! Batch i is a whole image of `settings.spp` samples per pixel from stream i of that way and seed, so that batches are
 //! independent and identically distributed. Errors come from their scatter; a batch has none of its own.
 
-use super::Settings;
-use super::coplanar::undecided;
-use super::doubts::doubts;
-use super::sampled::{Estimator, Passes, film, variance};
-use super::unsampled::unsampled;
+use crate::engine::Settings;
+use crate::engine::by_rays::{Estimator, Passes, film, variance};
+use crate::engine::known::coplanar::undecided;
+use crate::engine::known::doubts::doubts;
+use crate::engine::known::unsampled::unsampled;
 use crate::estimator::render::{Amount, render};
 use crate::estimator::{PathTracer, Plan};
 use crate::operator::SceneTransport;

@@ -15,14 +15,14 @@
 //!
 //! Reference: Kajiya, *The Rendering Equation* (1986); Pharr, Jakob and Humphreys, *Physically Based Rendering*, on fireflies.
 
-use super::Settings;
-use super::convergence::Reference;
-use super::sampled::{self, Estimator};
+use crate::engine::Settings;
+use crate::engine::by_rays::{self, Estimator};
 use crate::estimator::render::{Amount, render_in_passes};
 use crate::estimator::{PathTracer, Plan};
 use crate::operator::SceneTransport;
 use crate::progress::Progress;
 use crate::scene::Scene;
+use crate::study::convergence::Reference;
 use crate::terms::functional::image_replicates;
 use crate::terms::scatter::Scatter;
 use crate::terms::{Estimate, TermFilm, TermImage};
@@ -95,7 +95,7 @@ pub struct Grown {
 /// Renders `recipe` by path tracing, and its reference from an independent stream. None if interrupted before the first
 /// stage.
 pub fn render_stages(scene: &Scene, recipe: &Recipe, settings: &Settings, progress: Progress<'_>) -> Option<Grown> {
-    let reference = sampled::terms(
+    let reference = by_rays::terms(
         scene,
         recipe.reference,
         &Settings { spp: recipe.reference_spp, seed: reference_seed(settings.seed), ..settings.clone() },

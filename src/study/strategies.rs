@@ -3,7 +3,9 @@
 //! `T^k E = Σ_s (w_s-weighted strategy s)`: the weighted images of a row add up to the term, to rounding, because the same
 //! walks are walked as by the estimator itself.
 
-use super::{Settings, sampled::Estimator, sampled::amount};
+use crate::engine::Settings;
+use crate::engine::by_rays::Estimator;
+use crate::engine::by_rays::amount;
 use crate::estimator::Pyramid;
 use crate::estimator::render::{Amount, render};
 use crate::operator::SceneTransport;

@@ -1,12 +1,14 @@
 //! The discrete world: patches, form factors, terms, solve, and the picture of them through the camera.
 //!
-//! `T_h = diag(ρ) F` as a matrix or as stored rays ([`discretisation`](super::discretisation)), `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
+//! `T_h = diag(ρ) F` as a matrix or as stored rays ([`discretisation`](crate::engine::discretisation)), `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
 //! same camera rays, gives the discretisation error |R_h − R_2h| that stands beside the Monte Carlo error in every verdict.
 
-use super::coplanar::undecided;
-use super::discretisation::{Difference, Discretisation, Factors, SampledRows, Stored};
-use super::radius::{Radius, radii, sampled_noise};
-use super::{Settings, sampled, sampled::Sampled};
+use crate::engine::Settings;
+use crate::engine::by_rays;
+use crate::engine::by_rays::Sampled;
+use crate::engine::discretisation::{Difference, Discretisation, Factors, SampledRows, Stored};
+use crate::engine::known::coplanar::undecided;
+use crate::engine::radius::{Radius, radii, sampled_noise};
 use crate::estimator::Gather;
 use crate::operator::SceneTransport;
 use crate::operator::form_factor::{FormFactors, Invariants, VisibilitySampling};
@@ -329,7 +331,7 @@ impl Matrix {
             if settings.read_patches { ", read" } else { "" }
         );
         let world = (World::Radiosity, label);
-        let mut seen = sampled::sample(&t, &scene.camera, &gather, "radiosity", world, settings, progress);
+        let mut seen = by_rays::sample(&t, &scene.camera, &gather, "radiosity", world, settings, progress);
         seen.series.undecided = undecided(scene);
         seen
     }
@@ -354,7 +356,7 @@ impl Matrix<Radiosity> {
         terms.push(nothing.clone());
         let gather = Gather { patches, terms: &terms, tail: nothing, read_patches: false };
         let world = (World::Radiosity, "modes".to_string());
-        let mut seen = sampled::sample(&t, &scene.camera, &gather, "modes", world, settings, progress);
+        let mut seen = by_rays::sample(&t, &scene.camera, &gather, "modes", world, settings, progress);
         seen.terms.drain(2..2 + fields.len()).collect()
     }
 }

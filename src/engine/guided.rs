@@ -2,13 +2,13 @@
 //!
 //! `L_h → p(ω) → T^k E`: the matrix of some hundred patches decides where rays look, the scene decides what they see.
 
-use super::Settings;
-use super::growth::{self, Growth};
-use super::sampled::{self, Estimator, Sampled, annotated, spread};
+use crate::engine::Settings;
+use crate::engine::by_rays::{self, Estimator, Sampled, annotated, spread};
+use crate::engine::known::growth::{self, Growth};
 use crate::estimator::{Branching, PathTracer, Plan, Prefix, Roulette, SingleTerm};
+use crate::guide::{Guide, GuidedTransport, Recipe};
 use crate::math::Key;
 use crate::operator::SceneTransport;
-use crate::operator::guided::{Guide, GuidedTransport, Recipe};
 use crate::progress::Progress;
 use crate::scene::{Description, Scene, SceneError};
 use crate::terms::World;
@@ -74,11 +74,11 @@ impl Prepared {
         let (plan, camera, stream) = (settings.plan(), &scene.camera, format!("guided {estimator}"));
         let name = (World::Terms, self.label(&estimator.to_string(), settings));
         let result = match estimator {
-            Estimator::Prefix => sampled::sample(&t, camera, &Prefix(plan), &stream, name, settings, progress),
-            Estimator::Single => sampled::sample(&t, camera, &SingleTerm(plan), &stream, name, settings, progress),
+            Estimator::Prefix => by_rays::sample(&t, camera, &Prefix(plan), &stream, name, settings, progress),
+            Estimator::Single => by_rays::sample(&t, camera, &SingleTerm(plan), &stream, name, settings, progress),
             Estimator::Branching { children } => {
                 let tree = Branching { plan, children };
-                sampled::sample(&t, camera, &tree, &stream, name, settings, progress)
+                by_rays::sample(&t, camera, &tree, &stream, name, settings, progress)
             }
             Estimator::Light | Estimator::Bidirectional => return None,
         };
@@ -93,7 +93,7 @@ impl Prepared {
         let label = self.label("path tracer", settings) + &format!(", roulette {}", settings.path_roulette);
         let name = (World::Path, label);
         let path = PathTracer(plan);
-        let result = sampled::sample(&t, &scene.camera, &path, "guided path", name, settings, progress);
+        let result = by_rays::sample(&t, &scene.camera, &path, "guided path", name, settings, progress);
         let doubt = self.doubt(&t, &settings.path_roulette, settings);
         annotated(result, scene, None, settings).judged(doubt)
     }

@@ -2,7 +2,7 @@
 //!
 //! With survival ρ and no way out a path has 1/(1 − ρ) vertices in the mean: 1000 where ρ = 0.999.
 
-use super::Settings;
+use crate::engine::Settings;
 use crate::estimator::{PathTracer, Plan, Roulette};
 use crate::math::{Key, Purpose, Rng};
 use crate::operator::{SceneTransport, Sensor};

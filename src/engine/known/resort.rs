@@ -12,8 +12,7 @@
 //! a part that light never reaches, where the radiance is 0 whatever ends the path: inside of a closed white block, or in the
 //! directions that glass reflects for ever. Where r₂ is not known to be below 1, [`Roulette`] ends such paths without it.
 
-use super::growth::{CLEAR, FromLight, growth};
-use super::roulette::two_digits;
+use crate::engine::known::growth::{CLEAR, FromLight, growth};
 use crate::estimator::Roulette;
 use crate::operator::SceneTransport;
 use crate::scene::Scene;
@@ -35,3 +34,14 @@ pub fn with_last_resort(scene: Scene) -> Scene {
 
 /// A smaller loss per vertex is not told from none.
 const LEAST: f64 = 1e-4;
+
+/// Rounded down to two digits, so that it can be typed.
+pub(crate) fn two_digits(q: f64) -> f64 {
+    if q <= 0.0 {
+        return 0.0;
+    }
+    let digits = 1 - q.log10().floor() as i32;
+    let unit = 10f64.powi(digits);
+    // what is 0.3 but for rounding is 0.3
+    ((q * unit * (1.0 + 1e-6)).floor() / unit).min(1.0)
+}

@@ -23,8 +23,8 @@
 //! **What it does not know**: a small bright lamp in view beside a large dim one (k = 0), light behind a keyhole or a door, lobes of rough metal, lamps that no vertex of the short walk sees. It is
 //! right to an order of magnitude, which is what is asked of it.
 
-use super::Settings;
-use super::sampled::Estimator;
+use crate::engine::Settings;
+use crate::engine::by_rays::Estimator;
 use crate::estimator::Technique;
 use crate::math::{Key, Purpose, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};

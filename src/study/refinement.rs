@@ -15,10 +15,10 @@
 //! All meshes are read along the same camera rays, so that what changes from one to the next is the mesh. T⁰ and T¹ are no
 //! question to a matrix (what is read is E itself) and serve as controls.
 
-use super::Settings;
-use super::discrete::{self, MatrixError};
-use super::radius::Radius;
-use super::sampled::{self, Estimator, Sampled};
+use crate::engine::Settings;
+use crate::engine::by_matrix::{self, MatrixError};
+use crate::engine::by_rays::{self, Estimator, Sampled};
+use crate::engine::radius::Radius;
 use crate::operator::edges::essential_band;
 use crate::operator::matrix::{Ritz, leading};
 use crate::progress::Progress;
@@ -160,14 +160,14 @@ pub fn refine(
     settings: &Settings,
     progress: Progress<'_>,
 ) -> Result<Refinement, MatrixError> {
-    let truth = sampled::terms(scene, Estimator::Prefix, settings, progress);
+    let truth = by_rays::terms(scene, Estimator::Prefix, settings, progress);
     let mut meshes = vec![];
     for &n in patches {
         if progress.stopped() {
             break;
         }
         let started = Instant::now();
-        let matrix = match discrete::matrix(description, scene, n, settings, progress) {
+        let matrix = match by_matrix::matrix(description, scene, n, settings, progress) {
             Ok(m) => m,
             Err(MatrixError::Stopped) => break,
             Err(e) => return Err(e),

@@ -31,12 +31,15 @@
 pub mod incident;
 mod lamps;
 mod places;
+pub mod walk;
 pub mod warp;
 
-use super::scene_transport::SceneTransport;
-use super::transport::{self, Expected, Samples, Seen, Sensor, Step, Transport};
+pub use walk::GuidedWalk;
+
 use crate::math::{Columns, Key, Rgb, Rng, Streams};
+use crate::operator::SceneTransport;
 use crate::operator::patches::Patches;
+use crate::operator::transport::{self, Expected, Samples, Seen, Sensor, Step, Transport};
 use crate::progress::Progress;
 use crate::scene::bsdf::{Bsdf, Sampling, diffuse, diffuse::Diffuse};
 use crate::scene::{Camera, Scene, SceneError, Side, Vertex, VertexWave, numbers, offset_origin, stand_in};

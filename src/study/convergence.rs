@@ -13,7 +13,7 @@
 //! Nothing is rendered twice: the film of n samples is a part of the film of 2n. The points of a curve therefore share their
 //! replicates, and the error of a slope comes from curves without one replicate each.
 
-use super::sampled::Sampled;
+use crate::engine::by_rays::Sampled;
 use crate::stats::evidence::FITTED_SPREAD;
 use crate::stats::{Evidence, Slope, falling_slope};
 use crate::terms::scatter::Scatter;
@@ -76,7 +76,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Looks at the film after a pass; the next number of samples per pixel at which to look, beside the usual ones.
-    pub(super) fn look(&mut self, film: &TermFilm) -> Option<u32> {
+    pub fn look(&mut self, film: &TermFilm) -> Option<u32> {
         self.seconds += self.since.elapsed().as_secs_f64();
         let spp = film.least_samples();
         if film.shape.replicates > 1 && (self.at.is_empty() || self.at.contains(&spp)) {

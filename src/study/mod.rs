@@ -1,0 +1,26 @@
+//! What is found out about a scene with the [engines](crate::engine): data in, numbers with errors out, for a command, a chapter
+//! and a test alike.
+//!
+//! | study | question | place |
+//! |---|---|---|
+//! | convergence | how do variance and squared error fall in one render? | [`convergence::Recorder`] |
+//! | split | how many samples for which term? | [`split::study`] |
+//! | roulette | noise and cost of schedules, the best of them | [`roulette::pilot`], [`roulette::optimal`] |
+//! | strategies | which way from both ends finds which term? | [`strategies::strategies`] |
+//! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
+//! | refinement | how does the matrix come closer on finer meshes? | [`refinement::refine`] |
+//! | equilibrium | are both sides of L = E + T L equal? | [`equilibrium`] |
+//! | stages | how does an image grow? | [`stages::render_stages`] |
+//! | walk | do the estimators find the powers of a matrix? | [`walk::walk`] |
+//! | zero variance | how much does a guide help? | [`zero_variance::study`] |
+
+pub mod convergence;
+pub mod equilibrium;
+pub mod refinement;
+pub mod roulette;
+pub mod split;
+pub mod stages;
+pub mod strategies;
+pub mod surface;
+pub mod walk;
+pub mod zero_variance;
