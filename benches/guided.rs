@@ -11,10 +11,11 @@
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
 use fredholm::estimator::render::{Amount, render};
-use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, Technique};
-use fredholm::guide::{Guide, GuidedTransport, Recipe};
-use fredholm::math::Key;
-use fredholm::operator::{SceneTransport, Sensor, Transport};
+use fredholm::estimator::{Plan, Prefix, Roulette, Technique};
+use fredholm::guide::tracked::{Tracked, TrackedSensor};
+use fredholm::guide::{self, ByExpectation, Expecting, Guide, GuidedTransport, Recipe};
+use fredholm::math::{Key, Purpose, Rng};
+use fredholm::operator::{SceneTransport, Sensor};
 use fredholm::progress::Progress;
 use fredholm::scene::{Camera, Scene, load};
 use fredholm::terms::TermFilm;
@@ -33,45 +34,29 @@ struct Run {
     seconds: f64,
 }
 
-/// Whether a transport knows what to expect.
-trait Expects {
-    fn expects(&self) -> bool;
-}
-
-impl Expects for SceneTransport<'_> {
-    fn expects(&self) -> bool {
-        false
-    }
-}
-
-impl Expects for GuidedTransport<'_> {
-    fn expects(&self) -> bool {
-        true
-    }
-}
-
 /// Estimator and roulette: without a guide nobody knows what to expect, and paths end by albedo: from vertex 2 on, and where terms are
 /// kept from vertex K on.
 const KINDS: [&str; 4] = ["prefix", "prefix window", "path", "window"];
 
-fn run<T: Transport + Expects>(t: &T, camera: &Camera, what: &str, spp: u32, key: Key) -> Run
+fn run<T: Expecting>(t: &T, camera: &Camera, what: &str, spp: u32, key: Key) -> Run
 where
     Camera: Sensor<T>,
 {
     let start = worked();
     let plan = |roulette| Plan { max_bounces: 8, technique: Technique::Mis, roulette };
-    let amount = Amount::new(spp, key);
+    let (amount, end) = (Amount::new(spp, key), ByExpectation::Window { from: 0 });
+    let knows = camera.start(t, 0, &mut Rng::at(key, 0, 0, 0, Purpose::Start)).and_then(|x| t.expected(&x)).is_some();
+    let (kept, usual) = (plan(Roulette::Albedo { from: 8 }), plan(Roulette::Albedo { from: 2 }));
     let film = match what {
-        "prefix window" if t.expects() => {
-            render(t, camera, &Prefix(plan(Roulette::Window { from: 0 })), amount, Progress::NONE)
+        "prefix window" if knows => {
+            let prefix = guide::Prefix { plan: kept, end };
+            render(&Tracked(t), &TrackedSensor(camera), &prefix, amount, Progress::NONE)
         }
-        "prefix" | "prefix window" => {
-            render(t, camera, &Prefix(plan(Roulette::Albedo { from: 8 })), amount, Progress::NONE)
+        "prefix" | "prefix window" => render(t, camera, &Prefix(kept), amount, Progress::NONE),
+        _ => {
+            let end = (knows && what == "window").then_some(end);
+            render(t, camera, &guide::PathTracer { plan: usual, end }, amount, Progress::NONE)
         }
-        "window" if t.expects() => {
-            render(t, camera, &PathTracer(plan(Roulette::Window { from: 0 })), amount, Progress::NONE)
-        }
-        _ => render(t, camera, &PathTracer(plan(Roulette::Albedo { from: 2 })), amount, Progress::NONE),
     };
     Run { film, seconds: worked() - start }
 }

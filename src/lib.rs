@@ -11,16 +11,32 @@
 //! **k counts applications of T**: k = 0 is emission seen directly, k = 1 direct light, k = 2 one bounce of indirect light. K keeps
 //! k = 0..=K, and everything longer is the tail. **q is the probability of termination.**
 //!
-//! | notation | meaning | place |
-//! |---|---|---|
-//! | x, ω | a surface point and the direction radiance leaves in | [`scene::Vertex`] |
-//! | E | emitted radiance, W·sr⁻¹·m⁻² | [`operator::Transport::emission`] |
-//! | T, sampled | rays in a scene, or a walk on a matrix | [`operator::Transport`] |
-//! | T_h = diag(ρ) F, applied | the matrix over patches | [`operator::matrix::LinearOperator`] |
-//! | `X_k`, E\[X_k\] = (T^k E)(x) | one sample of a term | [`estimator::TermEstimator`] |
-//! | R | independent replicates, the unit of every error | [`terms::TermFilm`] |
-//! | ‖T^k E‖₁ | over all surfaces | [`study::surface`] |
-//! | α, δ | level and margin of a verdict | [`stats::Criterion`] |
+//! **The lecture, symbol by symbol.**
+//!
+//! | symbol | meaning | item | file |
+//! |---|---|---|---|
+//! | x, ω | a surface point and the direction radiance leaves in | [`scene::Vertex`] | `scene/vertex.rs` |
+//! | L | radiance, W·sr⁻¹·m⁻²: the solution | by rays [`terms::Series`], by a matrix [`solver::Solution`] | `terms/series.rs`, `solver/radiosity.rs` |
+//! | L_o(x, ω) | radiance that leaves: what every state asks for | [`operator::Transport::State`] | `operator/transport.rs` |
+//! | L_i(x, ω_i) | radiance that arrives: L_o(x', −ω_i) at the x' that is seen | [`scene::Scene::look`] | `scene/mod.rs` |
+//! | L_e = E | emission | [`operator::Transport::emission`] | `operator/transport.rs` |
+//! | f(ω_o, ω_i) | BSDF, sr⁻¹ | [`scene::bsdf::Bsdf::eval`] | `scene/bsdf/` |
+//! | cos θ | at x, of the sampled direction | [`operator::Factors::cos`] | `operator/kernel.rs` |
+//! | K | local scattering: ∫ f L_i cos θ dω | [`scene::bsdf`] | `scene/bsdf/mod.rs` |
+//! | G | propagation along rays: L_i from L_o | [`scene::Scene::look`] | `scene/mod.rs` |
+//! | T = K G | one bounce, as something to sample | [`operator::Transport`], its factors apart [`operator::Kernel`] | `operator/transport.rs`, `operator/kernel.rs` |
+//! | T_h = diag(ρ) F | one bounce, as something to apply | [`operator::matrix::LinearOperator`] | `operator/matrix.rs` |
+//! | T^k E | the k-th term, one sample X_k of it | [`estimator::SingleTerm`], [`estimator::Prefix`] | `estimator/single_term.rs`, `estimator/prefix.rs` |
+//! | p_ω | density of a direction, sr⁻¹ | [`scene::bsdf::Bsdf::pdf`] | `scene/bsdf/mod.rs` |
+//! | p_A | density of a point on a lamp, m⁻² | [`scene::Scene::light_density`] | `scene/mod.rs` |
+//! | α | throughput of a path: Π f cos θ/(p (1 − q)) | `throughput` of [`estimator::Paths`] and in [`estimator::PathTracer::radiance`] | `estimator/paths.rs`, `estimator/path_tracer.rs` |
+//! | q\[k\] | probability of termination | [`estimator::Roulette::q`] | `estimator/roulette.rs` |
+//! | w | weight of a technique (MIS) | [`estimator::Technique`] | `estimator/technique.rs` |
+//! | shade(x, ω) | L_e plus light found from x | [`estimator::PathTracer::radiance`]; with N children [`estimator::Branching`] | `estimator/path_tracer.rs`, `estimator/branching.rs` |
+//! | N | samples per pixel; children of a vertex | [`engine::Settings::spp`]; [`estimator::Branching::children`] | `engine/settings.rs`, `estimator/branching.rs` |
+//! | γ | bound on the norm of T: ‖T^k E‖ ≤ γ^k ‖E‖ | guaranteed [`scene::Scene::max_albedo`], observed [`stats::observed_rate`] | `scene/mod.rs`, `stats/decay.rs` |
+//! | ‖T^k E‖₁ | over all surfaces | [`study::surface`] | `study/surface.rs` |
+//! | R | independent replicates, the unit of every error | [`terms::TermFilm`] | `terms/film.rs` |
 //!
 //! Data flows one way, and so do imports:
 //!

@@ -12,10 +12,12 @@ mod common;
 
 use chi_square::{Cells, Chart, p_value, together};
 use common::judge::{Judged, Jury, at};
-use common::sampling::{Kind, TECHNIQUES, collect, film, plan};
+use common::sampling::{Kind, TECHNIQUES, collect, plan};
 use common::scenes::{description, quad, room, sphere};
-use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, Technique};
-use fredholm::guide::{Guide, GuidedTransport, Recipe};
+use fredholm::estimator::render::{Amount, render};
+use fredholm::estimator::{Prefix, Roulette, SingleTerm, Technique};
+use fredholm::guide::tracked::{Tracked, TrackedSensor};
+use fredholm::guide::{self, ByExpectation, Expecting, Guide, GuidedTransport, Recipe};
 use fredholm::math::direction::Frame;
 use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::{SceneTransport, Sensor, Step, Transport};
@@ -70,6 +72,57 @@ const COARSE: Recipe = Recipe {
 
 fn guided<'a>(scene: &'a Scene, guide: &'a Guide) -> GuidedTransport<'a> {
     GuidedTransport { scene: SceneTransport::new(scene), guide }
+}
+
+/// How walks end: by roulette, or by what is expected of them.
+#[derive(Clone, Debug)]
+enum End {
+    Roulette(Roulette),
+    ByExpectation(ByExpectation),
+}
+use End::{ByExpectation as By, Roulette as Plain};
+
+impl std::fmt::Display for End {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Roulette(r) => r.fmt(f),
+            Self::ByExpectation(e) => e.fmt(f),
+        }
+    }
+}
+
+const WINDOW: End = By(ByExpectation::Window { from: 0 });
+
+/// A film of R = 256 replicates.
+fn film<T: Expecting>(
+    t: &T,
+    camera: &Camera,
+    kind: Kind,
+    (k, technique, end): (usize, Technique, &End),
+    spp: u32,
+    key: Key,
+) -> TermFilm
+where
+    Camera: Sensor<T>,
+{
+    let amount = Amount { spp, replicates: 256, key };
+    let plan = |roulette: &Roulette| plan(k, technique, roulette);
+    match (kind, end) {
+        (Kind::Single, Plain(r)) => render(t, camera, &SingleTerm(plan(r)), amount, Progress::NONE),
+        (Kind::Prefix, Plain(r)) => render(t, camera, &Prefix(plan(r)), amount, Progress::NONE),
+        (Kind::Path, Plain(r)) => {
+            render(t, camera, &guide::PathTracer { plan: plan(r), end: None }, amount, Progress::NONE)
+        }
+        (Kind::Single, By(end)) => render(t, camera, &SingleTerm(plan(&end.plain())), amount, Progress::NONE),
+        (Kind::Prefix, &By(end)) => {
+            let prefix = guide::Prefix { plan: plan(&end.plain()), end };
+            render(&Tracked(t), &TrackedSensor(camera), &prefix, amount, Progress::NONE)
+        }
+        (Kind::Path, &By(end)) => {
+            let path = guide::PathTracer { plan: plan(&end.plain()), end: Some(end) };
+            render(t, camera, &path, amount, Progress::NONE)
+        }
+    }
 }
 
 /// Every sum of a film.
@@ -149,11 +202,11 @@ fn guided_directions_have_the_density_they_claim() {
 
 const KINDS: [Kind; 3] = [Kind::Prefix, Kind::Single, Kind::Path];
 
-fn of<T: Transport>(t: &T, camera: &Camera, kind: Kind, technique: Technique) -> Vec<u64>
+fn of<T: Expecting>(t: &T, camera: &Camera, kind: Kind, technique: Technique) -> Vec<u64>
 where
     Camera: Sensor<T>,
 {
-    bits(&film(t, camera, kind, &plan(5, technique, &Roulette::LECTURE), 256, Key::new(2, "bits")))
+    bits(&film(t, camera, kind, (5, technique, &Plain(Roulette::LECTURE)), 256, Key::new(2, "bits")))
 }
 
 #[test]
@@ -202,12 +255,28 @@ fn guided_terms_and_tail_sum_to_the_guided_path_tracer() {
     for d in [built_in("cornell", [12, 12]), built_in("cornell-spheres", [12, 12])] {
         let (scene, guide) = (Scene::new(&d), guide(&d, COARSE));
         let t = guided(&scene, &guide);
-        let roulettes =
-            [Roulette::Albedo { from: 1 }, Roulette::Contribution { from: 1 }, Roulette::Window { from: 0 }];
-        for (technique, roulette) in TECHNIQUES.into_iter().flat_map(|t| roulettes.each_ref().map(|r| (t, r))) {
-            let (plan, key) = (plan(3, technique, roulette), Key::new(5, "sums"));
-            let terms = collect(&t, &scene.camera, &Prefix(plan.clone()), 16, 16, key);
-            let paths = collect(&t, &scene.camera, &PathTracer(plan.clone()), 16, 16, key);
+        let ends = [Plain(Roulette::Albedo { from: 1 }), By(ByExpectation::Contribution { from: 1 }), WINDOW];
+        for (technique, end) in TECHNIQUES.into_iter().flat_map(|t| ends.iter().map(move |e| (t, e))) {
+            let key = Key::new(5, "sums");
+            let (terms, paths) = match *end {
+                By(end) => {
+                    let plan = plan(3, technique, &end.plain());
+                    let (tracked, sensor) = (Tracked(&t), TrackedSensor(&scene.camera));
+                    let path = guide::PathTracer { plan: plan.clone(), end: Some(end) };
+                    (
+                        collect(&tracked, &sensor, &guide::Prefix { plan, end }, 16, 16, key),
+                        collect(&t, &scene.camera, &path, 16, 16, key),
+                    )
+                }
+                Plain(ref roulette) => {
+                    let plan = plan(3, technique, roulette);
+                    let path = guide::PathTracer { plan: plan.clone(), end: None };
+                    (
+                        collect(&t, &scene.camera, &Prefix(plan), 16, 16, key),
+                        collect(&t, &scene.camera, &path, 16, 16, key),
+                    )
+                }
+            };
             let mut tails = 0.0;
             for (i, (terms, path)) in terms.paths().zip(paths.paths()).enumerate() {
                 let sum: DVec3 = terms.iter().sum();
@@ -226,38 +295,45 @@ fn guided_terms_and_tail_sum_to_the_guided_path_tracer() {
 fn walks_split_the_same_however_they_are_walked() {
     let d = built_in("cornell", [16, 16]);
     let (packets, single, guide) = (Scene::new(&d), Scene::new(&d).one_by_one(), guide(&d, COARSE));
-    let window = Roulette::Window { from: 0 };
     let of = |scene: &Scene, kind, threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let plan = plan(3, Technique::Mis, &window);
-        pool.install(|| film(&guided(scene, &guide), &scene.camera, kind, &plan, 256, Key::new(2, "split")))
+        let how = (3, Technique::Mis, &WINDOW);
+        pool.install(|| film(&guided(scene, &guide), &scene.camera, kind, how, 256, Key::new(2, "split")))
     };
     for kind in KINDS {
         let all = [of(&packets, kind, 1), of(&packets, kind, 3), of(&single, kind, 2)];
         assert!(all.iter().all(|film| bits(film) == bits(&all[0])), "{kind:?}");
     }
     // more rays go out of the second vertex of the same paths than without splitting
-    let rays = |roulette: &Roulette| {
-        let plan = plan(3, Technique::Mis, roulette);
-        film(&guided(&packets, &guide), &packets.camera, Kind::Prefix, &plan, 256, Key::new(2, "split")).rays[2]
+    let rays = |end: &End| {
+        let how = (3, Technique::Mis, end);
+        film(&guided(&packets, &guide), &packets.camera, Kind::Prefix, how, 256, Key::new(2, "split")).rays[2]
     };
-    let (split, ended) = (rays(&window), rays(&Roulette::Contribution { from: 0 }));
+    let (split, ended) = (rays(&WINDOW), rays(&By(ByExpectation::Contribution { from: 0 })));
     assert!(split as f64 > 1.1 * ended as f64, "{split} {ended}");
     for kind in KINDS {
-        let of = |roulette: Roulette| {
-            let plan = plan(3, Technique::Mis, &roulette);
-            bits(&film(&SceneTransport::new(&packets), &packets.camera, kind, &plan, 256, Key::new(2, "blind")))
+        let of = |end: End| {
+            let how = (3, Technique::Mis, &end);
+            bits(&film(&SceneTransport::new(&packets), &packets.camera, kind, how, 256, Key::new(2, "blind")))
         };
-        assert!(of(Roulette::Window { from: 1 }) == of(Roulette::Albedo { from: 1 }), "{kind:?}");
+        let blind = of(By(ByExpectation::Window { from: 1 }));
+        assert!(blind == of(Plain(Roulette::Albedo { from: 1 })), "{kind:?}");
     }
 }
 
 /// Means of the image, slot by slot, and of all of it.
-fn means<T: Transport>(t: &T, camera: &Camera, kind: Kind, plan: &Plan, spp: u32, key: Key) -> Vec<Estimate>
+fn means<T: Expecting>(
+    t: &T,
+    camera: &Camera,
+    kind: Kind,
+    how: (usize, Technique, &End),
+    spp: u32,
+    key: Key,
+) -> Vec<Estimate>
 where
     Camera: Sensor<T>,
 {
-    slots(&film(t, camera, kind, plan, spp, key))
+    slots(&film(t, camera, kind, how, spp, key))
 }
 
 /// Image means of every slot of a film, and of all of it.
@@ -284,18 +360,18 @@ fn less(a: &Estimate, b: &Estimate) -> Estimate {
 fn guided_terms_agree_with_the_others() {
     let mut jury = Jury::open("guided_terms_agree_with_the_others");
     let criterion = Criterion::default();
-    let (long, window) = (Roulette::Albedo { from: 4 }, Roulette::Window { from: 0 });
+    let (long, window) = (Plain(Roulette::Albedo { from: 4 }), WINDOW);
     let ways = [(Kind::Prefix, &long), (Kind::Single, &long), (Kind::Prefix, &window)];
     let many = built_in("many-lights", [12, 12]);
     for (d, spp) in [(built_in("cornell", [16, 16]), 8192), (lamps(), 8192), (glossy(), 8192), (many, 4096)] {
         let (scene, guide) = (Scene::new(&d), guide(&d, COARSE));
-        let of = |roulette: &Roulette| plan(4, Technique::Mis, roulette);
+        let of = |end| (4, Technique::Mis, end);
         let key = Key::new(jury.seed(), "agree");
         let plain = SceneTransport::new(&scene);
-        let plain = means(&plain, &scene.camera, Kind::Prefix, &of(&long), spp, key.branch(0));
+        let plain = means(&plain, &scene.camera, Kind::Prefix, of(&long), spp, key.branch(0));
         for (i, (kind, roulette)) in ways.into_iter().enumerate() {
             let t = guided(&scene, &guide);
-            let guided = means(&t, &scene.camera, kind, &of(roulette), spp, key.branch(1 + i as u32));
+            let guided = means(&t, &scene.camera, kind, of(roulette), spp, key.branch(1 + i as u32));
             let whole = plain[plain.len() - 1].mean;
             // what the eye sees of the lamps is no matter of guides, and of small lamps it is noisy
             for (s, (a, b)) in guided.iter().zip(&plain).enumerate().skip(1) {
@@ -319,16 +395,16 @@ fn guided_terms_agree_with_the_others() {
 #[ignore = "minutes"]
 fn guided_terms_agree_closely() {
     let mut jury = Jury::open("guided_terms_agree_closely");
-    let long = plan(4, Technique::Mis, &Roulette::Albedo { from: 4 });
-    let window = plan(4, Technique::Mis, &Roulette::Window { from: 0 });
+    let long = Plain(Roulette::Albedo { from: 4 });
+    let (long, window) = ((4, Technique::Mis, &long), (4, Technique::Mis, &WINDOW));
     for name in ["cornell", "many-lights"] {
         let (d, spp) = (built_in(name, [24, 24]), 1 << 14);
         let (scene, guide) = (Scene::new(&d), guide(&d, Recipe::default()));
         let (t, key) = (guided(&scene, &guide), Key::new(jury.seed(), name));
-        let plain = means(&SceneTransport::new(&scene), &scene.camera, Kind::Prefix, &long, spp, key.branch(0));
+        let plain = means(&SceneTransport::new(&scene), &scene.camera, Kind::Prefix, long, spp, key.branch(0));
         let whole = plain[plain.len() - 1];
-        let terms = means(&t, &scene.camera, Kind::Prefix, &window, spp, key.branch(1));
-        let path = means(&t, &scene.camera, Kind::Path, &window, spp, key.branch(2)).pop();
+        let terms = means(&t, &scene.camera, Kind::Prefix, window, spp, key.branch(1));
+        let path = means(&t, &scene.camera, Kind::Path, window, spp, key.branch(2)).pop();
         for (s, (a, b)) in terms.iter().chain(&path).zip(plain.iter().chain([&whole])).enumerate().skip(1) {
             let difference = less(a, b);
             let delta = 0.02 * b.mean + 1e-4 * whole.mean;
@@ -359,8 +435,8 @@ fn guided_walks_have_the_terms_of_a_furnace() {
     assert!(d.shapes.len() == 1 && albedo == DVec3::splat(rho), "{d:?}");
     let t = guided(&scene, &guide);
     for technique in [Technique::Scatter, Technique::Mis] {
-        let plan = plan(4, technique, &Roulette::Never);
-        let film = film(&t, &scene.camera, Kind::Prefix, &plan, 1 << 14, Key::new(jury.seed(), "furnace"));
+        let how = (4, technique, &Plain(Roulette::Never));
+        let film = film(&t, &scene.camera, Kind::Prefix, how, 1 << 14, Key::new(jury.seed(), "furnace"));
         let whole: DVec3 = (0..=4).map(|k| emission * rho.powi(k)).sum();
         for pixel in [0, 5, 15] {
             for k in 0..=4usize {
@@ -410,11 +486,14 @@ fn a_guide_that_nobody_accounts_for_is_found() {
     let d = built_in("cornell", [16, 16]);
     // rays look for the lamp, too: there the two densities meet
     let (scene, guide) = (Scene::new(&d), guide(&d, Recipe { emission: true, ..COARSE }));
-    let (t, plan) = (guided(&scene, &guide), plan(1, Technique::Mis, &Roulette::Never));
+    let never = Plain(Roulette::Never);
+    let (t, how) = (guided(&scene, &guide), (1, Technique::Mis, &never));
     let key = Key::new(account.seed(), "found");
-    let plain = means(&SceneTransport::new(&scene), &scene.camera, Kind::Prefix, &plan, 1 << 14, key.branch(0));
-    let right = means(&t, &scene.camera, Kind::Prefix, &plan, 1 << 14, key.branch(1));
-    let wrong = film(&Forgetful(t), &Eye(&scene.camera), Kind::Prefix, &plan, 1 << 14, key.branch(2));
+    let plain = means(&SceneTransport::new(&scene), &scene.camera, Kind::Prefix, how, 1 << 14, key.branch(0));
+    let right = means(&t, &scene.camera, Kind::Prefix, how, 1 << 14, key.branch(1));
+    let amount = Amount { spp: 1 << 14, replicates: 256, key: key.branch(2) };
+    let prefix = Prefix(plan(1, Technique::Mis, &Roulette::Never));
+    let wrong = render(&Forgetful(t), &Eye(&scene.camera), &prefix, amount, Progress::NONE);
     let wrong = image_replicates(&wrong).estimate(1..2);
     account.assert_equivalent("direct light", &less(&right[1], &plain[1]), DVec3::ZERO, 0.01 * plain[1].mean);
     account.assert_differs("direct light, weights that do not add up", &less(&wrong, &plain[1]), DVec3::ZERO);

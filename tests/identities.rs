@@ -9,7 +9,7 @@ use common::scenes::{bands, description, quad, room, sphere};
 use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, SingleTerm, Technique};
 use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::matrix_walk::Rows;
-use fredholm::operator::{MatrixWalk, SceneTransport, Sensor, Transport};
+use fredholm::operator::{Kernel, MatrixWalk, SceneTransport, Sensor, Transport};
 use fredholm::scene::description::{Description, Geometry};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Scene, Vertex};
@@ -81,7 +81,7 @@ fn schedules() -> Vec<Roulette> {
 }
 
 /// Σ_k X_k + tail of the prefix estimator is the sample of the independent path tracer, path by path.
-fn sums_are_path_tracer_samples<T: Transport>(name: &str, t: &T, sensor: &impl Sensor<T>, samples: u32) {
+fn sums_are_path_tracer_samples<T: Kernel>(name: &str, t: &T, sensor: &impl Sensor<T>, samples: u32) {
     let key = Key::new(5, name);
     let mut tails = 0.0;
     for technique in TECHNIQUES {

@@ -82,7 +82,8 @@ fn albedo_one_with_a_hole_has_its_closed_form() {
 fn the_growth_of_second_moments_is_that_of_the_furnace() {
     let of = |scene: &Scene, sampling, roulette: &Roulette| {
         let t = SceneTransport { scene, sampling };
-        growth(&FromEye { t: &t, sensor: &scene.camera, roulette }, 2, 2, 0)
+        let q = |v: usize, throughput, at: &fredholm::scene::Vertex| roulette.q(&t, v, throughput, at);
+        growth(&FromEye { t: &t, sensor: &scene.camera, q }, 2, 2, 0)
     };
     for (rho, q, variance) in [
         (0.999, 0.5, Variance::Infinite),

@@ -20,7 +20,7 @@ use common::scenes::{description, quad, room, sphere};
 use fredholm::estimator::{PathTracer, Prefix, Roulette, Technique};
 use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::matrix_walk::Rows;
-use fredholm::operator::{SceneTransport, Sensor, Transport};
+use fredholm::operator::{Kernel, SceneTransport, Sensor, Transport};
 use fredholm::scene::Scene;
 use fredholm::terms::Estimate;
 use fredholm::terms::functional::image_replicates;
@@ -107,7 +107,7 @@ fn near(a: DVec3, b: DVec3) -> bool {
 }
 
 /// Both equalities for `samples` paths of every pixel.
-fn check<T: Transport>(t: &T, sensor: &impl Sensor<T>, schedule: &Roulette, samples: u32) -> Result<(), TestCaseError> {
+fn check<T: Kernel>(t: &T, sensor: &impl Sensor<T>, schedule: &Roulette, samples: u32) -> Result<(), TestCaseError> {
     let key = Key::new(11, "roulette");
     let pixels = sensor.size()[0] * sensor.size()[1];
     for technique in TECHNIQUES {

@@ -11,6 +11,7 @@ use fredholm::engine::by_rays::{self, Estimator, Sampled};
 use fredholm::engine::discretisation::{Difference, Factors};
 use fredholm::engine::guided::{self, Prepared};
 use fredholm::estimator::Roulette;
+use fredholm::guide::ByExpectation;
 use fredholm::math::Points;
 use fredholm::progress::Progress;
 use fredholm::report::{summary, table};
@@ -134,6 +135,7 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         sampling: run.sampling,
         roulette: asked.clone().unwrap_or(fallback.clone().after(max_bounces)),
         path_roulette: asked.unwrap_or(fallback),
+        by_expectation: by_expectation(run.roulette.as_ref(), run.guide != GuideName::Bsdf)?,
         patches: patches as usize,
         factors: preflight::factors(run, patches)?,
         read_patches: run.read_patches,
@@ -332,7 +334,22 @@ pub fn coarse(description: &Description, scene: &Scene) -> Option<Matrix<Radiosi
 pub fn given(asked: Option<&Schedule>) -> Option<Roulette> {
     match asked {
         Some(Schedule::Given(roulette)) => Some(roulette.clone()),
+        Some(Schedule::ByExpectation(end)) => Some(end.plain()),
         _ => None,
+    }
+}
+
+/// How guided walks end, where that was typed.
+///
+/// # Errors
+/// Without a guide nobody knows what to expect.
+pub fn by_expectation(asked: Option<&Schedule>, guide: bool) -> Result<Option<ByExpectation>, Failure> {
+    match asked {
+        Some(Schedule::ByExpectation(end)) if !guide => Err(Failure::Usage(format!(
+            "error: --roulette {end} goes by what a guide expects, and there is none\nhelp: add --guide radiosity (series, render), or choose albedo"
+        ))),
+        Some(Schedule::ByExpectation(end)) => Ok(Some(*end)),
+        _ => Ok(None),
     }
 }
 
@@ -342,7 +359,7 @@ pub fn fixed(asked: Option<&Schedule>) -> Result<Option<Roulette>, Failure> {
         Some(Schedule::Optimal) => Err(Failure::Usage(
             "error: --roulette optimal has no part in this\nhelp: `fredholm roulette SCENE --optimise` finds it; give its table here".into(),
         )),
-        asked => Ok(given(asked)),
+        asked => by_expectation(asked, false).map(|_| given(asked)),
     }
 }
 

@@ -184,6 +184,7 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
     let (run, over) = (&args.run, args.over);
     let max_bounces = usize::from(run.max_bounces.unwrap_or(if over == Over::Branching { 4 } else { 8 }));
     let after = Roulette::Albedo { from: 2 }.after(max_bounces);
+    solve::by_expectation(run.roulette.as_ref(), false)?;
     let (given, wish) = (solve::given(run.roulette.as_ref()), run.roulette == Some(args::Schedule::Optimal));
     let common = Settings {
         spp: run.spp.unwrap_or(if over == Over::Branching { 32 } else { 256 }),
@@ -217,6 +218,9 @@ fn cases(args: &args::Sweep) -> Result<Vec<Case>, Failure> {
                 Over::Points => settings.points = args::points(&value)?,
                 Over::Roulette => {
                     let asked = args::schedule(&value)?;
+                    if let args::Schedule::ByExpectation(end) = asked {
+                        return Err(format!("{end} goes by what a guide expects, and a sweep has none"));
+                    }
                     optimal = asked == args::Schedule::Optimal;
                     settings.roulette = solve::given(Some(&asked)).unwrap_or(settings.roulette.clone());
                 }

@@ -135,6 +135,7 @@ fn cases(args: &args::Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
         points.push((String::new(), Points::Independent));
     }
     let end = Roulette::Albedo { from: 2 };
+    schedules.iter().try_for_each(|(_, asked)| solve::by_expectation(asked.as_ref(), false).map(|_| ()))?;
     let given = |r: &Option<Schedule>| solve::given(r.as_ref());
     let mut cases: Vec<Case> = vec![];
     for (e, estimator) in &estimators {

@@ -138,10 +138,7 @@ pub(crate) fn doubt(t: &SceneTransport<'_>, estimator: Option<Estimator>, settin
         return None;
     }
     match estimator {
-        Some(Estimator::Light) => {
-            let found = growth::growth(&growth::FromLight { t, roulette }, roulette.settled(), 2, settings.seed);
-            (found.variance() != Variance::Finite).then_some(found)
-        }
+        Some(Estimator::Light) => growth::doubt(&growth::FromLight { t, roulette }, roulette.settled(), settings),
         _ => growth::doubt_from_eye(t, &t.scene.camera, roulette, settings),
     }
 }

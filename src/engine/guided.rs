@@ -4,13 +4,14 @@
 
 use crate::engine::Settings;
 use crate::engine::by_rays::{self, Estimator, Sampled, annotated, spread};
-use crate::engine::known::growth::{self, Growth};
-use crate::estimator::{Branching, PathTracer, Plan, Prefix, Roulette, SingleTerm};
-use crate::guide::{Guide, GuidedTransport, Recipe};
+use crate::engine::known::growth::{self, FromEye, Growth};
+use crate::estimator::{Branching, Plan, Prefix, Roulette, SingleTerm};
+use crate::guide::tracked::{Track, Tracked, TrackedSensor};
+use crate::guide::{self, ByExpectation, Guide, GuidedTransport, Recipe};
 use crate::math::Key;
 use crate::operator::SceneTransport;
 use crate::progress::Progress;
-use crate::scene::{Description, Scene, SceneError};
+use crate::scene::{Description, Scene, SceneError, Vertex};
 use crate::terms::World;
 use std::time::{Duration, Instant};
 
@@ -73,33 +74,52 @@ impl Prepared {
         let (t, settings) = (self.transport(scene, settings), &self.rest(settings));
         let (plan, camera, stream) = (settings.plan(), &scene.camera, format!("guided {estimator}"));
         let name = (World::Terms, self.label(&estimator.to_string(), settings));
-        let result = match estimator {
-            Estimator::Prefix => by_rays::sample(&t, camera, &Prefix(plan), &stream, name, settings, progress),
-            Estimator::Single => by_rays::sample(&t, camera, &SingleTerm(plan), &stream, name, settings, progress),
-            Estimator::Branching { children } => {
+        let end = settings.by_expectation.filter(|_| estimator == Estimator::Prefix);
+        let result = match (estimator, end) {
+            (Estimator::Prefix, Some(end)) => {
+                let (t, camera) = (Tracked(&t), TrackedSensor(camera));
+                by_rays::sample(&t, &camera, &guide::Prefix { plan, end }, &stream, name, settings, progress)
+            }
+            (Estimator::Prefix, None) => by_rays::sample(&t, camera, &Prefix(plan), &stream, name, settings, progress),
+            (Estimator::Single, _) => by_rays::sample(&t, camera, &SingleTerm(plan), &stream, name, settings, progress),
+            (Estimator::Branching { children }, _) => {
                 let tree = Branching { plan, children };
                 by_rays::sample(&t, camera, &tree, &stream, name, settings, progress)
             }
-            Estimator::Light | Estimator::Bidirectional => return None,
+            (Estimator::Light | Estimator::Bidirectional, _) => return None,
         };
-        let doubt = self.doubt(&t, settings.roulette_of(Some(estimator)), settings);
+        let doubt = doubt(&t, end, settings.roulette_of(Some(estimator)), settings);
         Some(annotated(result, scene, Some(estimator), settings).judged(doubt))
     }
 
     /// The full path tracer.
     pub fn path(&self, scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
         let (t, settings) = (self.transport(scene, settings), &self.rest(settings));
-        let plan = Plan { roulette: settings.path_roulette.clone(), ..settings.plan() };
-        let label = self.label("path tracer", settings) + &format!(", roulette {}", settings.path_roulette);
-        let name = (World::Path, label);
-        let path = PathTracer(plan);
+        let (roulette, end) = (&settings.path_roulette, settings.by_expectation);
+        let how = end.map_or(roulette.to_string(), |end| end.to_string());
+        let name = (World::Path, self.label("path tracer", settings) + &format!(", roulette {how}"));
+        let path = guide::PathTracer { plan: Plan { roulette: roulette.clone(), ..settings.plan() }, end };
         let result = by_rays::sample(&t, &scene.camera, &path, "guided path", name, settings, progress);
-        let doubt = self.doubt(&t, &settings.path_roulette, settings);
+        let doubt = doubt(&t, end, roulette, settings);
         annotated(result, scene, None, settings).judged(doubt)
     }
+}
 
-    /// A guide's weights are what they are: whether they grow is measured.
-    fn doubt(&self, t: &GuidedTransport<'_>, roulette: &Roulette, settings: &Settings) -> Option<Growth> {
-        if !roulette.ends() { None } else { growth::doubt_from_eye(t, &t.scene.scene.camera, roulette, settings) }
+/// A guide's weights are what they are: whether they grow is measured.
+fn doubt(
+    t: &GuidedTransport<'_>,
+    end: Option<ByExpectation>,
+    roulette: &Roulette,
+    settings: &Settings,
+) -> Option<Growth> {
+    let camera = &t.scene.scene.camera;
+    match end {
+        Some(end) => {
+            let q = |v: usize, throughput, at: &Track<Vertex>| end.q(t, v, throughput, &at.x, at.start);
+            let walk = FromEye { t: &Tracked(t), sensor: &TrackedSensor(camera), q };
+            growth::doubt(&walk, end.from(), settings)
+        }
+        None if roulette.ends() => growth::doubt_from_eye(t, camera, roulette, settings),
+        None => None,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::discretisation::Factors;
 use crate::estimator::{Plan, Roulette, Technique};
+use crate::guide::ByExpectation;
 use crate::math::{Key, Points};
 use crate::scene::bsdf::Sampling;
 use std::time::Duration;
@@ -27,6 +28,8 @@ pub struct Settings {
     pub roulette: Roulette,
     /// How paths of the path tracer end.
     pub path_roulette: Roulette,
+    /// How guided walks of [`Prefix`](crate::guide::Prefix) and of the path tracer end or split, in place of roulette.
+    pub by_expectation: Option<ByExpectation>,
     /// About how many patches the matrix has.
     pub patches: usize,
     /// How much narrower its patches get towards edges; 1: not at all ([`Patches::graded`](crate::operator::patches::Patches::graded)).
@@ -51,6 +54,7 @@ impl Default for Settings {
             sampling: Sampling::Bsdf,
             roulette: end.clone().after(max_bounces),
             path_roulette: end,
+            by_expectation: None,
             patches: 600,
             grading: 1.0,
             factors: Factors::Dense,

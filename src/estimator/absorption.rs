@@ -37,7 +37,7 @@ impl<T: Transport> TermEstimator<T> for Absorption {
             let rng = |v, purpose| Rng::at(batch.key, pixel, sample, v, purpose);
             sink.rays(0, 1);
             let Some(mut x) = sensor.start(t, pixel, &mut rng(0, Purpose::Start)) else { continue };
-            let mut w = t.lit();
+            let mut throughput = t.lit();
             for v in 0.. {
                 let here = t.absorption(&x);
                 // without roulette a path has no end at which it could score
@@ -45,15 +45,15 @@ impl<T: Transport> TermEstimator<T> for Absorption {
                     break;
                 }
                 let slot = v.min(max_bounces + 1);
-                let q = here.unwrap_or_else(|| roulette.q(t, v, w, &x, 0.0));
+                let q = here.unwrap_or_else(|| roulette.q(t, v, throughput, &x));
                 if q > 0.0 && rng(v, Purpose::Roulette).one() < q {
-                    value.set(0, w * t.emission(&x) / q);
+                    value.set(0, throughput * t.emission(&x) / q);
                     sink.add(slot, &[pixel], &[sample], &value);
                     break;
                 }
                 sink.rays((v + 1).min(max_bounces + 1), 1);
                 let Some(step) = t.scatter(&x, &mut rng(v, Purpose::Scatter)) else { break };
-                w *= step.weight * (1.0 / (1.0 - q));
+                throughput *= step.weight * (1.0 / (1.0 - q));
                 x = step.state;
             }
         }

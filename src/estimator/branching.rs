@@ -67,7 +67,7 @@ impl Branching {
         }
         for c in 0..self.children {
             let key = lineage(key, v, c, self.children);
-            child.descend_from(parents, key, 1.0 / self.children as f32);
+            child.descend_from(parents, 0..parents.n, key, 1.0 / self.children as f32);
             prefix::step(t, &self.plan, v, [v + 1; 2], child, sink);
             self.descend(t, v + 1, key, child, below, sink);
         }
@@ -75,6 +75,6 @@ impl Branching {
 }
 
 /// The stream of child c of vertex v: the first child inherits its parent's, every other has one of its own.
-pub(super) fn lineage(key: Key, v: usize, c: u32, children: u32) -> Key {
+pub(crate) fn lineage(key: Key, v: usize, c: u32, children: u32) -> Key {
     if c == 0 { key } else { key.branch((v as u32).wrapping_mul(children).wrapping_add(c)) }
 }

@@ -10,7 +10,7 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | x → x', weight | one factor of T | [`Transport::scatter`] |
+//! | x → x', weight | one factor of T | [`Transport::scatter`](crate::operator::Transport::scatter) |
 //! | L | the path tracer, roulette included | [`PathTracer`] |
 //! | c | factor on the weight; 1, or the equation is broken on purpose | [`Equilibrium::factor`] |
 //!
@@ -20,7 +20,7 @@
 
 use super::{Job, PathTracer, Paths, Plan, TermEstimator, TermSink};
 use crate::math::{Columns, Purpose, Rgb, Rng};
-use crate::operator::{Sensor, Transport};
+use crate::operator::{Kernel, Sensor};
 
 /// Estimates L in slot 0 and E + T L in slot 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub struct Equilibrium {
     pub factor: f32,
 }
 
-impl<T: Transport> TermEstimator<T> for Equilibrium {
+impl<T: Kernel> TermEstimator<T> for Equilibrium {
     fn slots(&self) -> usize {
         2
     }

@@ -2,141 +2,121 @@
 //!
 //! ```text
 //! colour ← 0, α ← 1, x ← what the eye sees
+//! colour ← colour + α E(x)                                              emission counts at the eye
 //! repeat
-//!     if emission counts here:          colour ← colour + α E(x)      (at the eye; after a delta vertex; on hits under scatter, MIS)
-//!     if light is sampled:              colour ← colour + α · connect
-//!     if a random number is below q:    stop                         (q < 0: go on as 1 − q walks in the mean)
-//!     α ← α · weight / (1 − q),         x ← next
+//!     draw y on an emitter with density p                               where the technique connects
+//!         colour ← colour + α · f(x, y) cos θ / p · E(y) · w_c
+//!     stop with probability q,   α ← α / (1 − q)                        Russian roulette
+//!     draw the direction to x' with density p
+//!     α ← α · f(x, x') cos θ / p,   x ← x'
+//!     colour ← colour + α E(x) · w_s                                    where emission counts on hits: after a delta vertex, scatter, MIS
 //! ```
 //!
-//! Independent code on purpose: it knows nothing of waves, terms or slots, so that "sum of the terms = path tracer"
-//! compares two things. It reads the same addresses of random numbers, so with the same stream, technique and schedule the
-//! sum over the slots of [`Prefix`](super::Prefix) is this sample to rounding. With a schedule that never ends paths, it
-//! stops after `max_bounces` applications of T. Reference: Kajiya, *The Rendering Equation* (1986).
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | α | throughput: what the radiance that is found from here on is multiplied with | `throughput` |
+//! | f, cos θ, p | factors of T; on a matrix the row's entry, 1, and its probability | [`Factors`](crate::operator::Factors) |
+//! | q | probability of termination | [`Roulette::q`](super::Roulette::q) |
+//! | w_c, w_s | weights of the techniques | [`Technique`](super::Technique) |
+//!
+//! **Invariants**, before every round. α: its mean over all that was drawn is the measurement's product of f cos θ/p, so that
+//! `E[α · L(x)]` is the part of the pixel that paths of this length and longer bring. colour: its mean is Σ T^k E over all shorter
+//! paths. So E\[colour + α · (T L)(x)\] is the pixel, before every round.
+//!
+//! **What it shares with [`Prefix`](super::Prefix)**: the random numbers, by their addresses; where rays and connections go, which
+//! light and which direction is drawn; E, the albedo that q looks at, and the table of the technique's weights. **What it does not
+//! share**: weights. `Prefix` multiplies the closed product f cos θ/p of [`Transport`], often in packets and
+//! lanes; here the factors come apart from [`Kernel`] and are multiplied. It knows nothing of waves, terms or slots. So "sum of the
+//! terms = path tracer" compares two programs: with the same stream, technique and schedule, sample by sample, to rounding.
+//!
+//! With a schedule that never ends paths, it stops after `max_bounces` applications of T. Reference: Kajiya, *The Rendering Equation*
+//! (1986).
 
-use super::branching::lineage;
-use super::{Job, Paths, Plan, Roulette, TermEstimator, TermSink};
+use super::{Job, Paths, Plan, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
-use crate::operator::{Sensor, Transport};
+use crate::operator::{Kernel, Sensor, Transport};
 
 /// The path tracer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathTracer(pub Plan);
 
 impl PathTracer {
-    /// Radiance estimated by one path, and the rays it took.
-    pub fn radiance<T: Transport>(&self, t: &T, start: T::State, key: Key, pixel: u32, sample: u32) -> (Rgb, u64) {
-        let expected = t.expected(&start).unwrap_or_default().all;
+    /// Radiance estimated by one path from what the eye sees, and the rays it took.
+    pub fn radiance<T: Kernel>(&self, t: &T, eye: T::State, key: Key, pixel: u32, sample: u32) -> (Rgb, u64) {
+        let Plan { max_bounces, technique, ref roulette } = self.0;
+        let numbers = |v: usize, purpose: Purpose| Rng::at(key, pixel, sample, v, purpose);
+        let longest = if roulette.ends() { usize::MAX } else { max_bounces };
+
+        let (mut x, mut throughput, mut rays) = (eye, t.lit(), 0);
         // emission counts at the eye, whatever the technique
-        let mut colour = t.emission(&start);
-        let mut rays = 0;
-        // the copies of a path that wait until it has ended
-        let mut waiting = vec![];
-        let mut next = Some(Walker { vertex: 0, x: start, alpha: t.lit(), key, siblings: 1, scored: false });
-        while let Some(walker) = next {
-            self.follow(t, walker, expected, [pixel, sample], &mut waiting, (&mut colour, &mut rays));
-            next = waiting.pop();
+        let mut colour = t.emission(&x);
+
+        for v in 0..longest {
+            // next-event estimation: a point y on an emitter
+            if technique.connects() {
+                rays += 1;
+                if let Some(y) = t.sample_emitter(&x, &mut numbers(v, Purpose::Connect)) {
+                    let [p, other] = y.pair;
+                    colour +=
+                        throughput * y.f * (y.cos / y.pdf) * t.emission(&y.state) * technique.connection(p, other);
+                }
+            }
+            // the last connection has been made, and hits do not count
+            if v + 1 == longest && !technique.hits(t) {
+                break;
+            }
+            // Russian roulette: q is the probability of termination
+            let q = roulette.q(t, v, throughput, &x);
+            if q > 0.0 {
+                if numbers(v, Purpose::Roulette).one() < q {
+                    break;
+                }
+                throughput *= 1.0 / (1.0 - q);
+            }
+            // the next vertex x', along a direction from the BSDF
+            rays += 1;
+            let Some(next) = t.sample_direction(&x, &mut numbers(v, Purpose::Scatter)) else { break };
+            throughput *= next.f * (next.cos / next.pdf);
+            x = next.state;
+            // emission counts on hits, as far as connections have not found it
+            if technique.hits(t) {
+                let [p, other] = next.pair;
+                colour += throughput * t.emission(&x) * technique.hit(p, other);
+            }
         }
         (colour, rays)
     }
-
-    /// One walk from where it stands until it ends; the copies that it leaves are added to `waiting`.
-    fn follow<T: Transport>(
-        &self,
-        t: &T,
-        walker: Walker<T::State>,
-        expected: f32,
-        [pixel, sample]: [u32; 2],
-        waiting: &mut Vec<Walker<T::State>>,
-        (colour, rays): (&mut Rgb, &mut u64),
-    ) {
-        let Plan { max_bounces, technique, ref roulette } = self.0;
-        let Walker { vertex: first, mut x, mut alpha, key, mut siblings, mut scored } = walker;
-        let numbers = |vertex: usize, purpose: Purpose| Rng::at(key, pixel, sample, vertex, purpose);
-        let last = |applications: usize| !roulette.ends() && applications >= max_bounces;
-
-        for vertex in first.. {
-            if last(vertex) {
-                break;
-            }
-            // the light is sampled
-            if technique.connects() && !scored {
-                *rays += 1;
-                if let Some(light) = t.connect(&x, &mut numbers(vertex, Purpose::Connect)) {
-                    *colour += alpha
-                        * light.weight
-                        * t.emission(&light.state)
-                        * technique.connection(light.pdf, light.other_pdf);
-                }
-            }
-            if last(vertex + 1) && !technique.hits(t) {
-                break;
-            }
-            // roulette: q is the probability of termination, and below 0 the walk splits
-            let q = if scored { 0.0 } else { roulette.q(t, vertex, alpha, &x, expected) };
-            scored = false;
-            if q != 0.0 {
-                let (copies, weight) = Roulette::copies(q, numbers(vertex, Purpose::Roulette).one(), siblings);
-                if copies == 0 {
-                    break;
-                }
-                alpha *= weight;
-                siblings *= copies;
-                let copy = |c| Walker {
-                    vertex,
-                    x,
-                    alpha,
-                    key: lineage(key, vertex, c, Roulette::MOST),
-                    siblings,
-                    scored: true,
-                };
-                waiting.extend((1..copies).map(copy));
-            }
-            // the next vertex, whose emission counts if hits do
-            *rays += 1;
-            let Some(next) = t.scatter(&x, &mut numbers(vertex, Purpose::Scatter)) else { break };
-            alpha *= next.weight;
-            x = next.state;
-            if technique.hits(t) {
-                *colour += alpha * t.emission(&x) * technique.hit(next.pdf, next.other_pdf);
-            }
-        }
-    }
 }
 
-/// A walk that stands at a vertex.
-struct Walker<S> {
-    vertex: usize,
-    x: S,
-    alpha: Rgb,
-    key: Key,
-    /// Into how many its path has split.
-    siblings: u32,
-    /// Whether another copy has scored this vertex and gone through its roulette.
-    scored: bool,
-}
-
-impl<T: Transport> TermEstimator<T> for PathTracer {
+impl<T: Kernel> TermEstimator<T> for PathTracer {
     fn slots(&self) -> usize {
         1
     }
 
     fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
-        let &Job { t, sensor, batch } = job;
-        let mut rays = 0;
-        let mut value = Columns::new(1);
-        for sample in batch.samples.clone() {
-            for pixel in batch.pixels.clone() {
-                rays += 1;
-                let mut numbers = Rng::at(batch.key, pixel, sample, 0, Purpose::Start);
-                if let Some(start) = sensor.start(t, pixel, &mut numbers) {
-                    let (colour, more) = self.radiance(t, start, batch.key, pixel, sample);
-                    rays += more;
-                    value.set(0, colour);
-                    sink.add(0, &[pixel], &[sample], &value);
-                }
+        each_path(job, sink, |start, pixel, sample| self.radiance(job.t, start, job.batch.key, pixel, sample));
+    }
+}
+
+/// Into the only slot of a sink: what `radiance` finds from the start of every path of a job, and the rays it took.
+pub(crate) fn each_path<T: Transport, S: Sensor<T>>(
+    job: &Job<'_, T, S>,
+    sink: &mut impl TermSink,
+    radiance: impl Fn(T::State, u32, u32) -> (Rgb, u64),
+) {
+    let &Job { t, sensor, batch } = job;
+    let (mut rays, mut value) = (0, Columns::new(1));
+    for sample in batch.samples.clone() {
+        for pixel in batch.pixels.clone() {
+            rays += 1;
+            let mut numbers = Rng::at(batch.key, pixel, sample, 0, Purpose::Start);
+            if let Some(start) = sensor.start(t, pixel, &mut numbers) {
+                let (colour, more) = radiance(start, pixel, sample);
+                rays += more;
+                value.set(0, colour);
+                sink.add(0, &[pixel], &[sample], &value);
             }
         }
-        sink.rays(0, rays as usize);
     }
+    sink.rays(0, rays as usize);
 }

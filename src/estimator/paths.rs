@@ -8,11 +8,10 @@
 //!
 //! Paths that end are compacted away; the order of those that stay never changes, so sums do not depend on the wave size.
 
-use super::branching::lineage;
 use super::roulette::Roulette;
 use super::technique::Technique;
 use super::{Job, TermSink};
-use crate::math::{Columns, Key, Purpose, Streams, columns};
+use crate::math::{Columns, Key, Purpose, Rgb, Streams, columns};
 use crate::operator::{Samples, Sensor, Transport, Wave};
 use std::ops::Range;
 
@@ -54,12 +53,6 @@ pub struct Paths<W> {
     pub sample: Vec<u32>,
     /// What the last batched call gave back.
     pub samples: Samples,
-    /// What was expected of each path at its start, 0 where nobody knows.
-    expected: Vec<f32>,
-    /// Into how many the path of each has split.
-    siblings: Vec<u32>,
-    /// Who has split at the last roulette, and into how many.
-    splits: Vec<(u32, u32)>,
     key: Option<Key>,
     alive: Vec<u32>,
 }
@@ -75,7 +68,6 @@ impl<W> Paths<W> {
             self.state.resize(n);
             (self.throughput, self.samples) = (Columns::new(n), Samples::new(n));
             (self.pixel, self.sample) = (vec![0; n], vec![0; n]);
-            (self.expected, self.siblings) = (vec![0.0; n], vec![1; n]);
         }
     }
 
@@ -94,27 +86,25 @@ impl<W> Paths<W> {
         let streams = streams(batch.key, &self.pixel[..self.n], &self.sample[..self.n], 0, Purpose::Start);
         sensor.start_wave(t, &mut self.state, streams, &mut self.alive);
         self.throughput.fill(self.n, t.lit());
-        self.siblings.fill(1);
         self.compact();
-        for i in 0..self.n {
-            self.expected[i] = t.expected(&self.state.get(i)).unwrap_or_default().all;
-        }
     }
 
-    /// Copies of the paths of a wave, which go on with the numbers of another stream and throughput α · `share`.
-    pub(super) fn descend_from<S: Copy>(&mut self, parents: &Self, key: Key, share: f32)
-    where
+    /// Copies of some paths of a wave, which go on with the numbers of another stream and throughput α · `share`.
+    pub(crate) fn descend_from<S: Copy>(
+        &mut self,
+        parents: &Self,
+        some: impl ExactSizeIterator<Item = usize>,
+        key: Key,
+        share: f32,
+    ) where
         W: Wave<S>,
     {
-        self.reserve(parents.n);
-        (self.n, self.key) = (parents.n, Some(key));
-        self.pixel[..self.n].copy_from_slice(&parents.pixel[..self.n]);
-        self.sample[..self.n].copy_from_slice(&parents.sample[..self.n]);
-        self.expected[..self.n].copy_from_slice(&parents.expected[..self.n]);
-        self.siblings[..self.n].copy_from_slice(&parents.siblings[..self.n]);
-        for i in 0..self.n {
-            self.state.set(i, parents.state.get(i));
-            self.throughput.set(i, parents.throughput.get(i) * share);
+        self.reserve(some.len());
+        (self.n, self.key) = (some.len(), Some(key));
+        for (to, from) in some.enumerate() {
+            (self.pixel[to], self.sample[to]) = (parents.pixel[from], parents.sample[from]);
+            self.state.set(to, parents.state.get(from));
+            self.throughput.set(to, parents.throughput.get(from) * share);
         }
     }
 
@@ -144,65 +134,39 @@ impl<W> Paths<W> {
         }
     }
 
-    /// Russian roulette at vertex v: the survivors' throughputs grow by 1/(1 − q); none splits.
+    /// Russian roulette at vertex v: the survivors' throughputs grow by 1/(1 − q).
     pub fn roulette<T: Transport<Wave = W>>(&mut self, t: &T, v: usize, schedule: &Roulette)
     where
         W: Wave<T::State>,
     {
-        self.end_or_split(t, v, schedule, false);
-    }
-
-    /// The same, but where q < 0 a path goes on as several: the first of them here, the others by [`Self::copies`].
-    pub(super) fn split<T: Transport<Wave = W>>(&mut self, t: &T, v: usize, schedule: &Roulette)
-    where
-        W: Wave<T::State>,
-    {
-        self.end_or_split(t, v, schedule, true);
-    }
-
-    fn end_or_split<T: Transport<Wave = W>>(&mut self, t: &T, v: usize, schedule: &Roulette, split: bool)
-    where
-        W: Wave<T::State>,
-    {
-        self.splits.clear();
-        if schedule.sleeps(v) {
-            return;
+        if !schedule.sleeps(v) {
+            self.survive(v, |state, i, throughput, u| {
+                let q = schedule.q(t, v, throughput, &state.get(i));
+                if q > 0.0 { (u >= q).then(|| throughput * (1.0 / (1.0 - q))) } else { Some(throughput) }
+            });
         }
+    }
+
+    /// The throughput with which each path goes on, given its state and a uniform number; nothing: it ends.
+    pub(crate) fn survive<S>(&mut self, v: usize, mut throughput: impl FnMut(&mut W, usize, Rgb, f32) -> Option<Rgb>)
+    where
+        W: Wave<S>,
+    {
         let Some(key) = self.key else { return };
+        let streams = streams(key, &self.pixel[..self.n], &self.sample[..self.n], v, Purpose::Roulette);
         for i in 0..self.n {
-            let streams = streams(key, &self.pixel[..self.n], &self.sample[..self.n], v, Purpose::Roulette);
-            let throughput = self.throughput.get(i);
-            let q = schedule.q(t, v, throughput, &self.state.get(i), self.expected[i]);
-            let q = if split { q } else { q.max(0.0) };
-            let (copies, weight) = Roulette::copies(q, streams.rng(i).one(), self.siblings[i]);
-            if copies > 0 {
-                self.throughput.set(i, throughput * weight);
-                self.siblings[i] *= copies;
-                if copies > 1 {
-                    self.splits.push((self.alive.len() as u32, copies));
-                }
+            let u = streams.rng(i).one();
+            if let Some(alpha) = throughput(&mut self.state, i, self.throughput.get(i), u) {
+                self.throughput.set(i, alpha);
                 self.alive.push(i as u32);
             }
         }
         self.compact();
     }
 
-    /// Copy `c` ≥ 1 of every path that has split into more than `c` at vertex v; nothing if there is none.
-    pub(super) fn copies<S: Copy>(&self, v: usize, c: u32) -> Option<Self>
-    where
-        W: Wave<S>,
-    {
-        let of: Vec<usize> = self.splits.iter().filter(|(_, n)| *n > c).map(|(i, _)| *i as usize).collect();
-        let mut copy = Self { key: Some(lineage(self.key?, v, c, Roulette::MOST)), ..Self::default() };
-        copy.reserve(of.len());
-        copy.n = of.len();
-        for (to, &from) in of.iter().enumerate() {
-            copy.state.set(to, self.state.get(from));
-            copy.throughput.set(to, self.throughput.get(from));
-            (copy.pixel[to], copy.sample[to]) = (self.pixel[from], self.sample[from]);
-            (copy.expected[to], copy.siblings[to]) = (self.expected[from], self.siblings[from]);
-        }
-        (!of.is_empty()).then_some(copy)
+    /// The stream that the paths go on with.
+    pub(crate) fn key(&self) -> Option<Key> {
+        self.key
     }
 
     /// Scores emission on arrival: weighted by the technique and by the throughput, into a slot.
@@ -234,8 +198,6 @@ impl<W> Paths<W> {
             self.throughput.keep(alive);
             columns::keep(&mut self.pixel, alive);
             columns::keep(&mut self.sample, alive);
-            columns::keep(&mut self.expected, alive);
-            columns::keep(&mut self.siblings, alive);
             columns::keep(&mut self.samples.pdf, alive);
             columns::keep(&mut self.samples.other_pdf, alive);
             self.n = alive.len();

@@ -5,13 +5,13 @@
 //! X_k = α_{k−1} · w_c · (sample of T E at x_{k−1})  +  α_k · w_s · E(x_k)        α_k = Π_{v<k} weight_v / (1 − q_v)
 //! ```
 //!
-//! with w_c, w_s from the [`Technique`](super::Technique). Loop invariant: before the step at vertex v, every term k ≤ v has
+//! with w_c, w_s from the [`Technique`]. Loop invariant: before the step at vertex v, every term k ≤ v has
 //! been scored, and `throughput` is α_v.
 //!
 //! Terms of one path share their prefix, so they are correlated; fits over k must use their covariance.
 //! Reference: Kajiya, *The Rendering Equation* (1986); Veach (1997), ch. 10.
 
-use super::{Job, Paths, Plan, Roulette, TermEstimator, TermSink};
+use super::{Job, Paths, Plan, Technique, TermEstimator, TermSink};
 use crate::operator::{Sensor, Transport};
 
 /// The prefix estimator.
@@ -30,7 +30,7 @@ impl<T: Transport> TermEstimator<T> for Prefix {
 }
 
 /// Starts the paths of a batch and scores term 0.
-pub(super) fn start<T: Transport, S: Sensor<T>>(
+pub(crate) fn start<T: Transport, S: Sensor<T>>(
     job: &Job<'_, T, S>,
     paths: &mut Paths<T::Wave>,
     sink: &mut impl TermSink,
@@ -41,8 +41,7 @@ pub(super) fn start<T: Transport, S: Sensor<T>>(
     sink.rays(0, job.batch.len());
 }
 
-/// Follows paths that stand at vertex `first`, scoring every term beyond it; terms beyond K go to the tail's slot. Where the roulette
-/// splits paths, their copies are followed to the end first.
+/// Follows paths that stand at vertex `first`, scoring every term beyond it; terms beyond K go to the tail's slot.
 pub(super) fn follow<T: Transport>(
     t: &T,
     plan: &Plan,
@@ -57,21 +56,14 @@ pub(super) fn follow<T: Transport>(
         if paths.n == 0 || slot == tail && !plan.roulette.ends() {
             break;
         }
-        connect(t, plan, v, slot, paths, sink);
-        if is_last(t, plan, v) {
+        if !step(t, plan, v, [slot; 2], paths, sink) {
             break;
         }
-        paths.split(t, v, &plan.roulette);
-        for mut copies in (1..Roulette::MOST).map_while(|c| paths.copies(v, c)) {
-            scatter(t, plan, v, slot, &mut copies, sink);
-            follow(t, plan, v + 1, &mut copies, sink);
-        }
-        scatter(t, plan, v, slot, paths, sink);
     }
 }
 
 /// Scores term v + 1 from paths that stand at vertex v, which move on to v + 1: the connection goes to one slot, the hit to
-/// another. Where nothing is left to be found beyond the last connection, the paths stay. None splits.
+/// another. Where nothing is left to be found beyond the last connection, the paths stay, and the answer is false.
 pub(super) fn step<T: Transport>(
     t: &T,
     plan: &Plan,
@@ -79,40 +71,37 @@ pub(super) fn step<T: Transport>(
     [connection, hit]: [usize; 2],
     paths: &mut Paths<T::Wave>,
     sink: &mut impl TermSink,
-) {
-    connect(t, plan, v, connection, paths, sink);
-    if !is_last(t, plan, v) {
+) -> bool {
+    connect(t, plan.technique, v, connection, paths, sink);
+    let more = v + 1 != plan.max_bounces || plan.technique.hits(t) || plan.roulette.ends();
+    if more {
         // roulette, once vertex v has been scored
         paths.roulette(t, v, &plan.roulette);
-        scatter(t, plan, v, hit, paths, sink);
+        scatter(t, plan.technique, v, hit, paths, sink);
     }
+    more
 }
 
 /// Next-event estimation of term v + 1.
-fn connect<T: Transport>(
+pub(crate) fn connect<T: Transport>(
     t: &T,
-    plan: &Plan,
+    technique: Technique,
     v: usize,
     slot: usize,
     paths: &mut Paths<T::Wave>,
     sink: &mut impl TermSink,
 ) {
-    if plan.technique.connects() {
+    if technique.connects() {
         sink.rays(slot, paths.n);
         paths.connect(t, v);
-        paths.score_connections(plan.technique, slot, sink);
+        paths.score_connections(technique, slot, sink);
     }
 }
 
-/// Whether nothing is left to be found beyond the connection at vertex v.
-fn is_last<T: Transport>(t: &T, plan: &Plan, v: usize) -> bool {
-    v + 1 == plan.max_bounces && !plan.technique.hits(t) && !plan.roulette.ends()
-}
-
 /// x_v → x_{v+1}, and its emission if hits count.
-fn scatter<T: Transport>(
+pub(crate) fn scatter<T: Transport>(
     t: &T,
-    plan: &Plan,
+    technique: Technique,
     v: usize,
     slot: usize,
     paths: &mut Paths<T::Wave>,
@@ -120,8 +109,8 @@ fn scatter<T: Transport>(
 ) {
     sink.rays(slot, paths.n);
     paths.scatter(t, v);
-    if plan.technique.hits(t) {
+    if technique.hits(t) {
         paths.emission(t);
-        paths.score_hits(plan.technique, slot, sink);
+        paths.score_hits(technique, slot, sink);
     }
 }

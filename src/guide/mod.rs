@@ -21,25 +21,32 @@
 //! | r_i, β | density over that of the cosine, share of the BSDF | [`warp`] |
 //! | P_i(l) | which lamp a connection chooses | `lamps` |
 //! | i(x) | the patch of a point | [`Guide::at`] |
-//! | u, T u | reflected part of L_h, for roulette by expected contribution | [`Transport::expected`] |
+//! | u, T u | reflected part of L_h, by which walks end and split | [`expected`] |
 //! | f → ρ | what stands for surfaces that are not Lambertian, in the guide only | [`stand_in()`] |
 //!
 //! References: Lafortune and Willems, *A 5D tree to reduce the variance of Monte Carlo ray tracing* (1995); Vorba et al., *On-line
 //! learning of parametric mixture models for light transport simulation* (2014); Müller, Gross, Novák, *Practical Path
 //! Guiding* (2017): there the guide is learned from paths, here it is a matrix.
 
+pub mod expected;
 pub mod incident;
 mod lamps;
+pub mod path_tracer;
 mod places;
+pub mod prefix;
+pub mod tracked;
 pub mod walk;
 pub mod warp;
 
+pub use expected::{ByExpectation, Expected, Expecting};
+pub use path_tracer::PathTracer;
+pub use prefix::Prefix;
 pub use walk::GuidedWalk;
 
 use crate::math::{Columns, Key, Rgb, Rng, Streams};
 use crate::operator::SceneTransport;
 use crate::operator::patches::Patches;
-use crate::operator::transport::{self, Expected, Samples, Seen, Sensor, Step, Transport};
+use crate::operator::transport::{self, Samples, Seen, Sensor, Step, Transport};
 use crate::progress::Progress;
 use crate::scene::bsdf::{Bsdf, Sampling, diffuse, diffuse::Diffuse};
 use crate::scene::{Camera, Scene, SceneError, Side, Vertex, VertexWave, numbers, offset_origin, stand_in};
@@ -256,12 +263,6 @@ impl Transport for GuidedTransport<'_> {
         self.scene.last_resort()
     }
 
-    /// What the matrix says of a Lambertian surface; of others it knows nothing.
-    fn expected(&self, at: &Vertex) -> Option<Expected> {
-        let lambertian = matches!(self.scene.scene.bsdf(at), Bsdf::Diffuse(_));
-        Some(self.guide.reflected[self.guide.patch(at).filter(|_| lambertian)?])
-    }
-
     fn connects_to_all(&self) -> bool {
         self.scene.connects_to_all()
     }
@@ -288,6 +289,14 @@ impl Transport for GuidedTransport<'_> {
         numbers(streams, &mut wave.rays.u);
         warped(self.guide, &wave.p, &wave.side[..n], &mut wave.rays.u, &mut out.pdf[..n]);
         self.scene.scatter_packets(wave, n, out, alive, |out, i| out.pdf[i], self.guide.bsdf);
+    }
+}
+
+impl Expecting for GuidedTransport<'_> {
+    /// What the matrix says of a Lambertian surface; of others it knows nothing.
+    fn expected(&self, at: &Vertex) -> Option<Expected> {
+        let lambertian = matches!(self.scene.scene.bsdf(at), Bsdf::Diffuse(_));
+        Some(self.guide.reflected[self.guide.patch(at).filter(|_| lambertian)?])
     }
 }
 

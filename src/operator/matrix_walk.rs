@@ -14,6 +14,7 @@
 //! | c_j | `1/(number of emitting rows)` | density of next-event estimation |
 
 use super::adjoint::{Adjoint, AdjointStep, Role, Toward};
+use super::kernel::{Factors, Kernel};
 use super::transport::{Seen, Sensor, Step, Transport};
 use crate::math::{Rgb, Rng};
 
@@ -113,7 +114,25 @@ impl Transport for MatrixWalk {
     }
 }
 
+/// f is the row's entry T_ij = ρ_i F_ij, p its probability.
+impl Kernel for MatrixWalk {
+    fn sample_direction(&self, &i: &u32, rng: &mut Rng) -> Option<Factors<u32>> {
+        let Step { state, pdf, other_pdf, .. } = self.scatter(&i, rng)?;
+        Some(Factors { state, f: self.entry(i, state), cos: 1.0, pdf, pair: [pdf, other_pdf] })
+    }
+
+    fn sample_emitter(&self, &i: &u32, rng: &mut Rng) -> Option<Factors<u32>> {
+        let Step { state, pdf, other_pdf, .. } = self.connect(&i, rng)?;
+        Some(Factors { state, f: self.entry(i, state), cos: 1.0, pdf, pair: [pdf, other_pdf] })
+    }
+}
+
 impl MatrixWalk {
+    /// T_ij.
+    fn entry(&self, i: u32, j: u32) -> Rgb {
+        self.rho[i as usize] * self.rows[i as usize * self.n + j as usize] as f32
+    }
+
     /// The exact `((T*)^k W)_j`, k = 0..=`k_max`, for an importance W of rows; T* is the transpose.
     pub fn adjoint_powers(&self, importance: &[glam::DVec3], k_max: usize) -> Vec<Vec<glam::DVec3>> {
         let mut terms = vec![importance.to_vec()];

@@ -30,15 +30,6 @@ pub struct Step<S> {
     pub other_pdf: f32,
 }
 
-/// Reflected radiance that is expected to leave a state, mean of the channels.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Expected {
-    /// T L: all of it.
-    pub all: f32,
-    /// T (L − E): what connections from here do not find.
-    pub indirect: f32,
-}
-
 /// T as something that can be sampled.
 pub trait Transport: Sync {
     /// Where radiance is asked for.
@@ -68,11 +59,6 @@ pub trait Transport: Sync {
 
     /// The probability that a walk is absorbed at `at`, where that is a property of the place; elsewhere roulette decides.
     fn absorption(&self, _at: &Self::State) -> Option<f32> {
-        None
-    }
-
-    /// About how much reflected light leaves a state, where somebody knows: roulette may go by it.
-    fn expected(&self, _at: &Self::State) -> Option<Expected> {
         None
     }
 

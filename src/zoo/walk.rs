@@ -64,14 +64,14 @@ impl Walk<'_> {
         };
 
         score(0, t.emission(&start));
-        let (mut alpha, mut x) = (t.lit(), start);
+        let (mut throughput, mut x) = (t.lit(), start);
         for k in 1.. {
             let (v, slot) = (k - 1, k.min(max_bounces + 1));
             if k > *max_bounces && !roulette.ends() {
                 break;
             }
             // roulette: q is the probability of termination
-            let q = roulette.q(t, v, alpha, &x, 0.0);
+            let q = roulette.q(t, v, throughput, &x);
             let dies = || q > 0.0 && numbers(v, Purpose::Roulette).one() < q;
             if mistake.roulette_before_light() && dies() {
                 break;
@@ -81,7 +81,7 @@ impl Walk<'_> {
             if technique.connects() {
                 rays[slot] += 1;
                 if let Some(value) = self.connect(t, &x, numbers(v, Purpose::Connect).four()) {
-                    score(k, alpha * value);
+                    score(k, throughput * value);
                 }
             }
             if k == *max_bounces && !hits && !roulette.ends() {
@@ -91,17 +91,17 @@ impl Walk<'_> {
                 break;
             }
             if q > 0.0 {
-                alpha *= mistake.survivor(1.0 - q);
+                throughput *= mistake.survivor(1.0 - q);
             }
 
             // the next vertex, whose emission counts if hits do
             rays[slot] += 1;
             let Some(s) = self.scatter(t, &x, numbers(v, Purpose::Scatter).four()) else { break };
             let Some(next) = t.scene.look(offset_origin(x.p, s.normal), s.to) else { break };
-            alpha *= s.value;
+            throughput *= s.value;
             if hits {
                 let (pdf, other) = if s.delta { (s.pdf, 0.0) } else { t.densities(&x, &next, s.pdf) };
-                score(k, alpha * mistake.hit_share(*technique, pdf, other) * t.emission(&next));
+                score(k, throughput * mistake.hit_share(*technique, pdf, other) * t.emission(&next));
             }
             x = next;
         }

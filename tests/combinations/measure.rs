@@ -7,7 +7,7 @@ use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm};
 use fredholm::estimator::{Technique, TermEstimator};
 use fredholm::math::{Key, Points};
-use fredholm::operator::{Adjoint, Sensor};
+use fredholm::operator::{Adjoint, Kernel, Sensor};
 use fredholm::progress::Progress;
 use fredholm::scene::description::Description;
 use fredholm::scene::{Scene, Selection};
@@ -37,12 +37,18 @@ fn samples(c: &Combination, effort: u32) -> u32 {
 }
 
 /// What a combination measures with an operator and a camera, which may be wrong ones.
-pub fn measure<T: Adjoint>(t: &T, camera: &impl Sensor<T>, c: &Combination, effort: u32, key: Key) -> Measurement {
+pub fn measure<T: Adjoint + Kernel>(
+    t: &T,
+    camera: &impl Sensor<T>,
+    c: &Combination,
+    effort: u32,
+    key: Key,
+) -> Measurement {
     with_eye(t, camera, c, effort, key, Weight::All)
 }
 
 /// The same where emission at vertex 0 counts that much.
-pub fn with_eye<T: Adjoint>(
+pub fn with_eye<T: Adjoint + Kernel>(
     t: &T,
     camera: &impl Sensor<T>,
     c: &Combination,
@@ -65,7 +71,7 @@ pub fn with_eye<T: Adjoint>(
     Measurement::of(&film)
 }
 
-fn run<T: Adjoint>(
+fn run<T: Adjoint + Kernel>(
     t: &T,
     camera: &impl Sensor<T>,
     estimator: impl TermEstimator<T>,

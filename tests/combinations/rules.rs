@@ -9,7 +9,7 @@
 use fredholm::estimator::{Job, Paths, Technique, TermEstimator, TermSink};
 use fredholm::math::{Columns, Rgb, Rng};
 use fredholm::operator::adjoint::{AdjointStep, Toward};
-use fredholm::operator::{Adjoint, Role, SceneTransport, Seen, Sensor, Step, Transport};
+use fredholm::operator::{Adjoint, Factors, Kernel, Role, SceneTransport, Seen, Sensor, Step, Transport};
 use fredholm::scene::{Camera, Vertex};
 
 /// What emission counts.
@@ -113,6 +113,11 @@ impl Ruled<'_> {
         let w = weights[zero(s.other_pdf)].of(s.pdf, s.other_pdf);
         Step { pdf: 1.0, other_pdf: 1.0 / w - 1.0, ..s }
     }
+
+    fn weigh_factors(s: Factors<Vertex>, weights: [Weight; 2]) -> Factors<Vertex> {
+        let w = weights[zero(s.pair[1])].of(s.pair[0], s.pair[1]);
+        Factors { pair: [1.0, 1.0 / w - 1.0], ..s }
+    }
 }
 
 impl Transport for Ruled<'_> {
@@ -134,6 +139,16 @@ impl Transport for Ruled<'_> {
     }
     fn connects_to_all(&self) -> bool {
         false
+    }
+}
+
+impl Kernel for Ruled<'_> {
+    fn sample_direction(&self, at: &Vertex, rng: &mut Rng) -> Option<Factors<Vertex>> {
+        self.inner.sample_direction(at, rng).map(|s| Self::weigh_factors(s, self.rules.hit))
+    }
+    fn sample_emitter(&self, at: &Vertex, rng: &mut Rng) -> Option<Factors<Vertex>> {
+        let s = Self::weigh_factors(self.inner.sample_emitter(at, rng)?, self.rules.connection);
+        Some(Factors { f: s.f * self.scale[0], ..s })
     }
 }
 

@@ -4,7 +4,7 @@ use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Batch, Job, Paths, Plan, Prefix, SingleTerm, TermEstimator, TermSink};
 use fredholm::estimator::{PathTracer, Roulette, Technique};
 use fredholm::math::{Columns, Key, Rng};
-use fredholm::operator::{SceneTransport, Sensor, Transport};
+use fredholm::operator::{Kernel, SceneTransport, Sensor, Transport};
 use fredholm::progress::Progress;
 use fredholm::scene::{Scene, Side, Vertex};
 use fredholm::terms::{Estimate, TermFilm};
@@ -25,7 +25,7 @@ pub fn plan(max_bounces: usize, technique: Technique, roulette: &Roulette) -> Pl
 }
 
 /// A film of R = 256 replicates.
-pub fn film<T: Transport>(t: &T, sensor: &impl Sensor<T>, kind: Kind, plan: &Plan, spp: u32, key: Key) -> TermFilm {
+pub fn film<T: Kernel>(t: &T, sensor: &impl Sensor<T>, kind: Kind, plan: &Plan, spp: u32, key: Key) -> TermFilm {
     let amount = Amount { spp, replicates: 256, key };
     let plan = plan.clone();
     match kind {

@@ -45,7 +45,16 @@ pub fn technique(s: &str) -> Result<Technique, String> {
 }
 
 pub fn schedule(s: &str) -> Result<Schedule, String> {
-    if s == "optimal" { Ok(Schedule::Optimal) } else { s.parse().map(Schedule::Given) }
+    match s.parse() {
+        _ if s == "optimal" => Ok(Schedule::Optimal),
+        Ok(by_expectation) => Ok(Schedule::ByExpectation(by_expectation)),
+        Err(_) => {
+            let more = |wrong: String| {
+                if wrong.starts_with("unknown") { wrong + "; contribution[@V] or window[@V]" } else { wrong }
+            };
+            s.parse().map(Schedule::Given).map_err(more)
+        }
+    }
 }
 
 pub fn points(s: &str) -> Result<Points, String> {

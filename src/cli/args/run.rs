@@ -4,6 +4,7 @@ use super::parse::{duration, grading, points, sampling, schedule, selection, siz
 use crate::cli::open::Shared;
 use clap::{Args, ValueEnum};
 use fredholm::estimator::{Roulette, Technique};
+use fredholm::guide::ByExpectation;
 use fredholm::math::Points;
 use fredholm::scene::{Selection, bsdf::Sampling};
 use std::time::Duration;
@@ -13,6 +14,8 @@ use std::time::Duration;
 pub enum Schedule {
     /// This schedule.
     Given(Roulette),
+    /// By what a guide says is still to come.
+    ByExpectation(ByExpectation),
     /// The one with the most efficiency, which only the scene can tell.
     Optimal,
 }

@@ -10,7 +10,7 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | w | weight of a step, whatever the material, the guide and the way directions are drawn | |
-//! | s | survival of roulette, more than 1 where paths split | [`Roulette::q`] |
+//! | s | survival of roulette, more than 1 where paths split | [`WeightedWalk::q`] |
 //! | r(M) | with its standard error from independent populations | [`Growth::rate`] |
 //! | max α | the largest throughput that any walker had | [`Growth::largest`] |
 //!
@@ -80,42 +80,42 @@ impl Growth {
 pub trait WeightedWalk: Sync {
     /// Where it stands.
     type State: Copy + Send;
-    /// Where walker `i` of so many starts, and what is expected of it there.
-    fn start(&self, i: usize, rng: &mut Rng) -> Option<(Self::State, f32)>;
+    /// Where walker `i` of so many starts.
+    fn start(&self, i: usize, rng: &mut Rng) -> Option<Self::State>;
     /// One step and its weight.
     fn step(&self, at: &Self::State, rng: &mut Rng) -> Option<(Self::State, Rgb)>;
     /// q at vertex v with this throughput.
-    fn q(&self, v: usize, throughput: Rgb, at: &Self::State, start: f32) -> f32;
+    fn q(&self, v: usize, throughput: Rgb, at: &Self::State) -> f32;
     /// What it carries at the start.
     fn lit(&self) -> Rgb;
 }
 
-/// Walks from a sensor under a schedule.
-pub struct FromEye<'a, T, S> {
+/// Walks from a sensor.
+pub struct FromEye<'a, T, S, Q> {
     /// The transport.
     pub t: &'a T,
     /// Where paths start.
     pub sensor: &'a S,
-    /// How they end.
-    pub roulette: &'a Roulette,
+    /// How they end: q at vertex v with this throughput.
+    pub q: Q,
 }
 
-impl<T: Transport, S: Sensor<T>> WeightedWalk for FromEye<'_, T, S>
+impl<T: Transport, S: Sensor<T>, Q> WeightedWalk for FromEye<'_, T, S, Q>
 where
     T::State: Send,
+    Q: Fn(usize, Rgb, &T::State) -> f32 + Sync,
 {
     type State = T::State;
-    fn start(&self, i: usize, rng: &mut Rng) -> Option<(T::State, f32)> {
+    fn start(&self, i: usize, rng: &mut Rng) -> Option<T::State> {
         let [w, h] = self.sensor.size().map(u64::from);
         let pixel = (i as u64 * w * h / WALKERS as u64) as u32;
-        let x = self.sensor.start(self.t, pixel, rng)?;
-        Some((x, self.t.expected(&x).unwrap_or_default().all))
+        self.sensor.start(self.t, pixel, rng)
     }
     fn step(&self, at: &T::State, rng: &mut Rng) -> Option<(T::State, Rgb)> {
         self.t.scatter(at, rng).map(|s| (s.state, s.weight))
     }
-    fn q(&self, v: usize, throughput: Rgb, at: &T::State, start: f32) -> f32 {
-        self.roulette.q(self.t, v, throughput, at, start)
+    fn q(&self, v: usize, throughput: Rgb, at: &T::State) -> f32 {
+        (self.q)(v, throughput, at)
     }
     fn lit(&self) -> Rgb {
         self.t.lit()
@@ -135,14 +135,14 @@ where
     T::State: Send,
 {
     type State = T::State;
-    fn start(&self, _: usize, rng: &mut Rng) -> Option<(T::State, f32)> {
+    fn start(&self, _: usize, rng: &mut Rng) -> Option<T::State> {
         let (light, _) = self.t.emit(rng)?;
-        Some((self.t.walk(&light, Role::Emission, rng)?.state, 0.0))
+        Some(self.t.walk(&light, Role::Emission, rng)?.state)
     }
     fn step(&self, at: &T::State, rng: &mut Rng) -> Option<(T::State, Rgb)> {
         self.t.walk(at, Role::Flux, rng).map(|s| (s.state, s.weight))
     }
-    fn q(&self, v: usize, throughput: Rgb, at: &T::State, _: f32) -> f32 {
+    fn q(&self, v: usize, throughput: Rgb, at: &T::State) -> f32 {
         self.roulette.termination(v, throughput, self.t.albedo(at))
     }
     fn lit(&self) -> Rgb {
@@ -180,31 +180,30 @@ fn in_channel(walk: &impl WeightedWalk, from: usize, order: i32, channel: usize,
 
 struct Walker<S> {
     x: S,
-    alpha: Rgb,
-    start: f32,
+    throughput: Rgb,
 }
 
 /// The mean of ln g, and the largest throughput.
 fn population<W: WeightedWalk>(walk: &W, from: usize, order: i32, channel: usize, key: Key) -> (f64, f32) {
     let rng = |i: usize, step: usize, purpose: Purpose| Rng::at(key, i as u32, 0, step, purpose);
     let begin = |i: usize| {
-        let (x, start) = walk.start(i, &mut rng(i, 0, Purpose::Start))?;
-        Some(Walker { x, alpha: walk.lit(), start })
+        let x = walk.start(i, &mut rng(i, 0, Purpose::Start))?;
+        Some(Walker { x, throughput: walk.lit() })
     };
     let mut walkers: Vec<Walker<W::State>> = (0..WALKERS).filter_map(begin).collect();
     let (mut sum, mut largest) = (0.0, 0.0f32);
     for step in 0..STEPS {
         let mut factors = Vec::with_capacity(walkers.len());
         for (i, w) in walkers.iter_mut().enumerate() {
-            let (q, before) = (walk.q(from + step, w.alpha, &w.x, w.start), w.alpha[channel]);
+            let (q, before) = (walk.q(from + step, w.throughput, &w.x), w.throughput[channel]);
             let next = if q < 1.0 { walk.step(&w.x, &mut rng(i, step, Purpose::Scatter)) } else { None };
             let Some((x, weight)) = next.filter(|_| before > 0.0) else {
                 factors.push(0.0);
                 continue;
             };
-            (w.x, w.alpha) = (x, w.alpha * weight * (1.0 / (1.0 - q)));
-            largest = largest.max(w.alpha[channel]);
-            let ratio = f64::from(w.alpha[channel] / before);
+            (w.x, w.throughput) = (x, w.throughput * weight * (1.0 / (1.0 - q)));
+            largest = largest.max(w.throughput[channel]);
+            let ratio = f64::from(w.throughput[channel] / before);
             factors.push(ratio.powi(order) * f64::from(1.0 - q));
         }
         let total: f64 = factors.iter().sum();
@@ -221,7 +220,7 @@ fn population<W: WeightedWalk>(walk: &W, from: usize, order: i32, channel: usize
         for (w, f) in walkers.iter().zip(&factors) {
             up_to += f;
             while at < up_to && next.len() < WALKERS {
-                next.push(Walker { x: w.x, alpha: w.alpha, start: w.start });
+                next.push(Walker { x: w.x, throughput: w.throughput });
                 at += each;
             }
         }
@@ -245,12 +244,16 @@ pub fn proved(scene: &Scene, sampling: Sampling, roulette: &Roulette) -> bool {
         Roulette::Constant { q, .. } => *q == 0.0 || bounded(*q) && plain(),
         Roulette::Table(q) => q.last().is_none_or(|&q| q == 0.0 || bounded(q)) && plain(),
         Roulette::Albedo { .. } | Roulette::Throughput { .. } => plain(),
-        // without a guide as by albedo
-        Roulette::Contribution { .. } | Roulette::Window { .. } => plain(),
     }
 }
 
-/// Walks from the eye under a schedule: nothing where their variance is finite.
+/// What is found of a walk whose schedule is the same everywhere from a vertex on: nothing where its variance is finite.
+pub(crate) fn doubt(walk: &impl WeightedWalk, settled: usize, settings: &Settings) -> Option<Growth> {
+    let found = growth(walk, settled, 2, settings.seed);
+    (found.variance() != Variance::Finite).then_some(found)
+}
+
+/// The same of walks from the eye under a schedule.
 pub(crate) fn doubt_from_eye<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
@@ -260,6 +263,6 @@ pub(crate) fn doubt_from_eye<T: Transport>(
 where
     T::State: Send,
 {
-    let found = growth(&FromEye { t, sensor, roulette }, roulette.settled(), 2, settings.seed);
-    (found.variance() != Variance::Finite).then_some(found)
+    let q = |v: usize, throughput, at: &T::State| roulette.q(t, v, throughput, at);
+    doubt(&FromEye { t, sensor, q }, roulette.settled(), settings)
 }

@@ -26,21 +26,30 @@ impl Diffuse {
     /// f, sr⁻¹.
     #[inline(always)]
     pub fn eval(&self, wi: Vec3) -> Rgb {
-        if wi.z > 0.0 { self.reflectance * FRAC_1_PI } else { Rgb::ZERO }
+        if wi.z > 0.0 { self.f() } else { Rgb::ZERO }
     }
+
+    /// f on the side of the normal, sr⁻¹.
+    #[inline(always)]
+    pub fn f(&self) -> Rgb {
+        self.reflectance * FRAC_1_PI
+    }
+}
+
+/// A direction about the normal, its cosine and its density.
+#[inline(always)]
+pub fn direction(n: Vec3, sampling: Sampling, u: [f32; 2]) -> (Vec3, f32, f32) {
+    let (d, cosine) = match sampling {
+        Sampling::Uniform => uniform_hemisphere(n, u),
+        Sampling::Cosine | Sampling::Bsdf => cosine_hemisphere(n, u),
+    };
+    (d, cosine, sampling.pdf(cosine))
 }
 
 /// A direction about the normal, with the weight `f cos θ / p` and the density.
 #[inline(always)]
 pub fn sample(albedo: Rgb, n: Vec3, sampling: Sampling, u: [f32; 2]) -> (Vec3, Rgb, f32) {
-    match sampling {
-        Sampling::Uniform => {
-            let (d, cosine) = uniform_hemisphere(n, u);
-            (d, albedo * (2.0 * cosine), sampling.pdf(cosine))
-        }
-        Sampling::Cosine | Sampling::Bsdf => {
-            let (d, cosine) = cosine_hemisphere(n, u);
-            (d, albedo, sampling.pdf(cosine))
-        }
-    }
+    let (d, cosine, pdf) = direction(n, sampling, u);
+    let weight = if sampling == Sampling::Uniform { albedo * (2.0 * cosine) } else { albedo };
+    (d, weight, pdf)
 }

@@ -1,0 +1,109 @@
+//! All terms from one path, which ends or splits by what is still expected of it.
+//!
+//! ```text
+//! X_k = Σ over the walks of the path:  α_{k−1} · w_c · (sample of T E at x_{k−1})  +  α_k · w_s · E(x_k)
+//! ```
+//!
+//! The steps are those of [`Prefix`](crate::estimator::Prefix); between them stands [`ByExpectation`] in place of roulette. Where a wave
+//! splits, the copies are followed to the end first, so that memory is one wave for every vertex at which walks split.
+
+use super::expected::{ByExpectation, Expecting};
+use super::tracked::{Track, Tracked, TrackedWave};
+use crate::estimator::branching::lineage;
+use crate::estimator::{Job, Paths, Plan, TermEstimator, TermSink, prefix};
+use crate::operator::{Sensor, Wave};
+
+/// The prefix estimator of guided walks. The roulette of its plan is not used.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prefix {
+    /// How far, and how light is found.
+    pub plan: Plan,
+    /// How walks end or split.
+    pub end: ByExpectation,
+}
+
+impl<'a, T: Expecting> TermEstimator<Tracked<'a, T>> for Prefix {
+    fn slots(&self) -> usize {
+        self.plan.max_bounces + 2
+    }
+
+    fn sample<S: Sensor<Tracked<'a, T>>>(
+        &self,
+        job: &Job<'_, Tracked<'a, T>, S>,
+        paths: &mut Paths<TrackedWave<T::Wave>>,
+        sink: &mut impl TermSink,
+    ) {
+        prefix::start(job, paths, sink);
+        self.follow(job.t, 0, paths, sink);
+    }
+}
+
+impl Prefix {
+    /// Follows paths that stand at vertex `first`, and what they split into; terms beyond K go to the tail's slot.
+    fn follow<T: Expecting>(
+        &self,
+        t: &Tracked<'_, T>,
+        first: usize,
+        paths: &mut Paths<TrackedWave<T::Wave>>,
+        sink: &mut impl TermSink,
+    ) {
+        let technique = self.plan.technique;
+        for v in first.. {
+            if paths.n == 0 {
+                break;
+            }
+            let slot = (v + 1).min(self.plan.max_bounces + 1);
+            prefix::connect(t, technique, v, slot, paths, sink);
+            let splits = self.split(t, v, paths);
+            for copy in 1..ByExpectation::MOST {
+                let Some(mut copies) = copies(paths, &splits, v, copy) else { break };
+                prefix::scatter(t, technique, v, slot, &mut copies, sink);
+                self.follow(t, v + 1, &mut copies, sink);
+            }
+            prefix::scatter(t, technique, v, slot, paths, sink);
+        }
+    }
+
+    /// Ends paths at vertex v, and tells which of those that go on do so as several: their numbers, and as how many.
+    fn split<T: Expecting>(
+        &self,
+        t: &Tracked<'_, T>,
+        v: usize,
+        paths: &mut Paths<TrackedWave<T::Wave>>,
+    ) -> Vec<(usize, u32)> {
+        let mut splits = vec![];
+        if v < self.end.from() {
+            return splits;
+        }
+        let mut survivors = 0;
+        paths.survive(v, |wave, i, throughput, u| {
+            let (x, siblings) = (wave.states.get(i), &mut wave.siblings[i]);
+            let q = self.end.q(t.0, v, throughput, &x, wave.start[i]);
+            let (copies, weight) = ByExpectation::copies(q, u, *siblings);
+            if copies == 0 {
+                return None;
+            }
+            *siblings *= copies;
+            if copies > 1 {
+                splits.push((survivors, copies));
+            }
+            survivors += 1;
+            Some(throughput * weight)
+        });
+        splits
+    }
+}
+
+/// Copy `copy` ≥ 1 of every path that has split into more than that at vertex v; nothing if there is none.
+fn copies<X: Copy, W: Wave<X>>(
+    paths: &Paths<TrackedWave<W>>,
+    splits: &[(usize, u32)],
+    v: usize,
+    copy: u32,
+) -> Option<Paths<TrackedWave<W>>> {
+    let of: Vec<usize> = splits.iter().filter(|(_, n)| *n > copy).map(|(i, _)| *i).collect();
+    let key = lineage(paths.key().filter(|_| !of.is_empty())?, v, copy, ByExpectation::MOST);
+    let mut copies = Paths::default();
+    copies.descend_from::<Track<X>>(paths, of.into_iter(), key, 1.0);
+    Some(copies)
+}
