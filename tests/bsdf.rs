@@ -14,6 +14,9 @@ use common::{Noise, truth};
 use fredholm::scene::bsdf::fresnel::{Interface, conductor, hemispherical};
 use fredholm::scene::bsdf::{Bsdf, BsdfSample, Sampling, TransportMode};
 use fredholm::scene::description::{BsdfDescription, Choice, Colour, Ggx, Masking, Metal};
+use fredholm::scene::description::{
+    ConductorSurface, DielectricSurface, DiffuseSurface, MirrorSurface, PhongSurface, PlasticSurface,
+};
 use fredholm::terms::Estimate;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
@@ -181,17 +184,17 @@ fn quadrature(surface: &Surface, bsdf: &Bsdf, wo: Vec3, mode: TransportMode, n: 
 fn delta(surface: &Surface, wo: Vec3, mode: TransportMode) -> DVec3 {
     let c = f64::from(wo.z);
     match &surface.description {
-        BsdfDescription::Mirror { reflectance } => *reflectance,
-        BsdfDescription::Conductor { metal: Metal::Reflectance(r), rough: None } => *r,
-        BsdfDescription::Conductor { metal: Metal::Fresnel { eta, k }, rough: None } => {
+        BsdfDescription::Mirror(MirrorSurface { reflectance }) => *reflectance,
+        BsdfDescription::Conductor(ConductorSurface { metal: Metal::Reflectance(r), rough: None }) => *r,
+        BsdfDescription::Conductor(ConductorSurface { metal: Metal::Fresnel { eta, k }, rough: None }) => {
             DVec3::from_array(std::array::from_fn(|i| fresnel(c, eta[i], k[i])))
         }
-        BsdfDescription::Dielectric { rough: None, .. } => {
+        BsdfDescription::Dielectric(DielectricSurface { rough: None, .. }) => {
             let f = fresnel(c, surface.eta, 0.0);
             let squeezed = if mode == TransportMode::Radiance { surface.eta.powi(-2) } else { 1.0 };
             DVec3::splat(f + (1.0 - f) * squeezed)
         }
-        BsdfDescription::Plastic { ior, rough: None, .. } => DVec3::splat(fresnel(c, *ior, 0.0)),
+        BsdfDescription::Plastic(PlasticSurface { ior, rough: None, .. }) => DVec3::splat(fresnel(c, *ior, 0.0)),
         _ => DVec3::ZERO,
     }
 }
@@ -251,13 +254,15 @@ fn no_surface_gains_energy() {
             assert!(truth.cmple(bound + slack).all() && bound.cmple(max + 1e-6).all(), "{what}");
             assert!(max.max_element() <= 1.0 + 1e-6, "{what}");
             let exact = match &surface.description {
-                BsdfDescription::Diffuse { .. } | BsdfDescription::Mirror { .. } => true,
-                BsdfDescription::Conductor { rough, .. } | BsdfDescription::Plastic { rough, .. } => rough.is_none(),
-                BsdfDescription::Dielectric { rough, .. } => rough.is_none(),
-                BsdfDescription::Phong { .. } => z == 1.0,
+                BsdfDescription::Diffuse(_) | BsdfDescription::Mirror(_) => true,
+                BsdfDescription::Conductor(ConductorSurface { rough, .. })
+                | BsdfDescription::Plastic(PlasticSurface { rough, .. }) => rough.is_none(),
+                BsdfDescription::Dielectric(DielectricSurface { rough, .. }) => rough.is_none(),
+                BsdfDescription::Phong(_) => z == 1.0,
             };
             assert!(!exact || (truth - bound).abs().max_element() < 2e-5, "{what}");
-            let rough_plastic = matches!(surface.description, BsdfDescription::Plastic { rough: Some(_), .. });
+            let rough_plastic =
+                matches!(surface.description, BsdfDescription::Plastic(PlasticSurface { rough: Some(_), .. }));
             assert!(!rough_plastic || (bound - truth).max_element() < 0.02, "{what}");
         }
     }
@@ -402,25 +407,20 @@ fn any_surface() -> impl Strategy<Value = (BsdfDescription, bool)> {
     let ior = || prop_oneof![4 => 1.05..3.0f64, 1 => 0.4..0.95f64, 1 => Just(1.0)];
     let exponent = prop_oneof![1 => Just(0.0), 4 => (0.0..6.0f64).prop_map(|e| 10f64.powf(e))];
     let description = prop_oneof![
-        rgb().prop_map(|r| BsdfDescription::Diffuse { reflectance: Colour::Uniform(r) }),
-        rgb().prop_map(|reflectance| BsdfDescription::Mirror { reflectance }),
-        (metal, rough.clone()).prop_map(|(metal, rough)| BsdfDescription::Conductor { metal, rough }),
-        (ior(), choice, rough.clone()).prop_map(|(ior, choice, rough)| BsdfDescription::Dielectric {
-            ior,
-            ior_outside: 1.0,
-            choice,
-            rough
-        }),
-        (rgb(), ior().prop_map(|n| n.max(1.0 / n)), rough).prop_map(|(r, ior, rough)| BsdfDescription::Plastic {
-            reflectance: Colour::Uniform(r),
-            ior,
-            rough
-        }),
-        (rgb(), rgb(), exponent).prop_map(|(d, s, exponent)| BsdfDescription::Phong {
+        rgb().prop_map(|r| BsdfDescription::Diffuse(DiffuseSurface { reflectance: Colour::Uniform(r) })),
+        rgb().prop_map(|reflectance| BsdfDescription::Mirror(MirrorSurface { reflectance })),
+        (metal, rough.clone()).prop_map(|(metal, rough)| BsdfDescription::Conductor(ConductorSurface { metal, rough })),
+        (ior(), choice, rough.clone()).prop_map(|(ior, choice, rough)| BsdfDescription::Dielectric(
+            DielectricSurface { ior, ior_outside: 1.0, choice, rough }
+        )),
+        (rgb(), ior().prop_map(|n| n.max(1.0 / n)), rough).prop_map(|(r, ior, rough)| BsdfDescription::Plastic(
+            PlasticSurface { reflectance: Colour::Uniform(r), ior, rough }
+        )),
+        (rgb(), rgb(), exponent).prop_map(|(d, s, exponent)| BsdfDescription::Phong(PhongSurface {
             reflectance: Colour::Uniform(0.5 * d),
             specular: 0.5 * s,
             exponent
-        }),
+        })),
     ];
     (description, any::<bool>())
 }

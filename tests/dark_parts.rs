@@ -12,6 +12,7 @@ use fredholm::engine::known::resort::with_last_resort;
 use fredholm::engine::known::trap::trapped;
 use fredholm::progress::Progress;
 use fredholm::scene::Scene;
+use fredholm::scene::description::DielectricSurface;
 use fredholm::scene::description::{BsdfDescription, Choice, Description, Geometry, LightDescription, Sides, Sky};
 use glam::DVec3;
 
@@ -136,8 +137,12 @@ fn what_keeps_the_light_it_gets_is_refused() {
 #[test]
 fn a_glass_box_in_a_white_sky_is_no_trap() {
     let mut d = description(&[(block(DVec3::splat(-0.5), DVec3::splat(0.5)), DVec3::ONE, DVec3::ZERO)]);
-    d.materials[0].bsdf =
-        BsdfDescription::Dielectric { ior: 1.5, ior_outside: 1.0, choice: Choice::Fresnel, rough: None };
+    d.materials[0].bsdf = BsdfDescription::Dielectric(DielectricSurface {
+        ior: 1.5,
+        ior_outside: 1.0,
+        choice: Choice::Fresnel,
+        rough: None,
+    });
     d.lights = vec![LightDescription::Environment { sky: Sky::Constant(DVec3::ONE), rotate: 0.0, scale: 1.0 }];
     d.camera.origin = DVec3::new(0.3, 0.4, 2.0);
     let scene = with_last_resort(Scene::new(&d));

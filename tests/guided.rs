@@ -22,6 +22,7 @@ use fredholm::math::direction::Frame;
 use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::{SceneTransport, Sensor, Step, Transport};
 use fredholm::progress::Progress;
+use fredholm::scene::description::PhongSurface;
 use fredholm::scene::description::{BsdfDescription, Colour, Description};
 use fredholm::scene::load::{self, Options};
 use fredholm::scene::{Camera, Scene, SurfaceSensor, Vertex, VertexWave};
@@ -54,8 +55,11 @@ fn glossy() -> Description {
     let mut d = lamps();
     d.name = "glossy".into();
     let rho = DVec3::new(0.1, 0.2, 0.4);
-    d.materials[1].bsdf =
-        BsdfDescription::Phong { reflectance: Colour::Uniform(rho), specular: DVec3::splat(0.5), exponent: 8.0 };
+    d.materials[1].bsdf = BsdfDescription::Phong(PhongSurface {
+        reflectance: Colour::Uniform(rho),
+        specular: DVec3::splat(0.5),
+        exponent: 8.0,
+    });
     d
 }
 

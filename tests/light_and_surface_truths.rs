@@ -23,6 +23,9 @@ use fredholm::scene::bsdf::{Bsdf, TransportMode, fresnel::hemispherical};
 use fredholm::scene::description::{
     BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
 };
+use fredholm::scene::description::{
+    ConductorSurface, DielectricSurface, DiffuseSurface, MirrorSurface, PhongSurface, PlasticSurface,
+};
 use fredholm::scene::raster::Raster;
 use fredholm::scene::{Scene, SurfaceSensor, Vertex};
 use fredholm::terms::TermFilm;
@@ -255,7 +258,7 @@ fn direct_light_is_the_closed_form_from_both_ends() {
 // ------------------------------------------------------------------------------------------------ mirrors
 
 fn mirror(rho: f64) -> BsdfDescription {
-    BsdfDescription::Mirror { reflectance: DVec3::splat(rho) }
+    BsdfDescription::Mirror(MirrorSurface { reflectance: DVec3::splat(rho) })
 }
 
 #[test]
@@ -328,8 +331,11 @@ fn a_mirror_wall_doubles_the_light() {
 #[test]
 fn mirrors_and_lambertian_walls_make_the_same_furnace() {
     let two = case("specular", "mirror_two_parallel");
-    let lambert = |rho: f64| BsdfDescription::Diffuse { reflectance: Colour::Uniform(DVec3::splat(rho)) };
-    let metal = |rho: f64| BsdfDescription::Conductor { metal: Metal::Reflectance(DVec3::splat(rho)), rough: None };
+    let lambert =
+        |rho: f64| BsdfDescription::Diffuse(DiffuseSurface { reflectance: Colour::Uniform(DVec3::splat(rho)) });
+    let metal = |rho: f64| {
+        BsdfDescription::Conductor(ConductorSurface { metal: Metal::Reflectance(DVec3::splat(rho)), rough: None })
+    };
     let rs = two.number("rs");
     for (name, materials) in [
         ("mirrors", vec![mirror(rs); 3]),
@@ -362,7 +368,7 @@ fn mirrors_and_lambertian_walls_make_the_same_furnace() {
 // ------------------------------------------------------------------------------------------------ glass
 
 fn glass(ior: f64, choice: Choice, rough: Option<Ggx>) -> BsdfDescription {
-    BsdfDescription::Dielectric { ior, ior_outside: 1.0, choice, rough }
+    BsdfDescription::Dielectric(DielectricSurface { ior, ior_outside: 1.0, choice, rough })
 }
 
 fn sky(radiance: f64) -> LightDescription {
@@ -591,21 +597,21 @@ fn convex_bodies_show_their_albedo() {
     let ggx = |alpha: f64| Some(Ggx { alpha, masking: Masking::HeightCorrelated });
     let gold = Metal::Fresnel { eta: DVec3::new(0.17, 0.4, 1.4), k: DVec3::new(3.1, 2.4, 1.6) };
     let mut kinds = vec![
-        BsdfDescription::Diffuse { reflectance: colour() },
-        BsdfDescription::Mirror { reflectance: rho },
-        BsdfDescription::Conductor { metal: gold, rough: None },
-        BsdfDescription::Plastic { reflectance: colour(), ior: 1.5, rough: None },
+        BsdfDescription::Diffuse(DiffuseSurface { reflectance: colour() }),
+        BsdfDescription::Mirror(MirrorSurface { reflectance: rho }),
+        BsdfDescription::Conductor(ConductorSurface { metal: gold, rough: None }),
+        BsdfDescription::Plastic(PlasticSurface { reflectance: colour(), ior: 1.5, rough: None }),
     ];
     for alpha in [0.1, 0.4, 1.0] {
-        kinds.push(BsdfDescription::Conductor { metal: gold, rough: ggx(alpha) });
-        kinds.push(BsdfDescription::Plastic { reflectance: colour(), ior: 1.5, rough: ggx(alpha) });
+        kinds.push(BsdfDescription::Conductor(ConductorSurface { metal: gold, rough: ggx(alpha) }));
+        kinds.push(BsdfDescription::Plastic(PlasticSurface { reflectance: colour(), ior: 1.5, rough: ggx(alpha) }));
     }
     for exponent in [1.0, 40.0] {
-        kinds.push(BsdfDescription::Phong {
+        kinds.push(BsdfDescription::Phong(PhongSurface {
             reflectance: Colour::Uniform(0.5 * rho),
             specular: DVec3::splat(0.4),
             exponent,
-        });
+        }));
     }
     for bsdf in &kinds {
         let scene = Scene::new(&under_the_sky(&[sphere(DVec3::NEG_Z, 1.0, false)], bsdf));
@@ -631,7 +637,7 @@ fn convex_bodies_show_their_albedo() {
             for (i, &degrees) in angles.iter().enumerate() {
                 let (sin, cos) = degrees.to_radians().sin_cos();
                 let wo = DVec3::new(sin, 0.0, cos).as_vec3();
-                let truth = if delta || matches!(bsdf, BsdfDescription::Diffuse { .. }) {
+                let truth = if delta || matches!(bsdf, BsdfDescription::Diffuse(_)) {
                     side.albedo(wo).as_dvec3()
                 } else {
                     albedo(&side, wo)
@@ -658,8 +664,12 @@ fn bodies_reflect_their_share_of_the_sky() {
     let plastic = rho.map(|rho| out + (1.0 - out) * rho * (1.0 - inside) / (1.0 - rho * inside));
     let colour = Colour::Uniform(rho);
     for (name, bsdf, truth) in [
-        ("plastic", BsdfDescription::Plastic { reflectance: colour.clone(), ior: 1.5, rough: None }, plastic),
-        ("paper", BsdfDescription::Diffuse { reflectance: colour }, rho),
+        (
+            "plastic",
+            BsdfDescription::Plastic(PlasticSurface { reflectance: colour.clone(), ior: 1.5, rough: None }),
+            plastic,
+        ),
+        ("paper", BsdfDescription::Diffuse(DiffuseSurface { reflectance: colour }), rho),
     ] {
         let mut d = under_the_sky(&[sphere(DVec3::ZERO, 1.0, false)], &bsdf);
         d.materials[0].sides = Sides::Front;

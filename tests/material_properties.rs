@@ -24,6 +24,7 @@ use fredholm::operator::{Adjoint, Role, SceneTransport, Sensor, Transport};
 use fredholm::progress::Progress;
 use fredholm::scene::bsdf::{Bsdf, Sampling, TransportMode};
 use fredholm::scene::description::{BsdfDescription, Description, Geometry, LightDescription, Shape, Sides};
+use fredholm::scene::description::{ConductorSurface, DielectricSurface, DiffuseSurface, MirrorSurface};
 use fredholm::scene::emitter::environment::Environment;
 use fredholm::scene::{ESCAPED, LIGHT, Primitive, Scene, SurfaceSensor, Vertex};
 use fredholm::stats::critical;
@@ -155,7 +156,9 @@ impl<'a> Reference<'a> {
             .map(|u| bsdf.sample(o, Sampling::Bsdf, TransportMode::Radiance, [0.5, 0.5, u]));
         let s = draws.into_iter().flatten().find(|s| s.delta && (s.wi.z > 0.0) == (i.z > 0.0)).unwrap();
         let relative = match bsdf {
-            Bsdf::Dielectric(d) if i.z < 0.0 => f64::from(d.interface.eta),
+            Bsdf::Dielectric(fredholm::scene::bsdf::dielectric::Dielectric::Smooth(d)) if i.z < 0.0 => {
+                f64::from(d.interface.eta)
+            }
             _ => 1.0,
         };
         let density = f64::from(s.pdf) * self.cosine(at, wi) * relative;
@@ -587,15 +590,15 @@ proptest! {
 fn lossless() -> impl Strategy<Value = BsdfDescription> {
     use fredholm::scene::description::{Choice, Colour, Metal};
     prop_oneof![
-        Just(BsdfDescription::Diffuse { reflectance: Colour::Uniform(DVec3::ONE) }),
-        Just(BsdfDescription::Mirror { reflectance: DVec3::ONE }),
-        Just(BsdfDescription::Conductor { metal: Metal::Reflectance(DVec3::ONE), rough: None }),
-        (1.1..2.5f64).prop_map(|ior| BsdfDescription::Dielectric {
+        Just(BsdfDescription::Diffuse(DiffuseSurface { reflectance: Colour::Uniform(DVec3::ONE) })),
+        Just(BsdfDescription::Mirror(MirrorSurface { reflectance: DVec3::ONE })),
+        Just(BsdfDescription::Conductor(ConductorSurface { metal: Metal::Reflectance(DVec3::ONE), rough: None })),
+        (1.1..2.5f64).prop_map(|ior| BsdfDescription::Dielectric(DielectricSurface {
             ior,
             ior_outside: 1.0,
             choice: Choice::Fresnel,
             rough: None
-        }),
+        })),
     ]
 }
 
@@ -809,7 +812,7 @@ fn two_patches_may_change_places() {
         ]);
         for (j, (bsdf, both)) in materials.into_iter().enumerate() {
             // the room itself does not let light out
-            let bsdf = if j == 0 && matches!(bsdf, BsdfDescription::Dielectric { .. }) {
+            let bsdf = if j == 0 && matches!(bsdf, BsdfDescription::Dielectric(_)) {
                 d.materials[0].bsdf.clone()
             } else {
                 bsdf

@@ -24,6 +24,7 @@ use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
 use fredholm::progress::Progress;
 use fredholm::scene::Scene;
+use fredholm::scene::description::PlasticSurface;
 use fredholm::scene::description::{BsdfDescription, Description, Geometry, LightDescription};
 use fredholm::scene::load::{self, Options};
 use fredholm::terms::{Estimate, TermFilm};
@@ -136,7 +137,7 @@ fn a_scene_that_is_a_little_wrong_is_told_apart() {
     differs("lamps", &d, 1, "a sun 3 % too bright");
     let mut d = description("tests/scenes/coats.toml");
     d.materials.iter_mut().for_each(|m| {
-        if let BsdfDescription::Plastic { ior, .. } = &mut m.bsdf {
+        if let BsdfDescription::Plastic(PlasticSurface { ior, .. }) = &mut m.bsdf {
             *ior *= 1.2;
         }
     });

@@ -17,6 +17,7 @@ use fredholm::math::Key;
 use fredholm::operator::{SceneTransport, Sensor};
 use fredholm::progress::Progress;
 use fredholm::scene::bsdf::Sampling;
+use fredholm::scene::description::DielectricSurface;
 use fredholm::scene::description::{BsdfDescription, Choice, Geometry, LightDescription, Material, Sides, Sky};
 use fredholm::scene::{Description, Scene, Selection, Vertex};
 use fredholm::terms::Estimate;
@@ -314,8 +315,12 @@ fn members_have_their_closed_form() {
     let c = case("bugzoo", "bug_fresnel_no_choice_pdf");
     let r0 = c.number("R");
     let mut ball = description(&[(common::scenes::sphere(DVec3::ZERO, 1.0, false), DVec3::ONE, DVec3::ZERO)]);
-    ball.materials[0].bsdf =
-        BsdfDescription::Dielectric { ior: 1.5, ior_outside: 1.0, choice: Choice::Fresnel, rough: None };
+    ball.materials[0].bsdf = BsdfDescription::Dielectric(DielectricSurface {
+        ior: 1.5,
+        ior_outside: 1.0,
+        choice: Choice::Fresnel,
+        rough: None,
+    });
     ball.lights.clone_from(&lit.lights);
     let scene = Scene::new(&ball);
     let axis = Start::At(Vertex { omega: glam::Vec3::Z, ..point(&scene, DVec3::Z, DVec3::Z) });

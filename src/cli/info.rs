@@ -5,9 +5,7 @@ use clap::Args;
 use fredholm::engine::known::coplanar;
 use fredholm::report::table;
 use fredholm::scene::coplanar::{Kind, Relation};
-use fredholm::scene::description::{
-    BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
-};
+use fredholm::scene::description::{Description, Geometry, LightDescription, Sides, Sky};
 use fredholm::scene::{Scene, SurfaceSensor, builtin, load};
 use serde_json::json;
 
@@ -78,7 +76,7 @@ fn people(d: &Description, scene: &Scene) -> String {
     out += "\nmaterials\n";
     for m in &d.materials {
         let sides = if m.sides == Sides::Both { "both sides" } else { "front only" };
-        let what = surface(&m.bsdf);
+        let what = m.bsdf.words();
         out += &format!("  {:16} {what}, {sides}\n", m.name);
     }
     out += "\nlights\n";
@@ -103,7 +101,7 @@ fn people(d: &Description, scene: &Scene) -> String {
     if scene.any_delta_surface() {
         out += "  mirrors or glass: T is not compact, and no connection finds what they show\n";
     }
-    if d.materials.iter().any(|m| matches!(m.bsdf, BsdfDescription::Dielectric { .. })) {
+    if d.materials.iter().any(|m| m.bsdf.lets_through()) {
         out += "  glass: the norm is that of L/η²; for radiance itself, squeezed by η², ‖T‖∞ can exceed 1\n";
     }
     if scene.has_environment() {
@@ -172,44 +170,6 @@ fn overlaps(d: &Description, scene: &Scene) -> String {
         out += &format!("  … and {} more pairs of shapes\n", all.len() - SHOWN);
     }
     out
-}
-
-/// A material in words.
-fn surface(bsdf: &BsdfDescription) -> String {
-    let rgb = |v: &glam::DVec3| format!("({:.3}, {:.3}, {:.3})", v.x, v.y, v.z);
-    let colour = |c: &Colour| match c {
-        Colour::Uniform(v) => rgb(v),
-        Colour::Texture(image) => format!("image {}×{}", image.size[0], image.size[1]),
-    };
-    let rough = |r: &Option<Ggx>| match r {
-        None => "smooth".to_owned(),
-        Some(Ggx { alpha, masking: Masking::HeightCorrelated }) => format!("GGX α {alpha}"),
-        Some(Ggx { alpha, masking: Masking::Separable }) => format!("GGX α {alpha}, separable masking"),
-    };
-    let kind = bsdf.kind();
-    match bsdf {
-        BsdfDescription::Diffuse { reflectance } => format!("{kind}, reflectance {}", colour(reflectance)),
-        BsdfDescription::Mirror { reflectance } => format!("{kind}, reflectance {}", rgb(reflectance)),
-        BsdfDescription::Conductor { metal: Metal::Fresnel { eta, k }, rough: r } => {
-            format!("{kind}, η {}, k {}, {}", rgb(eta), rgb(k), rough(r))
-        }
-        BsdfDescription::Conductor { metal: Metal::Reflectance(f), rough: r } => {
-            format!("{kind}, reflectance {}, {}", rgb(f), rough(r))
-        }
-        BsdfDescription::Dielectric { ior, ior_outside, choice, rough: r } => {
-            let choice = match choice {
-                Choice::Fresnel => "chosen by Fresnel".to_owned(),
-                Choice::Constant(p) => format!("reflected with probability {p}"),
-            };
-            format!("{kind}, index {ior} in {ior_outside}, {choice}, {}", rough(r))
-        }
-        BsdfDescription::Plastic { reflectance, ior, rough: r } => {
-            format!("{kind}, reflectance {}, index {ior}, {}", colour(reflectance), rough(r))
-        }
-        BsdfDescription::Phong { reflectance, specular, exponent } => {
-            format!("{kind}, reflectance {}, specular {}, exponent {exponent}", colour(reflectance), rgb(specular))
-        }
-    }
 }
 
 /// A light without a surface in words.

@@ -14,6 +14,7 @@ use super::scene_transport::SceneTransport;
 use super::transport::Seen;
 use crate::math::direction::{about, cos_sin_turn, cosine_hemisphere, uniform_sphere};
 use crate::math::{Rgb, Rng};
+use crate::scene::bsdf::dielectric::Dielectric;
 use crate::scene::bsdf::{Bsdf, TransportMode};
 use crate::scene::{Camera, ESCAPED, Vertex, emitter::Light, offset_origin};
 use glam::{DVec3, Vec3};
@@ -118,7 +119,7 @@ impl Adjoint for SceneTransport<'_> {
         let cos = at.n.dot(direction);
         // a delta function of n² times projected solid angle is the same from both ends: its factor n² over the indices of both
         let relative = match self.scene.bsdf(at) {
-            Bsdf::Dielectric(glass) if cos < 0.0 => glass.interface.eta,
+            Bsdf::Dielectric(Dielectric::Smooth(glass)) if cos < 0.0 => glass.interface.eta,
             _ => 1.0,
         };
         choice * relative * cos.abs() * self.angle(at, to, direction)

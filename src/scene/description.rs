@@ -3,6 +3,15 @@
 //! Positions in metres, right-handed, `f64`; colours linear Rec. 709. [`Scene::new`](super::Scene::new)
 //! turns a description into something rays can hit.
 
+pub use super::bsdf::colour::Colour;
+pub use super::bsdf::conductor::{ConductorSurface, Metal};
+pub use super::bsdf::dielectric::{Choice, DielectricSurface};
+pub use super::bsdf::diffuse::DiffuseSurface;
+pub use super::bsdf::ggx::{Ggx, Masking};
+pub use super::bsdf::mirror::MirrorSurface;
+pub use super::bsdf::phong::PhongSurface;
+pub use super::bsdf::plastic::PlasticSurface;
+pub use super::bsdf::register::BsdfDescription;
 use super::raster::Raster;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
@@ -90,132 +99,22 @@ pub struct Material {
 impl Material {
     /// A Lambertian surface of one colour.
     pub fn diffuse(name: impl Into<String>, reflectance: DVec3, sides: Sides) -> Self {
-        let bsdf = BsdfDescription::Diffuse { reflectance: Colour::Uniform(reflectance) };
-        Self { name: name.into(), bsdf, sides }
+        let surface = DiffuseSurface { reflectance: Colour::Uniform(reflectance) };
+        Self { name: name.into(), bsdf: surface.into(), sides }
+    }
+
+    /// Whether both sides scatter.
+    pub fn both_sides(&self) -> bool {
+        self.sides == Sides::Both || self.bsdf.lets_through()
     }
 
     /// The albedo, if the surface is Lambertian and of one colour: what a radiosity matrix can hold.
     pub fn lambertian(&self) -> Option<DVec3> {
         match &self.bsdf {
-            BsdfDescription::Diffuse { reflectance: Colour::Uniform(rho) } => Some(*rho),
+            BsdfDescription::Diffuse(DiffuseSurface { reflectance: Colour::Uniform(rho) }) => Some(*rho),
             _ => None,
         }
     }
-}
-
-/// How a surface scatters; the formulas are in [`crate::scene::bsdf`].
-#[derive(Clone, Debug, PartialEq)]
-pub enum BsdfDescription {
-    /// Lambertian.
-    Diffuse {
-        /// Albedo per channel, in [0, 1].
-        reflectance: Colour,
-    },
-    /// A perfect mirror, the same at every angle.
-    Mirror {
-        /// Albedo per channel, in [0, 1].
-        reflectance: DVec3,
-    },
-    /// A metal.
-    Conductor {
-        /// What it reflects.
-        metal: Metal,
-        /// Microfacets; smooth without.
-        rough: Option<Ggx>,
-    },
-    /// Glass and its like. The inside is behind the normal.
-    Dielectric {
-        /// Index of refraction inside.
-        ior: f64,
-        /// Index of refraction outside.
-        ior_outside: f64,
-        /// How reflection or refraction is chosen.
-        choice: Choice,
-        /// Microfacets; smooth without.
-        rough: Option<Ggx>,
-    },
-    /// A diffuse base under a dielectric coat.
-    Plastic {
-        /// Albedo of the base, in [0, 1].
-        reflectance: Colour,
-        /// Index of refraction of the coat.
-        ior: f64,
-        /// Microfacets of the coat; smooth without.
-        rough: Option<Ggx>,
-    },
-    /// The classic.
-    Phong {
-        /// Albedo of the diffuse part.
-        reflectance: Colour,
-        /// Albedo of the lobe at normal incidence; with `reflectance` at most 1.
-        specular: DVec3,
-        /// Exponent of the lobe, at least 0.
-        exponent: f64,
-    },
-}
-
-impl BsdfDescription {
-    /// Its name in a scene file.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Diffuse { .. } => "diffuse",
-            Self::Mirror { .. } => "mirror",
-            Self::Conductor { .. } => "conductor",
-            Self::Dielectric { .. } => "dielectric",
-            Self::Plastic { .. } => "plastic",
-            Self::Phong { .. } => "phong",
-        }
-    }
-}
-
-/// A colour, the same everywhere or from an image.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Colour {
-    /// One colour.
-    Uniform(DVec3),
-    /// Bilinear, repeating; the uv origin is at the bottom left.
-    Texture(Arc<Raster>),
-}
-
-/// What a metal reflects.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Metal {
-    /// Complex index of refraction η + ik per channel: exact Fresnel reflectance.
-    Fresnel {
-        /// η.
-        eta: DVec3,
-        /// k.
-        k: DVec3,
-    },
-    /// F = this, at every angle.
-    Reflectance(DVec3),
-}
-
-/// GGX microfacets.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ggx {
-    /// Width α as it enters the distribution, not squared.
-    pub alpha: f64,
-    /// Masking and shadowing.
-    pub masking: Masking,
-}
-
-/// How masking and shadowing of microfacets go together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Masking {
-    /// G = 1/(1 + Λ(ω_o) + Λ(ω_i)).
-    HeightCorrelated,
-    /// G = G₁(ω_o) G₁(ω_i).
-    Separable,
-}
-
-/// How a dielectric chooses between reflection and refraction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Choice {
-    /// With the Fresnel reflectance as probability of reflection.
-    Fresnel,
-    /// With this probability of reflection, in (0, 1); under total internal reflection always.
-    Constant(f64),
 }
 
 /// A light without a surface.

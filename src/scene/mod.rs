@@ -42,7 +42,7 @@ use crate::math::Rgb;
 use accel::Accel;
 use bsdf::Bsdf;
 use coplanar::Relation;
-use description::{BsdfDescription, LightDescription, Sides};
+use description::LightDescription;
 pub use emitter::Selection;
 use emitter::{Light, Lights};
 use glam::{DVec3, Vec3};
@@ -120,7 +120,7 @@ impl Scene {
         for &(shape, _) in prims {
             let shape = &description.shapes[shape];
             let material = &description.materials[shape.material];
-            let both = material.sides == Sides::Both || matches!(material.bsdf, BsdfDescription::Dielectric { .. });
+            let both = material.both_sides();
             let back = if both { Bsdf::new(&material.bsdf, true) } else { Bsdf::Black };
             bsdf.extend([Bsdf::new(&material.bsdf, false), back]);
             emission.extend([shape.emission.as_vec3(), Rgb::ZERO]);

@@ -5,7 +5,7 @@
 //! to look and never what is seen, and what `--lambertian` asks for.
 
 use super::bsdf::Bsdf;
-use super::description::{BsdfDescription, Colour, Description, Material};
+use super::description::{BsdfDescription, Description, Material};
 use glam::{DVec3, Vec3};
 
 /// The same shapes and lights with Lambertian surfaces; those that are stay as they are.
@@ -16,17 +16,10 @@ pub fn stand_in(description: &Description) -> Description {
 }
 
 fn albedo(bsdf: &BsdfDescription) -> DVec3 {
-    let mean = match bsdf {
-        BsdfDescription::Dielectric { .. } => return DVec3::ZERO,
-        BsdfDescription::Diffuse { reflectance }
-        | BsdfDescription::Plastic { reflectance, .. }
-        | BsdfDescription::Phong { reflectance, .. } => match reflectance {
-            Colour::Uniform(rho) => Some(*rho),
-            Colour::Texture(image) => Some(image.mean()),
-        },
-        BsdfDescription::Mirror { .. } | BsdfDescription::Conductor { .. } => None,
-    };
-    let scatters = Bsdf::new(bsdf, false);
-    let scatters = mean.map_or(scatters, |rho| scatters.with_reflectance(rho.as_vec3()));
-    scatters.albedo(Vec3::Z).as_dvec3().clamp(DVec3::ZERO, DVec3::ONE)
+    if bsdf.lets_through() {
+        return DVec3::ZERO;
+    }
+    let side = Bsdf::new(bsdf, false);
+    let side = bsdf.colour().map_or(side, |colour| side.with_reflectance(colour.mean().as_vec3()));
+    side.albedo(Vec3::Z).as_dvec3().clamp(DVec3::ZERO, DVec3::ONE)
 }

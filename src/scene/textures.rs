@@ -2,7 +2,7 @@
 //!
 //! (u, v) runs along the edges of a parallelogram; on a triangle it is interpolated with the areas of the three parts.
 
-use super::description::{BsdfDescription, Colour, Description, Geometry};
+use super::description::{Colour, Description, Geometry};
 use super::primitive::Primitive;
 use super::raster::Raster;
 use super::shape::Shape;
@@ -23,13 +23,7 @@ impl Textures {
         let mut first = 0;
         for (number, shape) in description.shapes.iter().enumerate() {
             let count = prims[first..].iter().take_while(|(s, _)| *s == number).count();
-            let colour = match &description.materials[shape.material].bsdf {
-                BsdfDescription::Diffuse { reflectance }
-                | BsdfDescription::Plastic { reflectance, .. }
-                | BsdfDescription::Phong { reflectance, .. } => Some(reflectance),
-                _ => None,
-            };
-            if let Some(Colour::Texture(image)) = colour {
+            if let Some(Colour::Texture(image)) = description.materials[shape.material].bsdf.colour() {
                 let known = all.images.iter().position(|i| Arc::ptr_eq(i, image));
                 let image = known.unwrap_or_else(|| {
                     all.images.push(image.clone());

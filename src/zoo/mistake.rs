@@ -21,7 +21,7 @@
 use crate::estimator::Technique;
 use crate::math::Rgb;
 use crate::math::direction::{cosine_hemisphere, uniform_hemisphere};
-use crate::scene::bsdf::dielectric::Dielectric;
+use crate::scene::bsdf::dielectric::SmoothDielectric;
 use crate::scene::bsdf::{BsdfSample, Sampling, TransportMode};
 use crate::scene::{LightSample, Scene, Vertex};
 use glam::Vec3;
@@ -121,8 +121,8 @@ pub trait Mistake: Sync {
     }
 
     /// Reflection or refraction at smooth glass, with its weight.
-    fn glass(&self, glass: &Dielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
-        Some(glass.sample(wo, TransportMode::Radiance, u))
+    fn glass(&self, glass: &SmoothDielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
+        Some(glass.choose(wo, TransportMode::Radiance, u))
     }
 
     /// Whether roulette is tested before the light is sampled, and its weight applied after: it is not.

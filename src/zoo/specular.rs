@@ -10,7 +10,7 @@
 use super::signature::{per_reflection, unknown};
 use super::{Bug, Ends, Mistake, Stage};
 use crate::estimator::Technique;
-use crate::scene::bsdf::dielectric::{Dielectric, Odds};
+use crate::scene::bsdf::dielectric::{Odds, SmoothDielectric};
 use crate::scene::bsdf::{BsdfSample, TransportMode};
 use glam::Vec3;
 
@@ -83,16 +83,16 @@ impl Mistake for NoEmissionAfterMirror {
 
 struct GlassWithoutChoice;
 impl Mistake for GlassWithoutChoice {
-    fn glass(&self, glass: &Dielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
-        let s = Dielectric { odds: Odds::Constant(0.5), ..*glass }.sample(wo, TransportMode::Radiance, u);
+    fn glass(&self, glass: &SmoothDielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
+        let s = SmoothDielectric { odds: Odds::Constant(0.5), ..*glass }.choose(wo, TransportMode::Radiance, u);
         Some(BsdfSample { weight: s.weight * s.pdf, ..s })
     }
 }
 
 struct EtaSquaredOnce;
 impl Mistake for EtaSquaredOnce {
-    fn glass(&self, glass: &Dielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
-        let s = glass.sample(wo, TransportMode::Radiance, u);
+    fn glass(&self, glass: &SmoothDielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
+        let s = glass.choose(wo, TransportMode::Radiance, u);
         let out = s.wi.z < 0.0 && glass.interface.eta < 1.0;
         Some(if out { BsdfSample { weight: s.weight * glass.interface.eta2(), ..s } } else { s })
     }
@@ -100,8 +100,8 @@ impl Mistake for EtaSquaredOnce {
 
 struct TotalReflectionDropped;
 impl Mistake for TotalReflectionDropped {
-    fn glass(&self, glass: &Dielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
+    fn glass(&self, glass: &SmoothDielectric, wo: Vec3, u: f32) -> Option<BsdfSample> {
         glass.interface.refracted(wo.z)?;
-        Some(glass.sample(wo, TransportMode::Radiance, u))
+        Some(glass.choose(wo, TransportMode::Radiance, u))
     }
 }

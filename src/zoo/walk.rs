@@ -18,6 +18,7 @@ use crate::estimator::{Batch, Job, Paths, Plan, TermEstimator, TermSink};
 use crate::math::direction::Frame;
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};
+use crate::scene::bsdf::dielectric::Dielectric;
 use crate::scene::bsdf::{Bsdf, TransportMode, diffuse::Diffuse};
 use crate::scene::{LightSample, Vertex, VertexWave, connection, offset_origin};
 use glam::Vec3;
@@ -163,7 +164,7 @@ impl Walk<'_> {
                 let value = self.mistake.bounce(self.mistake.lambert(reflectance), at.n.dot(to), pdf);
                 return (value != Rgb::ZERO).then_some(Scattered { to, normal: at.n, value, pdf, delta: false });
             }
-            Bsdf::Dielectric(glass) => self.mistake.glass(&glass, frame.local(at.omega), u[2])?,
+            Bsdf::Dielectric(Dielectric::Smooth(glass)) => self.mistake.glass(&glass, frame.local(at.omega), u[2])?,
             bsdf => bsdf.sample(frame.local(at.omega), t.sampling, TransportMode::Radiance, [u[0], u[1], u[2]])?,
         };
         let normal = if s.wi.z > 0.0 { at.n } else { -at.n };

@@ -2,6 +2,9 @@
 
 use fredholm::scene::bsdf::{Bsdf, Sampling};
 use fredholm::scene::description::{BsdfDescription, Choice, Colour, Ggx, Masking, Metal};
+use fredholm::scene::description::{
+    ConductorSurface, DielectricSurface, DiffuseSurface, MirrorSurface, PhongSurface, PlasticSurface,
+};
 use glam::{DVec3, Vec3};
 
 /// A side of a surface.
@@ -51,7 +54,7 @@ fn colour(c: DVec3) -> Colour {
 
 pub fn glass(choice: Choice, rough: Option<Ggx>, back: bool) -> Surface {
     let width = rough.map_or(0.0, |g| g.alpha);
-    let description = BsdfDescription::Dielectric { ior: 1.5, ior_outside: 1.0, choice, rough };
+    let description = BsdfDescription::Dielectric(DielectricSurface { ior: 1.5, ior_outside: 1.0, choice, rough });
     Surface { description, back, width, eta: if back { 1.0 / 1.5 } else { 1.5 } }
 }
 
@@ -61,19 +64,19 @@ fn front(description: BsdfDescription, width: f64) -> Surface {
 
 pub fn plastic(reflectance: DVec3, rough: Option<Ggx>) -> Surface {
     let width = rough.map_or(1.0, |g| g.alpha);
-    front(BsdfDescription::Plastic { reflectance: colour(reflectance), ior: 1.5, rough }, width)
+    front(BsdfDescription::Plastic(PlasticSurface { reflectance: colour(reflectance), ior: 1.5, rough }), width)
 }
 
 pub fn metal(metal: Metal, rough: Option<Ggx>) -> Surface {
-    front(BsdfDescription::Conductor { metal, rough }, rough.map_or(0.0, |g| g.alpha))
+    front(BsdfDescription::Conductor(ConductorSurface { metal, rough }), rough.map_or(0.0, |g| g.alpha))
 }
 
 /// Every kind of surface, every roughness, both sides where they differ.
 pub fn all() -> Vec<Surface> {
     use Masking::{HeightCorrelated, Separable};
     let mut list = vec![
-        front(BsdfDescription::Diffuse { reflectance: colour(RHO) }, 1.0),
-        front(BsdfDescription::Mirror { reflectance: RHO }, 0.0),
+        front(BsdfDescription::Diffuse(DiffuseSurface { reflectance: colour(RHO) }), 1.0),
+        front(BsdfDescription::Mirror(MirrorSurface { reflectance: RHO }), 0.0),
         metal(gold(), None),
         metal(Metal::Reflectance(RHO), None),
         plastic(RHO, None),
@@ -97,7 +100,7 @@ pub fn all() -> Vec<Surface> {
     for exponent in [0.0, 1.0, 7.5, 100.0, 5000.0f64] {
         let (reflectance, specular) = (colour(0.5 * RHO), DVec3::new(0.5, 0.4, 0.3));
         let width = (2.0 / (exponent + 2.0)).sqrt();
-        list.push(front(BsdfDescription::Phong { reflectance, specular, exponent }, width));
+        list.push(front(BsdfDescription::Phong(PhongSurface { reflectance, specular, exponent }), width));
     }
     list
 }

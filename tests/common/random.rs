@@ -7,6 +7,9 @@ use fredholm::operator::MatrixWalk;
 use fredholm::scene::description::{
     BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,
 };
+use fredholm::scene::description::{
+    ConductorSurface, DielectricSurface, DiffuseSurface, MirrorSurface, PhongSurface, PlasticSurface,
+};
 use fredholm::scene::raster::Raster;
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
@@ -179,15 +182,15 @@ pub fn opaque(top: f64) -> impl Strategy<Value = BsdfDescription> {
     let coated = (any_albedo(1.0), 1.1..2.0f64, rough());
     let phong = (vector(0.0, 0.5 * top), vector(0.05, 0.5 * top), 0.0..60.0f64);
     prop_oneof![
-        3 => any_albedo(top).prop_map(|c| BsdfDescription::Diffuse { reflectance: Colour::Uniform(c) }),
-        1 => any_albedo(top).prop_map(|reflectance| BsdfDescription::Mirror { reflectance }),
-        2 => (metal, rough()).prop_map(|(metal, rough)| BsdfDescription::Conductor { metal, rough }),
+        3 => any_albedo(top).prop_map(|c| BsdfDescription::Diffuse(DiffuseSurface { reflectance: Colour::Uniform(c) })),
+        1 => any_albedo(top).prop_map(|reflectance| BsdfDescription::Mirror(MirrorSurface { reflectance })),
+        2 => (metal, rough()).prop_map(|(metal, rough)| BsdfDescription::Conductor(ConductorSurface { metal, rough })),
         2 => coated.prop_map(move |(c, ior, rough)| match top < 1.0 {
-            true => BsdfDescription::Diffuse { reflectance: Colour::Uniform(c * top) },
-            false => BsdfDescription::Plastic { reflectance: Colour::Uniform(c), ior, rough },
+            true => BsdfDescription::Diffuse(DiffuseSurface { reflectance: Colour::Uniform(c * top) }),
+            false => BsdfDescription::Plastic(PlasticSurface { reflectance: Colour::Uniform(c), ior, rough }),
         }),
         1 => phong.prop_map(|(c, specular, exponent)| {
-            BsdfDescription::Phong { reflectance: Colour::Uniform(c), specular, exponent }
+            BsdfDescription::Phong(PhongSurface { reflectance: Colour::Uniform(c), specular, exponent })
         }),
     ]
 }
@@ -195,11 +198,8 @@ pub fn opaque(top: f64) -> impl Strategy<Value = BsdfDescription> {
 /// Glass, smooth or rough.
 pub fn glass() -> impl Strategy<Value = BsdfDescription> {
     let choice = prop_oneof![2 => Just(Choice::Fresnel), 1 => (0.2..0.8f64).prop_map(Choice::Constant)];
-    (1.1..2.2f64, choice, rough()).prop_map(|(ior, choice, rough)| BsdfDescription::Dielectric {
-        ior,
-        ior_outside: 1.0,
-        choice,
-        rough,
+    (1.1..2.2f64, choice, rough()).prop_map(|(ior, choice, rough)| {
+        BsdfDescription::Dielectric(DielectricSurface { ior, ior_outside: 1.0, choice, rough })
     })
 }
 

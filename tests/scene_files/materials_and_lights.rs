@@ -1,6 +1,7 @@
 //! Materials, lights and images, read and refused.
 
 use super::*;
+use fredholm::scene::description::{ConductorSurface, DielectricSurface, MirrorSurface, PhongSurface, PlasticSurface};
 
 /// (text of RICH, its replacement, line, key, what)
 #[rustfmt::skip]
@@ -101,19 +102,28 @@ fn the_rich_scene_is_read_as_written() {
     let bsdf = |name: &str| d.materials.iter().find(|m| m.name == name).unwrap().bsdf.clone();
     let silver = d.materials.iter().find(|m| m.name == "silver").unwrap();
     assert_eq!(silver.sides, Sides::Front);
-    assert_eq!(silver.bsdf, BsdfDescription::Mirror { reflectance: DVec3::new(0.9, 0.8, 0.7) });
+    assert_eq!(silver.bsdf, BsdfDescription::Mirror(MirrorSurface { reflectance: DVec3::new(0.9, 0.8, 0.7) }));
     let metal = Metal::Fresnel { eta: DVec3::new(0.143, 0.375, 1.442), k: DVec3::new(3.98, 2.39, 1.6) };
-    assert_eq!(bsdf("gold"), BsdfDescription::Conductor { metal, rough: ggx(0.1, Masking::Separable) });
+    assert_eq!(
+        bsdf("gold"),
+        BsdfDescription::Conductor(ConductorSurface { metal, rough: ggx(0.1, Masking::Separable) })
+    );
     let metal = Metal::Reflectance(DVec3::new(0.5, 0.6, 0.7));
-    assert_eq!(bsdf("chrome"), BsdfDescription::Conductor { metal, rough: None });
+    assert_eq!(bsdf("chrome"), BsdfDescription::Conductor(ConductorSurface { metal, rough: None }));
     let rough = ggx(0.3, Masking::HeightCorrelated);
     let choice = Choice::Constant(0.25);
-    assert_eq!(bsdf("glass"), BsdfDescription::Dielectric { ior: 1.5, ior_outside: 1.33, choice, rough });
+    assert_eq!(
+        bsdf("glass"),
+        BsdfDescription::Dielectric(DielectricSurface { ior: 1.5, ior_outside: 1.33, choice, rough })
+    );
     let reflectance = Colour::Uniform(DVec3::new(0.4, 0.5, 0.6));
     let rough = ggx(0.2, Masking::HeightCorrelated);
-    assert_eq!(bsdf("cup"), BsdfDescription::Plastic { reflectance, ior: 1.5, rough });
+    assert_eq!(bsdf("cup"), BsdfDescription::Plastic(PlasticSurface { reflectance, ior: 1.5, rough }));
     let reflectance = Colour::Uniform(DVec3::new(0.7, 0.6, 0.5));
-    assert_eq!(bsdf("lacquer"), BsdfDescription::Phong { reflectance, specular: DVec3::splat(0.3), exponent: 50.0 });
+    assert_eq!(
+        bsdf("lacquer"),
+        BsdfDescription::Phong(PhongSurface { reflectance, specular: DVec3::splat(0.3), exponent: 50.0 })
+    );
     let Geometry::Mesh { uvs, .. } = &d.shapes[2].geometry else { panic!() };
     assert_eq!(uvs[1], [DVec2::ZERO, DVec2::new(2.0, 0.0), DVec2::ONE]);
     // lights in the order of the file
@@ -130,7 +140,12 @@ fn the_rich_scene_is_read_as_written() {
 
     // defaults, and glass without a step of the index
     let d = read(&RICH.replace("choice = 0.25\nalpha = 0.3", "").replace("ior_outside = 1.33", ""));
-    let glass = BsdfDescription::Dielectric { ior: 1.5, ior_outside: 1.0, choice: Choice::Fresnel, rough: None };
+    let glass = BsdfDescription::Dielectric(DielectricSurface {
+        ior: 1.5,
+        ior_outside: 1.0,
+        choice: Choice::Fresnel,
+        rough: None,
+    });
     assert_eq!(d.materials[4].bsdf, glass);
     read(
         &RICH

@@ -1,6 +1,7 @@
 //! Geometry of OBJ files, materials of MTL files.
 
 use super::*;
+use fredholm::scene::description::{DielectricSurface, DiffuseSurface, MirrorSurface, PhongSurface};
 
 #[test]
 fn wrong_obj_files_are_refused_at_their_line() {
@@ -107,21 +108,21 @@ fn mtl_materials() {
     let dir = gallery();
     let (obj, mtl) = (dir.path().join("a.obj"), dir.path().join("a.mtl"));
     let grey = |x: f64| Colour::Uniform(DVec3::splat(x));
-    let diffuse = |x: f64| BsdfDescription::Diffuse { reflectance: grey(x) };
-    let mirror = |x: f64| BsdfDescription::Mirror { reflectance: DVec3::splat(x) };
-    let phong = |kd: f64, ks: f64, exponent: f64| BsdfDescription::Phong {
-        reflectance: grey(kd),
-        specular: DVec3::splat(ks),
-        exponent,
+    let diffuse = |x: f64| BsdfDescription::Diffuse(DiffuseSurface { reflectance: grey(x) });
+    let mirror = |x: f64| BsdfDescription::Mirror(MirrorSurface { reflectance: DVec3::splat(x) });
+    let phong = |kd: f64, ks: f64, exponent: f64| {
+        BsdfDescription::Phong(PhongSurface { reflectance: grey(kd), specular: DVec3::splat(ks), exponent })
     };
-    let glass = |ior: f64| BsdfDescription::Dielectric { ior, ior_outside: 1.0, choice: Choice::Fresnel, rough: None };
+    let glass = |ior: f64| {
+        BsdfDescription::Dielectric(DielectricSurface { ior, ior_outside: 1.0, choice: Choice::Fresnel, rough: None })
+    };
     // the two texels of wall.png, decoded
     let wall = |factor: f64| {
         let read = RICH.replace("sky.hdr", "wall.png");
         let d = toml(&read, &dir.path().join("x.toml"), &Options::default()).unwrap().description;
         let LightDescription::Environment { sky: Sky::LatLong(r), .. } = &d.lights[1] else { panic!() };
         let texels = r.texels.iter().map(|t| (t.as_dvec3() * factor).as_vec3()).collect();
-        BsdfDescription::Diffuse { reflectance: Colour::Texture(Raster::new(r.size, texels).into()) }
+        BsdfDescription::Diffuse(DiffuseSurface { reflectance: Colour::Texture(Raster::new(r.size, texels).into()) })
     };
     for (statements, placed, wanted, said) in [
         ("Kd 0.25", true, diffuse(0.25), &[][..]),
@@ -300,7 +301,7 @@ fn real_obj_files() {
     let tall = d.materials.iter().find(|m| m.name == "tallBox").unwrap();
     let specular = DVec3::new(0.725, 0.71, 0.68);
     let reflectance = Colour::Uniform(DVec3::ZERO);
-    assert_eq!(tall.bsdf, BsdfDescription::Phong { reflectance, specular, exponent: 200.0 });
+    assert_eq!(tall.bsdf, BsdfDescription::Phong(PhongSurface { reflectance, specular, exponent: 200.0 }));
     assert_eq!(cornell.warnings, [""; 0]);
     let cow = scene(inputs.join("spot.obj").to_str().unwrap(), &options(&[], &["default=1,1,1"])).unwrap();
     assert_eq!((cow.description.primitives().len(), cow.warnings.len()), (5856, 0));

@@ -18,6 +18,7 @@
 use crate::math::{Key, Purpose, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};
 use crate::scene::bsdf::Bsdf;
+use crate::scene::bsdf::dielectric::Dielectric;
 use crate::scene::coplanar::{Region, Relation};
 use crate::scene::{Scene, Vertex};
 use glam::Vec3;
@@ -103,7 +104,8 @@ fn walks(scene: &Scene, key: Key) -> Vec<Vertex> {
 
 /// Whether light from anywhere is scattered here, so that a connection means a path.
 fn connectable(scene: &Scene, x: &Vertex) -> bool {
-    !matches!(scene.bsdf(x), Bsdf::Black | Bsdf::Mirror(_) | Bsdf::Dielectric(_)) && scene.albedo(x.side) != Vec3::ZERO
+    !matches!(scene.bsdf(x), Bsdf::Black | Bsdf::Mirror(_) | Bsdf::Dielectric(Dielectric::Smooth(_)))
+        && scene.albedo(x.side) != Vec3::ZERO
 }
 
 /// Whether one of `points` points where two shapes compete is seen by the camera or by some of these vertices.

@@ -18,12 +18,15 @@
 //! References: Torrance and Sparrow, *Theory for Off-Specular Reflection From Roughened Surfaces* (JOSA 57(9), 1967);
 //! Cook and Torrance, *A Reflectance Model for Computer Graphics* (TOG 1(1), 1982); microfacets as in [`super::ggx`].
 
-use super::ggx::{Microfacets, half, reflect};
+use super::colour::rgb;
+use super::ggx::{Ggx, Microfacets, half, reflect};
 use super::mirror::reflection;
-use super::{BsdfSample, fresnel, rgb};
+use super::model::{blind_pdf, sample_blindly};
+use super::{BsdfSample, Model, Sampling, Surface, TransportMode, fresnel};
 use crate::math::Rgb;
-use crate::scene::description::{Ggx, Metal};
-use glam::Vec3;
+use crate::scene::SceneError;
+use crate::scene::load::{Cursor, keys};
+use glam::{DVec3, Vec3};
 
 /// A metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,8 +46,8 @@ impl Conductor {
     /// From a description.
     pub fn new(metal: Metal, rough: Option<Ggx>) -> Self {
         let metal = match metal {
-            Metal::Fresnel { eta, k } => Reflects::Index { eta: rgb(eta), k: rgb(k) },
-            Metal::Reflectance(reflectance) => Reflects::Colour(rgb(reflectance)),
+            Metal::Fresnel { eta, k } => Reflects::Index { eta: eta.as_vec3(), k: k.as_vec3() },
+            Metal::Reflectance(reflectance) => Reflects::Colour(reflectance.as_vec3()),
         };
         Self { metal, rough: rough.map(Microfacets::new) }
     }
@@ -57,10 +60,12 @@ impl Conductor {
             Reflects::Colour(reflectance) => reflectance,
         }
     }
+}
 
-    /// f, sr⁻¹: zero of a smooth metal.
+impl Model for Conductor {
+    /// Zero of a smooth metal.
     #[inline(always)]
-    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+    fn eval(&self, wo: Vec3, wi: Vec3, _: TransportMode) -> Rgb {
         match self.rough {
             Some(facets) if wi.z > 0.0 => {
                 let (h, c) = half(wo, wi);
@@ -70,10 +75,11 @@ impl Conductor {
         }
     }
 
-    /// Density of [`Self::sample`], sr⁻¹.
     #[inline(always)]
-    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+    fn pdf(&self, wo: Vec3, wi: Vec3, sampling: Sampling) -> f32 {
         match self.rough {
+            None => 0.0,
+            Some(_) if sampling != Sampling::Bsdf => blind_pdf(wi, sampling),
             Some(facets) if wi.z > 0.0 => 0.25 * facets.visible(wo.z, half(wo, wi).0),
             _ => 0.0,
         }
@@ -81,22 +87,25 @@ impl Conductor {
 
     /// The mirror direction, or the reflection by a normal seen from ω_o. None below the surface.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3, u: [f32; 2]) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
         let Some(facets) = self.rough else {
             return Some(BsdfSample { wi: reflection(wo), weight: self.fresnel(wo.z), pdf: 1.0, delta: true });
         };
-        let wi = reflect(wo, facets.sample(wo, u));
+        if sampling != Sampling::Bsdf {
+            return sample_blindly(self, wo, sampling, mode, u);
+        }
+        let wi = reflect(wo, facets.sample(wo, [u[0], u[1]]));
         if wi.z <= 0.0 {
             return None;
         }
         // from the pair of directions, as eval and pdf see it
         let weight = self.fresnel(half(wo, wi).1) * facets.lit(wo.z, wi.z);
-        Some(BsdfSample { wi, weight, pdf: self.pdf(wo, wi), delta: false })
+        Some(BsdfSample { wi, weight, pdf: self.pdf(wo, wi, sampling), delta: false })
     }
 
     /// Exact for a smooth metal; for a rough one the largest F, which G/G₁ ≤ 1 can only lower.
     #[inline(always)]
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
+    fn albedo(&self, wo: Vec3) -> Rgb {
         match self.rough {
             None => self.fresnel(wo.z),
             Some(_) => self.max_albedo(),
@@ -105,10 +114,79 @@ impl Conductor {
 
     /// The largest F: 1 for a complex index, where everything is reflected at grazing angles.
     #[inline(always)]
-    pub fn max_albedo(&self) -> Rgb {
+    fn max_albedo(&self) -> Rgb {
         match self.metal {
             Reflects::Index { .. } => Rgb::ONE,
             Reflects::Colour(reflectance) => reflectance,
         }
+    }
+
+    fn connects(&self) -> bool {
+        self.rough.is_some()
+    }
+    fn has_delta(&self) -> bool {
+        self.rough.is_none()
+    }
+}
+
+/// What a metal reflects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Metal {
+    /// Complex index of refraction η + ik per channel: exact Fresnel reflectance.
+    Fresnel {
+        /// η.
+        eta: DVec3,
+        /// k.
+        k: DVec3,
+    },
+    /// F = this, at every angle.
+    Reflectance(DVec3),
+}
+
+/// A metal of a scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConductorSurface {
+    /// What it reflects.
+    pub metal: Metal,
+    /// Microfacets; smooth without.
+    pub rough: Option<Ggx>,
+}
+
+impl Surface for ConductorSurface {
+    type Side = Conductor;
+    const KIND: &'static str = "conductor";
+    const KEYS: &'static [&'static str] = &["eta", "k", "reflectance", "alpha", "masking"];
+
+    fn read(c: &Cursor<'_>) -> Result<Self, SceneError> {
+        let metal = match (c.get("eta").or(c.get("k")), c.get("reflectance")) {
+            (Some(_), Some(r)) => {
+                let e = r.error("eta, k and reflectance are both given");
+                return Err(
+                    e.help("eta and k give the Fresnel reflectance; reflectance alone is the same at every angle")
+                );
+            }
+            (None, Some(r)) => Metal::Reflectance(r.reflectance()?),
+            _ => {
+                let eta = c.require("eta", "eta = [r, g, b] and k = [r, g, b], or reflectance = [r, g, b] alone")?;
+                let k = c.require("k", "k = [r, g, b], the imaginary part of the index")?;
+                Metal::Fresnel { eta: eta.index("eta", 1e-3)?, k: k.index("k", 0.0)? }
+            }
+        };
+        Ok(Self { metal, rough: keys::rough(c)? })
+    }
+    fn side(&self, _: bool) -> Conductor {
+        Conductor::new(self.metal, self.rough)
+    }
+    fn words(&self) -> String {
+        let rough = Ggx::words(self.rough);
+        match self.metal {
+            Metal::Fresnel { eta, k } => format!("η {}, k {}, {rough}", rgb(eta), rgb(k)),
+            Metal::Reflectance(f) => format!("reflectance {}, {rough}", rgb(f)),
+        }
+    }
+    fn examples() -> Vec<Self> {
+        let gold = Metal::Fresnel { eta: DVec3::new(0.14, 0.37, 1.44), k: DVec3::new(3.98, 2.38, 1.6) };
+        let metals = [gold, Metal::Reflectance(DVec3::new(0.9, 0.6, 0.3))];
+        metals.into_iter().flat_map(|metal| Ggx::examples().map(|rough| Self { metal, rough })).collect()
     }
 }

@@ -16,53 +16,52 @@
 //! Scattering in Light Transport Algorithms* (EGWR 1996).
 
 use super::fresnel::Interface;
+use super::ggx::{Ggx, Microfacets};
 use super::mirror::reflection;
-use super::{BsdfSample, TransportMode};
+pub use super::odds::{Choice, Odds};
+use super::rough_dielectric::RoughDielectric;
+use super::{BsdfSample, Model, Sampling, Surface, TransportMode};
 use crate::math::Rgb;
-use crate::scene::description::Choice;
+use crate::scene::SceneError;
+use crate::scene::load::{Cursor, MtlMaterial, keys, keys::IOR};
 use glam::Vec3;
 
-/// How reflection or refraction is chosen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Odds {
-    /// By F.
-    Fresnel,
-    /// By a constant, unless nothing is refracted.
-    Constant(f32),
-}
-
-impl Odds {
-    /// From a description.
-    pub fn new(choice: Choice) -> Self {
-        match choice {
-            Choice::Fresnel => Self::Fresnel,
-            Choice::Constant(p) => Self::Constant(p as f32),
-        }
-    }
-
-    /// p, where the reflectance is `f`.
-    #[inline(always)]
-    pub fn of_reflection(self, f: f32) -> f32 {
-        match self {
-            Self::Constant(p) if f < 1.0 => p,
-            _ => f,
-        }
-    }
-}
+/// Index of glass where an MTL file has no `Ni`.
+const GLASS: f64 = 1.5;
 
 /// A smooth boundary between two dielectrics, seen from one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dielectric {
+pub struct SmoothDielectric {
     /// The indices.
     pub interface: Interface,
     /// How a side is chosen.
     pub odds: Odds,
 }
 
-impl Dielectric {
+impl Model for SmoothDielectric {
+    /// Reflects if `u[2]` < p, refracts otherwise.
+    #[inline(always)]
+    fn sample(&self, wo: Vec3, _: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
+        Some(self.choose(wo, mode, u[2]))
+    }
+    fn albedo(&self, _: Vec3) -> Rgb {
+        Rgb::ONE
+    }
+    fn max_albedo(&self) -> Rgb {
+        Rgb::ONE
+    }
+    fn connects(&self) -> bool {
+        false
+    }
+    fn has_delta(&self) -> bool {
+        true
+    }
+}
+
+impl SmoothDielectric {
     /// Reflects if `u` < p, refracts otherwise.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3, mode: TransportMode, u: f32) -> BsdfSample {
+    pub fn choose(&self, wo: Vec3, mode: TransportMode, u: f32) -> BsdfSample {
         let f = self.interface.reflectance(wo.z);
         let p = self.odds.of_reflection(f);
         match self.interface.refracted(wo.z) {
@@ -73,5 +72,150 @@ impl Dielectric {
             }
             _ => BsdfSample { wi: reflection(wo), weight: Rgb::splat(f / p), pdf: p, delta: true },
         }
+    }
+}
+
+/// A boundary between two dielectrics, seen from one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Dielectric {
+    /// Without microfacets.
+    Smooth(SmoothDielectric),
+    /// With microfacets.
+    Rough(RoughDielectric),
+}
+
+impl Model for Dielectric {
+    #[inline(always)]
+    fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
+        match self {
+            Self::Smooth(f) => f.eval(wo, wi, mode),
+            Self::Rough(f) => f.eval(wo, wi, mode),
+        }
+    }
+    #[inline(always)]
+    fn sample(&self, wo: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
+        match self {
+            Self::Smooth(f) => f.sample(wo, sampling, mode, u),
+            Self::Rough(f) => f.sample(wo, sampling, mode, u),
+        }
+    }
+    #[inline(always)]
+    fn pdf(&self, wo: Vec3, wi: Vec3, sampling: Sampling) -> f32 {
+        match self {
+            Self::Smooth(f) => f.pdf(wo, wi, sampling),
+            Self::Rough(f) => f.pdf(wo, wi, sampling),
+        }
+    }
+    fn albedo(&self, _: Vec3) -> Rgb {
+        Rgb::ONE
+    }
+    fn max_albedo(&self) -> Rgb {
+        Rgb::ONE
+    }
+    fn connects(&self) -> bool {
+        matches!(self, Self::Rough(_))
+    }
+    fn has_delta(&self) -> bool {
+        matches!(self, Self::Smooth(_))
+    }
+    fn transmits(&self) -> bool {
+        matches!(self, Self::Rough(_))
+    }
+}
+
+/// Glass and its like in a scene file. The inside is behind the normal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DielectricSurface {
+    /// Index of refraction inside.
+    pub ior: f64,
+    /// Index of refraction outside.
+    pub ior_outside: f64,
+    /// How reflection or refraction is chosen.
+    pub choice: Choice,
+    /// Microfacets; smooth without.
+    pub rough: Option<Ggx>,
+}
+
+impl Surface for DielectricSurface {
+    type Side = Dielectric;
+    const KIND: &'static str = "dielectric";
+    const KEYS: &'static [&'static str] = &["ior", "ior_outside", "choice", "alpha", "masking"];
+    const LETS_THROUGH: bool = true;
+
+    fn read(c: &Cursor<'_>) -> Result<Self, SceneError> {
+        let ior = c.require("ior", "the index of refraction inside: ior = 1.5")?.within("ior", IOR[0], IOR[1])?;
+        let ior_outside = c.get("ior_outside").map_or(Ok(1.0), |i| i.within("ior_outside", IOR[0], IOR[1]))?;
+        let choice = match c.get("choice") {
+            None => Choice::Fresnel,
+            Some(at) if at.is_text() => at.choice("choice of reflection", &[("fresnel", Choice::Fresnel)])?,
+            Some(at) => {
+                let p = at.number()?;
+                if !(p > 0.0 && p < 1.0) {
+                    let e = at.error(format!("choice {p} is outside (0, 1)"));
+                    return Err(e.help("it is the probability of reflection; neither way may be impossible"));
+                }
+                Choice::Constant(p)
+            }
+        };
+        let rough = keys::rough(c)?;
+        if let (Some(_), Some(at)) = (rough, c.get("alpha").filter(|_| (ior / ior_outside - 1.0).abs() < 1e-3)) {
+            let e = at.error(format!("alpha between indices {ior_outside} and {ior}, which hardly differ"));
+            return Err(
+                e.help("without a step of the index nothing scatters: leave alpha out, or move them 0.1 % apart")
+            );
+        }
+        Ok(Self { ior, ior_outside, choice, rough })
+    }
+
+    /// `d` < 1, or `illum` 4, 6, 7, 9 with `Ni` > 1.
+    fn from_mtl(m: &mut MtlMaterial<'_>) -> Result<Option<Self>, SceneError> {
+        if !m.is_glass() {
+            return Ok(None);
+        }
+        let ior = match m.entry.ior {
+            Some(n) if (IOR[0]..=IOR[1]).contains(&n) => n,
+            Some(n) => {
+                m.warn(format!("has Ni {n} outside [{}, {}], {GLASS} is used", IOR[0], IOR[1]));
+                GLASS
+            }
+            None => {
+                m.warn(format!("has no Ni, {GLASS} is used"));
+                GLASS
+            }
+        };
+        if ior == 1.0 {
+            m.warn("has Ni 1 and d below 1, it is invisible".into());
+        }
+        let lost = m.tints();
+        if !lost.is_empty() {
+            m.warn(format!("is clear glass, without its {}", lost.join(", ")));
+        }
+        Ok(Some(Self { ior, ior_outside: 1.0, choice: Choice::Fresnel, rough: None }))
+    }
+
+    fn side(&self, back: bool) -> Dielectric {
+        let Self { ior, ior_outside, choice, rough } = *self;
+        let (here, beyond) = if back { (ior, ior_outside) } else { (ior_outside, ior) };
+        let (interface, odds) = (Interface::new(here, beyond), Odds::new(choice));
+        match rough {
+            // between equal indices a rough boundary is as invisible as a smooth one
+            Some(ggx) if interface.eta != 1.0 => {
+                Dielectric::Rough(RoughDielectric { interface, odds, facets: Microfacets::new(ggx) })
+            }
+            _ => Dielectric::Smooth(SmoothDielectric { interface, odds }),
+        }
+    }
+
+    fn words(&self) -> String {
+        let choice = match self.choice {
+            Choice::Fresnel => "chosen by Fresnel".to_owned(),
+            Choice::Constant(p) => format!("reflected with probability {p}"),
+        };
+        format!("index {} in {}, {choice}, {}", self.ior, self.ior_outside, Ggx::words(self.rough))
+    }
+
+    fn examples() -> Vec<Self> {
+        let of = |choice| Ggx::examples().map(|rough| Self { ior: 1.5, ior_outside: 1.0, choice, rough });
+        [Choice::Fresnel, Choice::Constant(0.3)].into_iter().flat_map(of).collect()
     }
 }

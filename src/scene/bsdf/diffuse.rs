@@ -7,12 +7,16 @@
 //! | uniform, p = 1/2π | 2ρ cos θ |
 //! | cosine, p = cos θ/π | ρ |
 
-use super::Sampling;
+use super::colour::Colour;
+use super::model::blind_pdf;
+use super::{BsdfSample, Model, Sampling, Surface, TransportMode};
 use crate::math::{
     Rgb,
     direction::{cosine_hemisphere, uniform_hemisphere},
 };
-use glam::Vec3;
+use crate::scene::SceneError;
+use crate::scene::load::{Cursor, MtlMaterial, keys};
+use glam::{DVec3, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
 /// f = ρ/π.
@@ -23,16 +27,72 @@ pub struct Diffuse {
 }
 
 impl Diffuse {
-    /// f, sr⁻¹.
-    #[inline(always)]
-    pub fn eval(&self, wi: Vec3) -> Rgb {
-        if wi.z > 0.0 { self.f() } else { Rgb::ZERO }
-    }
-
     /// f on the side of the normal, sr⁻¹.
     #[inline(always)]
     pub fn f(&self) -> Rgb {
         self.reflectance * FRAC_1_PI
+    }
+}
+
+impl Model for Diffuse {
+    #[inline(always)]
+    fn eval(&self, _: Vec3, wi: Vec3, _: TransportMode) -> Rgb {
+        if wi.z > 0.0 { self.f() } else { Rgb::ZERO }
+    }
+    #[inline(always)]
+    fn sample(&self, _: Vec3, sampling: Sampling, _: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
+        let (wi, weight, pdf) = sample(self.reflectance, Vec3::Z, sampling, [u[0], u[1]]);
+        Some(BsdfSample { wi, weight, pdf, delta: false })
+    }
+    #[inline(always)]
+    fn pdf(&self, _: Vec3, wi: Vec3, sampling: Sampling) -> f32 {
+        blind_pdf(wi, sampling)
+    }
+    fn albedo(&self, _: Vec3) -> Rgb {
+        self.reflectance
+    }
+    fn max_albedo(&self) -> Rgb {
+        self.reflectance
+    }
+    fn with_reflectance(self, reflectance: Rgb) -> Self {
+        Self { reflectance }
+    }
+}
+
+/// A Lambertian surface of a scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DiffuseSurface {
+    /// Albedo per channel, in [0, 1].
+    pub reflectance: Colour,
+}
+
+impl Surface for DiffuseSurface {
+    type Side = Diffuse;
+    const KIND: &'static str = "diffuse";
+    const KEYS: &'static [&'static str] = &["reflectance", "texture"];
+
+    fn read(c: &Cursor<'_>) -> Result<Self, SceneError> {
+        Ok(Self { reflectance: keys::colour(c)? })
+    }
+    /// What nothing else claims.
+    fn from_mtl(m: &mut MtlMaterial<'_>) -> Result<Option<Self>, SceneError> {
+        let reflectance = m.colour()?;
+        if let Some(why) = m.lost_lobe() {
+            m.warn(why);
+        }
+        Ok(Some(Self { reflectance }))
+    }
+    fn side(&self, _: bool) -> Diffuse {
+        Diffuse { reflectance: self.reflectance.uniform() }
+    }
+    fn colour(&self) -> Option<&Colour> {
+        Some(&self.reflectance)
+    }
+    fn words(&self) -> String {
+        format!("reflectance {}", self.reflectance.words())
+    }
+    fn examples() -> Vec<Self> {
+        [DVec3::new(0.2, 0.5, 0.9), DVec3::ONE].map(|rho| Self { reflectance: Colour::Uniform(rho) }).into()
     }
 }
 

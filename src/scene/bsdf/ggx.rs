@@ -28,9 +28,43 @@
 //! Spherical Caps* (Computer Graphics Forum 42(8), 2023).
 
 use crate::math::direction::cos_sin_turn;
-use crate::scene::description::{Ggx, Masking};
 use glam::Vec3;
 use std::f32::consts::PI;
+
+/// GGX microfacets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ggx {
+    /// Width α as it enters the distribution, not squared.
+    pub alpha: f64,
+    /// Masking and shadowing.
+    pub masking: Masking,
+}
+
+/// How masking and shadowing of microfacets go together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Masking {
+    /// G = 1/(1 + Λ(ω_o) + Λ(ω_i)).
+    HeightCorrelated,
+    /// G = G₁(ω_o) G₁(ω_i).
+    Separable,
+}
+
+impl Ggx {
+    /// In words; smooth without.
+    pub(super) fn words(rough: Option<Self>) -> String {
+        match rough {
+            None => "smooth".to_owned(),
+            Some(Self { alpha, masking: Masking::HeightCorrelated }) => format!("GGX α {alpha}"),
+            Some(Self { alpha, masking: Masking::Separable }) => format!("GGX α {alpha}, separable masking"),
+        }
+    }
+
+    /// Without, and two widths, for tests.
+    pub(super) fn examples() -> [Option<Self>; 3] {
+        let of = |alpha, masking| Some(Self { alpha, masking });
+        [None, of(0.1, Masking::HeightCorrelated), of(0.5, Masking::Separable)]
+    }
+}
 
 /// An isotropic GGX surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,9 +7,12 @@
 //!
 //! Reference: Euclid, *Catoptrics* (c. 300 BC), proposition 1.
 
-use super::BsdfSample;
+use super::colour::rgb;
+use super::{BsdfSample, Model, Sampling, Surface, TransportMode};
 use crate::math::Rgb;
-use glam::Vec3;
+use crate::scene::SceneError;
+use crate::scene::load::{Cursor, MtlMaterial, keys};
+use glam::{DVec3, Vec3};
 
 /// Reflects a share ρ, whatever the angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,11 +21,60 @@ pub struct Mirror {
     pub reflectance: Rgb,
 }
 
-impl Mirror {
+impl Model for Mirror {
     /// The one direction there is.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3) -> BsdfSample {
-        BsdfSample { wi: reflection(wo), weight: self.reflectance, pdf: 1.0, delta: true }
+    fn sample(&self, wo: Vec3, _: Sampling, _: TransportMode, _: [f32; 3]) -> Option<BsdfSample> {
+        Some(BsdfSample { wi: reflection(wo), weight: self.reflectance, pdf: 1.0, delta: true })
+    }
+    fn albedo(&self, _: Vec3) -> Rgb {
+        self.reflectance
+    }
+    fn max_albedo(&self) -> Rgb {
+        self.reflectance
+    }
+    fn connects(&self) -> bool {
+        false
+    }
+    fn has_delta(&self) -> bool {
+        true
+    }
+}
+
+/// A mirror of a scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MirrorSurface {
+    /// Albedo per channel, in [0, 1].
+    pub reflectance: DVec3,
+}
+
+impl Surface for MirrorSurface {
+    type Side = Mirror;
+    const KIND: &'static str = "mirror";
+    const KEYS: &'static [&'static str] = &["reflectance"];
+
+    fn read(c: &Cursor<'_>) -> Result<Self, SceneError> {
+        Ok(Self { reflectance: c.require("reflectance", keys::REFLECTANCE)?.reflectance()? })
+    }
+    /// `illum` 3 … 9, and `Kd` at most a tenth of `Ks`.
+    fn from_mtl(m: &mut MtlMaterial<'_>) -> Result<Option<Self>, SceneError> {
+        if !m.is_mirror() {
+            return Ok(None);
+        }
+        if let Some(lost) = m.base() {
+            m.warn(format!("is a mirror, without its {lost}"));
+        }
+        let ks = m.specular();
+        Ok(Some(Self { reflectance: ks / m.excess("Ks reaches", ks) }))
+    }
+    fn side(&self, _: bool) -> Mirror {
+        Mirror { reflectance: self.reflectance.as_vec3() }
+    }
+    fn words(&self) -> String {
+        format!("reflectance {}", rgb(self.reflectance))
+    }
+    fn examples() -> Vec<Self> {
+        vec![Self { reflectance: DVec3::new(0.9, 0.8, 0.7) }]
     }
 }
 

@@ -17,11 +17,15 @@
 //! Reference: Lafortune and Willems, *Using the Modified Phong Reflectance Model for Physically Based Rendering* (Report
 //! CW 197, K.U. Leuven, 1994).
 
+use super::colour::{Colour, rgb};
 use super::mirror::reflection;
-use super::{BsdfSample, Sampling};
+use super::model::{blind_pdf, sample_blindly};
+use super::{BsdfSample, Model, Sampling, Surface, TransportMode};
 use crate::math::Rgb;
 use crate::math::direction::{about, cos_sin_turn, cosine_hemisphere};
-use glam::Vec3;
+use crate::scene::SceneError;
+use crate::scene::load::{Cursor, MtlMaterial, keys};
+use glam::{DVec3, Vec3};
 use std::f32::consts::{FRAC_1_PI, TAU};
 
 /// The modified Phong model.
@@ -40,30 +44,28 @@ impl Phong {
         Self { diffuse, specular, exponent, p_specular: if s > 0.0 { s / (d + s) } else { 0.0 } }
     }
 
-    /// The same with another k_d.
-    pub fn with_diffuse(self, diffuse: Rgb) -> Self {
-        Self::new(diffuse, self.specular, self.exponent)
-    }
-
     /// (cos α)ⁿ/2π.
     #[inline(always)]
     fn lobe(&self, wo: Vec3, wi: Vec3) -> f32 {
         let versine = 0.5 * (wi - reflection(wo)).length_squared();
         if versine < 1.0 { (self.exponent * (-versine).ln_1p()).exp() / TAU } else { 0.0 }
     }
+}
 
-    /// f, sr⁻¹.
+impl Model for Phong {
     #[inline(always)]
-    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+    fn eval(&self, wo: Vec3, wi: Vec3, _: TransportMode) -> Rgb {
         if wi.z <= 0.0 {
             return Rgb::ZERO;
         }
         self.diffuse * FRAC_1_PI + self.specular * ((self.exponent + 2.0) * self.lobe(wo, wi))
     }
 
-    /// Density of [`Self::sample`], sr⁻¹.
     #[inline(always)]
-    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+    fn pdf(&self, wo: Vec3, wi: Vec3, sampling: Sampling) -> f32 {
+        if sampling != Sampling::Bsdf {
+            return blind_pdf(wi, sampling);
+        }
         if wi.z <= 0.0 {
             return 0.0;
         }
@@ -73,7 +75,10 @@ impl Phong {
 
     /// From the lobe if `u[2]` < p_s, about the normal otherwise. None below the surface.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
+        if sampling != Sampling::Bsdf {
+            return sample_blindly(self, wo, sampling, mode, u);
+        }
         let wi = if u[2] < self.p_specular {
             let log = (-u[0]).ln_1p() / (self.exponent + 1.0);
             let (cos, sin) = (log.exp(), (-(2.0 * log).exp_m1()).sqrt());
@@ -82,12 +87,86 @@ impl Phong {
         } else {
             cosine_hemisphere(Vec3::Z, [u[0], u[1]]).0
         };
-        BsdfSample::of(wi, self.eval(wo, wi), self.pdf(wo, wi))
+        BsdfSample::of(wi, self.eval(wo, wi, mode), self.pdf(wo, wi, sampling))
     }
 
     /// k_d + k_s: exact at normal incidence, a bound elsewhere.
     #[inline(always)]
-    pub fn max_albedo(&self) -> Rgb {
+    fn max_albedo(&self) -> Rgb {
         self.diffuse + self.specular
+    }
+
+    fn albedo(&self, _: Vec3) -> Rgb {
+        self.max_albedo()
+    }
+
+    /// The same with another k_d.
+    fn with_reflectance(self, diffuse: Rgb) -> Self {
+        Self::new(diffuse, self.specular, self.exponent)
+    }
+}
+
+/// A surface with Phong's lobe in a scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhongSurface {
+    /// Albedo of the diffuse part.
+    pub reflectance: Colour,
+    /// Albedo of the lobe at normal incidence; with `reflectance` at most 1.
+    pub specular: DVec3,
+    /// Exponent of the lobe, at least 0.
+    pub exponent: f64,
+}
+
+impl Surface for PhongSurface {
+    type Side = Phong;
+    const KIND: &'static str = "phong";
+    const KEYS: &'static [&'static str] = &["reflectance", "texture", "specular", "exponent"];
+
+    fn read(c: &Cursor<'_>) -> Result<Self, SceneError> {
+        let reflectance = keys::colour(c)?;
+        let at = c.require("specular", "the albedo of the lobe: specular = [0.3, 0.3, 0.3]")?;
+        let specular = at.albedo("specular")?;
+        let example = "how narrow the lobe is: exponent = 50";
+        let exponent = c.require("exponent", example)?.within("exponent", 0.0, keys::LARGEST_EXPONENT)?;
+        let most = keys::largest(&reflectance);
+        if let Some(i) = (0..3).find(|&i| most[i] + specular[i] > 1.0 + keys::ROUNDING) {
+            let e = at.error(format!("reflectance {} and specular {} exceed 1 together", most[i], specular[i]));
+            return Err(e.help("a surface returns at most what it receives: lower one of them"));
+        }
+        Ok(Self { reflectance, specular, exponent })
+    }
+
+    /// `Ks` > 0 with `Ns`: reflectance `Kd`, specular `Ks`, exponent `Ns`.
+    fn from_mtl(m: &mut MtlMaterial<'_>) -> Result<Option<Self>, SceneError> {
+        if m.is_glass() || m.is_mirror() || m.specular() == DVec3::ZERO || m.lost_lobe().is_some() {
+            return Ok(None);
+        }
+        let (kd, ks) = (m.colour()?, m.specular());
+        let Some(exponent) = m.entry.exponent else { return Ok(None) };
+        if m.mirrors() {
+            let illum = m.illum();
+            m.warn(format!("mirrors in illum {illum} beside its Kd: it is a lobe of exponent {exponent}"));
+        }
+        let excess = m.excess("Kd + Ks reach", keys::largest(&kd) + ks);
+        Ok(Some(Self { reflectance: keys::times(kd, 1.0 / excess), specular: ks / excess, exponent }))
+    }
+
+    fn side(&self, _: bool) -> Phong {
+        let specular = self.specular.as_vec3();
+        Phong::new(self.reflectance.uniform(), specular, self.exponent as f32)
+    }
+    fn colour(&self) -> Option<&Colour> {
+        Some(&self.reflectance)
+    }
+    fn words(&self) -> String {
+        let Self { reflectance, specular, exponent } = self;
+        format!("reflectance {}, specular {}, exponent {exponent}", reflectance.words(), rgb(*specular))
+    }
+    fn examples() -> Vec<Self> {
+        let of = |exponent| {
+            let (reflectance, specular) = (Colour::Uniform(DVec3::new(0.1, 0.2, 0.4)), DVec3::splat(0.5));
+            Self { reflectance, specular, exponent }
+        };
+        [0.0, 10.0, 300.0].map(of).into()
     }
 }

@@ -21,12 +21,14 @@
 //! Kelemen and Szirmay-Kalos in [`super::coat`].
 
 use super::coat::Coat;
-use super::ggx::{Microfacets, half, reflect};
+use super::colour::Colour;
+use super::ggx::{Ggx, Microfacets, half, reflect};
 use super::mirror::reflection;
-use super::{BsdfSample, Sampling};
+use super::{BsdfSample, Model, Sampling, Surface, TransportMode};
 use crate::math::Rgb;
-use crate::scene::description::Ggx;
-use glam::Vec3;
+use crate::scene::SceneError;
+use crate::scene::load::{Cursor, keys, keys::IOR};
+use glam::{DVec3, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
 /// A coated base.
@@ -47,15 +49,6 @@ impl Plastic {
             .with_reflectance(reflectance)
     }
 
-    /// The same with another ρ.
-    #[must_use]
-    pub fn with_reflectance(self, reflectance: Rgb) -> Self {
-        // η² (1 − ρ F_in)
-        let kept = self.coat.interface.eta2() * (1.0 - reflectance) + reflectance * self.coat.mean;
-        let escape = reflectance / kept;
-        Self { base: escape * FRAC_1_PI, out: escape * self.coat.mean, ..self }
-    }
-
     /// p(ω_o): 1 if nothing else comes out.
     #[inline(always)]
     fn p_coat(&self, wo: Vec3) -> f32 {
@@ -63,10 +56,11 @@ impl Plastic {
         let base = t * self.out.max_element();
         if base > 0.0 { (1.0 - t) / (1.0 - t + base) } else { 1.0 }
     }
+}
 
-    /// f without the delta of a smooth coat, sr⁻¹.
+impl Model for Plastic {
     #[inline(always)]
-    pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+    fn eval(&self, wo: Vec3, wi: Vec3, _: TransportMode) -> Rgb {
         if wi.z <= 0.0 {
             return Rgb::ZERO;
         }
@@ -74,9 +68,8 @@ impl Plastic {
         base + self.coat.eval(wo, wi)
     }
 
-    /// Density of [`Self::sample`] without delta directions, sr⁻¹.
     #[inline(always)]
-    pub fn pdf(&self, wo: Vec3, wi: Vec3, sampling: Sampling) -> f32 {
+    fn pdf(&self, wo: Vec3, wi: Vec3, sampling: Sampling) -> f32 {
         if wi.z <= 0.0 {
             return 0.0;
         }
@@ -90,7 +83,7 @@ impl Plastic {
 
     /// The coat if `u[2]` < p, the base otherwise; a rough coat only if `sampling` asks for it. None below the surface.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3, sampling: Sampling, u: [f32; 3]) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
         let p = self.p_coat(wo);
         let coat = u[2] < p;
         let wi = match self.coat.facets() {
@@ -101,20 +94,67 @@ impl Plastic {
             Some(facets) if coat && sampling == Sampling::Bsdf => reflect(wo, facets.sample(wo, [u[0], u[1]])),
             _ => sampling.direction([u[0], u[1]]),
         };
-        BsdfSample::of(wi, self.eval(wo, wi), self.pdf(wo, wi, sampling))
+        BsdfSample::of(wi, self.eval(wo, wi, mode), self.pdf(wo, wi, sampling))
     }
 
     /// E + Tβ: exact under a smooth coat, an upper bound under a rough one.
     #[inline(always)]
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
+    fn albedo(&self, wo: Vec3) -> Rgb {
         let t = self.coat.transmittance(wo.z);
         Rgb::splat(1.0 - t) + t * self.out
     }
 
     /// Its largest value: where the coat reflects most.
     #[inline(always)]
-    pub fn max_albedo(&self) -> Rgb {
+    fn max_albedo(&self) -> Rgb {
         let e = self.coat.max_albedo();
         Rgb::splat(e) + (1.0 - e) * self.out
+    }
+
+    /// The same with another ρ.
+    fn with_reflectance(self, reflectance: Rgb) -> Self {
+        // η² (1 − ρ F_in)
+        let kept = self.coat.interface.eta2() * (1.0 - reflectance) + reflectance * self.coat.mean;
+        let escape = reflectance / kept;
+        Self { base: escape * FRAC_1_PI, out: escape * self.coat.mean, ..self }
+    }
+
+    fn has_delta(&self) -> bool {
+        self.coat.facets().is_none()
+    }
+}
+
+/// A coated base of a scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlasticSurface {
+    /// Albedo of the base, in [0, 1].
+    pub reflectance: Colour,
+    /// Index of refraction of the coat.
+    pub ior: f64,
+    /// Microfacets of the coat; smooth without.
+    pub rough: Option<Ggx>,
+}
+
+impl Surface for PlasticSurface {
+    type Side = Plastic;
+    const KIND: &'static str = "plastic";
+    const KEYS: &'static [&'static str] = &["reflectance", "texture", "ior", "alpha", "masking"];
+
+    fn read(c: &Cursor<'_>) -> Result<Self, SceneError> {
+        let ior = c.get("ior").map_or(Ok(1.5), |i| i.within("ior", IOR[0], IOR[1]))?;
+        Ok(Self { reflectance: keys::colour(c)?, ior, rough: keys::rough(c)? })
+    }
+    fn side(&self, _: bool) -> Plastic {
+        Plastic::new(self.reflectance.uniform(), self.ior, self.rough)
+    }
+    fn colour(&self) -> Option<&Colour> {
+        Some(&self.reflectance)
+    }
+    fn words(&self) -> String {
+        format!("reflectance {}, index {}, {}", self.reflectance.words(), self.ior, Ggx::words(self.rough))
+    }
+    fn examples() -> Vec<Self> {
+        let reflectance = Colour::Uniform(DVec3::new(0.2, 0.5, 0.9));
+        Ggx::examples().map(|rough| Self { reflectance: reflectance.clone(), ior: 1.5, rough }).into()
     }
 }

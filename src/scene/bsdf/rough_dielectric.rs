@@ -16,10 +16,11 @@
 //! Reference: Walter, Marschner, Li and Torrance, *Microfacet Models for Refraction through Rough Surfaces* (EGSR 2007),
 //! with the visible normals of [`super::ggx`]. Both quotients f |cos θ_i|/p are those of smooth glass times G/G₁(ω_o).
 
-use super::dielectric::Odds;
 use super::fresnel::Interface;
 use super::ggx::{Microfacets, half, reflect};
-use super::{BsdfSample, TransportMode};
+use super::model::sample_blindly;
+use super::odds::Odds;
+use super::{BsdfSample, Model, Sampling, TransportMode};
 use crate::math::Rgb;
 use glam::Vec3;
 
@@ -79,28 +80,34 @@ impl RoughDielectric {
         if wi.z > 0.0 { 1.0 } else { mode.squeezed(self.interface.eta2()) }
     }
 
-    /// f, sr⁻¹.
     #[inline(always)]
-    pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
+    fn density(&self, wo: Vec3, m: &Facet) -> f32 {
+        m.probability * self.facets.visible(wo.z, m.h) * m.cosine * m.jacobian
+    }
+}
+
+impl Model for RoughDielectric {
+    #[inline(always)]
+    fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
         let Some(m) = self.facet(wo, wi) else { return Rgb::ZERO };
         let seen = 4.0 * self.facets.seen(wo.z, wi.z.abs()) * m.cosine;
         Rgb::splat(m.share * self.facets.d(m.h) * seen * m.jacobian * self.squeezed(wi, mode))
     }
 
-    /// Density of [`Self::sample`], sr⁻¹.
     #[inline(always)]
-    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+    fn pdf(&self, wo: Vec3, wi: Vec3, sampling: Sampling) -> f32 {
+        if sampling != Sampling::Bsdf {
+            return 0.5 * sampling.pdf(wi.z.abs());
+        }
         self.facet(wo, wi).map_or(0.0, |m| self.density(wo, &m))
-    }
-
-    #[inline(always)]
-    fn density(&self, wo: Vec3, m: &Facet) -> f32 {
-        m.probability * self.facets.visible(wo.z, m.h) * m.cosine * m.jacobian
     }
 
     /// A normal seen from ω_o; reflects there if `u[2]` < p, refracts otherwise. None where that leads to the wrong side.
     #[inline(always)]
-    pub fn sample(&self, wo: Vec3, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
+        if sampling != Sampling::Bsdf {
+            return sample_blindly(self, wo, sampling, mode, u);
+        }
         let h = self.facets.sample(wo, [u[0], u[1]]);
         let c = wo.dot(h);
         if c <= 0.0 {
@@ -120,5 +127,15 @@ impl RoughDielectric {
         let pdf = self.density(wo, &m);
         let weight = m.share / m.probability * self.facets.lit(wo.z, wi.z.abs()) * self.squeezed(wi, mode);
         (pdf > 0.0).then_some(BsdfSample { wi, weight: Rgb::splat(weight), pdf, delta: false })
+    }
+
+    fn albedo(&self, _: Vec3) -> Rgb {
+        Rgb::ONE
+    }
+    fn max_albedo(&self) -> Rgb {
+        Rgb::ONE
+    }
+    fn transmits(&self) -> bool {
+        true
     }
 }

@@ -11,7 +11,7 @@
 
 use super::{Surfaces, find};
 use crate::math::polygon::{clip, uniform};
-use crate::scene::description::{BsdfDescription, Colour, Description, Sides};
+use crate::scene::description::{BsdfDescription, Colour, Description, DiffuseSurface};
 use crate::scene::primitive::Primitive;
 use crate::scene::vertex::Side;
 use glam::DVec3;
@@ -106,8 +106,7 @@ impl Description {
     fn look(&self, shape: usize, side: usize) -> Look<'_> {
         let shape = &self.shapes[shape];
         let material = &self.materials[shape.material];
-        let reflects =
-            side == 0 || material.sides == Sides::Both || matches!(material.bsdf, BsdfDescription::Dielectric { .. });
+        let reflects = side == 0 || material.both_sides();
         Look {
             emission: if side == 0 { shape.emission } else { DVec3::ZERO },
             bsdf: reflects.then_some(&material.bsdf).filter(|b| !black(b)),
@@ -117,7 +116,7 @@ impl Description {
     /// Whether two sides that coincide look the same.
     fn alike(&self, shapes: [usize; 2], sides: [usize; 2]) -> bool {
         let [a, b] = [0, 1].map(|i| self.look(shapes[i], sides[i]));
-        let counts = matches!(a.bsdf, Some(BsdfDescription::Dielectric { .. }));
+        let counts = a.bsdf.is_some_and(BsdfDescription::lets_through);
         let same_place = || {
             let [s, t] = shapes.map(|s| &self.shapes[s].geometry);
             shapes[0] != shapes[1] && s == t
@@ -134,16 +133,11 @@ impl Description {
 }
 
 fn black(bsdf: &BsdfDescription) -> bool {
-    matches!(bsdf, BsdfDescription::Diffuse { reflectance: Colour::Uniform(DVec3::ZERO) })
+    matches!(bsdf, BsdfDescription::Diffuse(DiffuseSurface { reflectance: Colour::Uniform(DVec3::ZERO) }))
 }
 
 fn textured(bsdf: &BsdfDescription) -> bool {
-    matches!(
-        bsdf,
-        BsdfDescription::Diffuse { reflectance: Colour::Texture(_) }
-            | BsdfDescription::Plastic { reflectance: Colour::Texture(_), .. }
-            | BsdfDescription::Phong { reflectance: Colour::Texture(_), .. }
-    )
+    bsdf.colour().is_some_and(Colour::is_texture)
 }
 
 impl Surfaces {

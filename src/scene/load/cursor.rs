@@ -21,7 +21,7 @@ pub(super) const LARGEST_UV: f64 = 1e5;
 
 /// A value of the scene with its key.
 #[derive(Clone, Debug)]
-pub(super) struct Cursor<'a> {
+pub struct Cursor<'a> {
     pub(super) file: &'a Path,
     pub(super) key: String,
     pub(super) node: &'a Node,
@@ -29,7 +29,7 @@ pub(super) struct Cursor<'a> {
 
 impl<'a> Cursor<'a> {
     /// An error at this value.
-    pub(super) fn error(&self, what: impl Into<String>) -> SceneError {
+    pub fn error(&self, what: impl Into<String>) -> SceneError {
         let overridden = matches!(&self.node.value, Value::List(l) if l.iter().any(|n| n.place == Place::Override));
         match self.node.place {
             _ if overridden => SceneError::new(what).key(format!("--set {}", self.key)),
@@ -50,13 +50,13 @@ impl<'a> Cursor<'a> {
     }
 
     /// The entries of a table.
-    pub(super) fn entries(&self) -> Result<Vec<(&'a str, Cursor<'a>)>, SceneError> {
+    pub fn entries(&self) -> Result<Vec<(&'a str, Cursor<'a>)>, SceneError> {
         let Value::Table(t) = &self.node.value else { return Err(self.mistyped("a table")) };
         Ok(t.iter().map(|(k, node)| (k.as_str(), Cursor { file: self.file, key: self.join(k), node })).collect())
     }
 
     /// Refuses every key of a table that is not one of `legal`.
-    pub(super) fn only(&self, legal: &[&str]) -> Result<(), SceneError> {
+    pub fn only(&self, legal: &[&str]) -> Result<(), SceneError> {
         match self.entries()?.iter().find(|(k, _)| !legal.contains(k)) {
             Some((k, c)) => Err(c.error(format!("unknown key `{k}`")).help(suggest(k, "keys here", legal))),
             None => Ok(()),
@@ -64,12 +64,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// The value of a key, if it is there.
-    pub(super) fn get(&self, key: &str) -> Option<Cursor<'a>> {
+    pub fn get(&self, key: &str) -> Option<Cursor<'a>> {
         self.node.get(key).map(|node| Cursor { file: self.file, key: self.join(key), node })
     }
 
     /// The value of a key; `example` shows what to add when it is missing.
-    pub(super) fn require(&self, key: &str, example: &str) -> Result<Cursor<'a>, SceneError> {
+    pub fn require(&self, key: &str, example: &str) -> Result<Cursor<'a>, SceneError> {
         self.get(key).ok_or_else(|| {
             let here = Cursor { key: self.join(key), ..self.clone() };
             here.error(format!("missing key `{key}`")).help(format!("add {example}"))
@@ -77,7 +77,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// The elements of an array.
-    pub(super) fn items(&self, wanted: &str) -> Result<Vec<Cursor<'a>>, SceneError> {
+    pub fn items(&self, wanted: &str) -> Result<Vec<Cursor<'a>>, SceneError> {
         let Value::List(l) = &self.node.value else { return Err(self.mistyped(wanted)) };
         let item = |(i, node)| Cursor { file: self.file, key: format!("{}[{i}]", self.key), node };
         Ok(l.iter().enumerate().map(item).collect())
@@ -92,7 +92,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A finite number.
-    pub(super) fn number(&self) -> Result<f64, SceneError> {
+    pub fn number(&self) -> Result<f64, SceneError> {
         let x = match self.node.value {
             Value::Integer(i) => i as f64,
             Value::Float(x) => x,
@@ -102,7 +102,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A number of metres of sensible size.
-    pub(super) fn length(&self) -> Result<f64, SceneError> {
+    pub fn length(&self) -> Result<f64, SceneError> {
         let x = self.number()?;
         if x.abs() <= LARGEST_LENGTH {
             return Ok(x);
@@ -111,7 +111,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// An integer in `[low, high]`.
-    pub(super) fn integer(&self, low: i64, high: i64) -> Result<i64, SceneError> {
+    pub fn integer(&self, low: i64, high: i64) -> Result<i64, SceneError> {
         let Value::Integer(i) = self.node.value else { return Err(self.mistyped("an integer")) };
         if (low..=high).contains(&i) {
             return Ok(i);
@@ -122,12 +122,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// `true` or `false`.
-    pub(super) fn flag(&self) -> Result<bool, SceneError> {
+    pub fn flag(&self) -> Result<bool, SceneError> {
         if let Value::Flag(b) = self.node.value { Ok(b) } else { Err(self.mistyped("true or false")) }
     }
 
     /// A string with something in it.
-    pub(super) fn text(&self) -> Result<&'a str, SceneError> {
+    pub fn text(&self) -> Result<&'a str, SceneError> {
         match &self.node.value {
             Value::Text(s) if s.trim().is_empty() => Err(self.error("the string is empty").help("write something")),
             Value::Text(s) => Ok(s),
@@ -136,7 +136,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// One of a few words.
-    pub(super) fn choice<T: Copy>(&self, kind: &str, known: &[(&str, T)]) -> Result<T, SceneError> {
+    pub fn choice<T: Copy>(&self, kind: &str, known: &[(&str, T)]) -> Result<T, SceneError> {
         let word = self.text()?;
         known.iter().find(|(k, _)| *k == word).map(|&(_, v)| v).ok_or_else(|| {
             let names: Vec<&str> = known.iter().map(|(k, _)| *k).collect();
@@ -145,37 +145,37 @@ impl<'a> Cursor<'a> {
     }
 
     /// A pair of numbers.
-    pub(super) fn pair(&self) -> Result<[f64; 2], SceneError> {
+    pub fn pair(&self) -> Result<[f64; 2], SceneError> {
         let [a, b] = self.several("2 numbers")?;
         Ok([a.number()?, b.number()?])
     }
 
     /// Width and height in pixels.
-    pub(super) fn size(&self) -> Result<[u32; 2], SceneError> {
+    pub fn size(&self) -> Result<[u32; 2], SceneError> {
         let [w, h] = self.several("2 integers")?;
         let pixels = |c: Cursor| Ok(c.integer(1, 32768)?.unsigned_abs() as u32);
         Ok([pixels(w)?, pixels(h)?])
     }
 
     /// A position, an edge or a direction, metres.
-    pub(super) fn vector(&self) -> Result<DVec3, SceneError> {
+    pub fn vector(&self) -> Result<DVec3, SceneError> {
         let [x, y, z] = self.several("3 numbers")?;
         Ok(DVec3::new(x.length()?, y.length()?, z.length()?))
     }
 
     /// A row of a transform.
-    pub(super) fn row(&self) -> Result<[f64; 4], SceneError> {
+    pub fn row(&self) -> Result<[f64; 4], SceneError> {
         let [a, b, c, d] = self.several("4 numbers")?;
         Ok([a.length()?, b.length()?, c.length()?, d.length()?])
     }
 
     /// The three rows of a transform.
-    pub(super) fn rows(&self) -> Result<[Cursor<'a>; 3], SceneError> {
+    pub fn rows(&self) -> Result<[Cursor<'a>; 3], SceneError> {
         self.several("3 rows of 4 numbers")
     }
 
     /// The three corners of a face, each below `count`.
-    pub(super) fn face(&self, count: usize) -> Result<[u32; 3], SceneError> {
+    pub fn face(&self, count: usize) -> Result<[u32; 3], SceneError> {
         let corners = self.several::<3>("3 vertex indices")?;
         let mut face = [0; 3];
         for (out, c) in face.iter_mut().zip(corners) {
@@ -189,7 +189,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A number in `[low, high]`.
-    pub(super) fn within(&self, name: &str, low: f64, high: f64) -> Result<f64, SceneError> {
+    pub fn within(&self, name: &str, low: f64, high: f64) -> Result<f64, SceneError> {
         let x = self.number()?;
         if (low..=high).contains(&x) {
             return Ok(x);
@@ -199,7 +199,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Part of a complex index of refraction per channel, each in `[low, 100]`.
-    pub(super) fn index(&self, name: &str, low: f64) -> Result<DVec3, SceneError> {
+    pub fn index(&self, name: &str, low: f64) -> Result<DVec3, SceneError> {
         let rgb = self.colour()?;
         match rgb.to_array().into_iter().find(|x| !(low..=100.0).contains(x)) {
             Some(x) => Err(self
@@ -210,7 +210,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A texture coordinate.
-    pub(super) fn uv(&self) -> Result<DVec2, SceneError> {
+    pub fn uv(&self) -> Result<DVec2, SceneError> {
         let uv = DVec2::from(self.pair()?);
         if uv.abs().max_element() <= LARGEST_UV {
             return Ok(uv);
@@ -221,22 +221,22 @@ impl<'a> Cursor<'a> {
     }
 
     /// True if this is a string.
-    pub(super) fn is_text(&self) -> bool {
+    pub fn is_text(&self) -> bool {
         matches!(self.node.value, Value::Text(_))
     }
 
     /// An error found in a file that this value names.
-    pub(super) fn place(&self, e: SceneError) -> SceneError {
+    pub fn place(&self, e: SceneError) -> SceneError {
         self.error(e.what).help(e.help.unwrap_or_default())
     }
 
     /// The albedo of a surface per channel, each in [0, 1].
-    pub(super) fn reflectance(&self) -> Result<DVec3, SceneError> {
+    pub fn reflectance(&self) -> Result<DVec3, SceneError> {
         self.albedo("reflectance")
     }
 
     /// An albedo per channel, each in [0, 1].
-    pub(super) fn albedo(&self, name: &str) -> Result<DVec3, SceneError> {
+    pub fn albedo(&self, name: &str) -> Result<DVec3, SceneError> {
         let rgb = self.colour()?;
         match rgb.to_array().into_iter().find(|x| !(0.0..=1.0).contains(x)) {
             Some(x) => Err(self
@@ -247,7 +247,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Radiance or power per channel, none negative.
-    pub(super) fn light(&self, name: &str) -> Result<DVec3, SceneError> {
+    pub fn light(&self, name: &str) -> Result<DVec3, SceneError> {
         let rgb = self.colour()?;
         match rgb.to_array().into_iter().find(|x| !(0.0..=LARGEST_LIGHT).contains(x)) {
             Some(x) if x < 0.0 => Err(self.error(format!("{name} {x} is negative")).help("light is at least 0")),

@@ -10,11 +10,12 @@
 mod camera;
 mod cursor;
 mod image;
+pub mod keys;
 mod lights;
 mod materials;
 mod mesh;
 mod mtl;
-mod mtl_bsdf;
+mod mtl_surface;
 mod nearest;
 mod obj;
 mod obj_check;
@@ -22,6 +23,9 @@ mod overrides;
 mod shapes;
 mod toml;
 mod tree;
+
+pub use cursor::Cursor;
+pub use mtl_surface::MtlMaterial;
 
 use super::{Description, SceneError, builtin, stand_in};
 use glam::DVec3;

@@ -1,6 +1,6 @@
 //! MTL (Wavefront Technologies, The Advanced Visualizer): what each material says, statement by statement.
 //!
-//! What it means here is in [`mtl_bsdf`](super::mtl_bsdf). `Ka` is kept only to explain a dark scene; what else would
+//! What it means here is in [`mtl_surface`](super::mtl_surface). `Ka` is kept only to explain a dark scene; what else would
 //! change the picture is remembered as ignored.
 
 use crate::scene::SceneError;
@@ -55,7 +55,7 @@ fn push(out: &mut Vec<Statement>, line: usize, text: &str) {
 
 /// What an MTL file says of one material.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Entry {
+pub(in crate::scene) struct Entry {
     pub(super) name: String,
     /// `Kd`
     pub(super) diffuse: Option<DVec3>,
@@ -68,9 +68,9 @@ pub(super) struct Entry {
     /// `Tf`
     pub(super) filter: Option<DVec3>,
     /// `Ns`
-    pub(super) exponent: Option<f64>,
+    pub(in crate::scene) exponent: Option<f64>,
     /// `Ni`
-    pub(super) ior: Option<f64>,
+    pub(in crate::scene) ior: Option<f64>,
     /// `d`
     pub(super) opacity: Option<f64>,
     /// `Tr`
@@ -85,7 +85,7 @@ pub(super) struct Entry {
 
 /// A `map_Kd` and where it was said.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Texture {
+pub(in crate::scene) struct Texture {
     pub(super) path: PathBuf,
     pub(super) options: String,
     pub(super) mtl: PathBuf,

@@ -13,7 +13,7 @@
 use super::{
     mesh::flat,
     mtl::{self, Entry, Statement, statements},
-    mtl_bsdf,
+    mtl_surface,
     nearest::nearest,
     obj_check::{check, number_of},
     read_lossy,
@@ -182,7 +182,7 @@ fn surface(
     placed: bool,
     model: &mut Model,
 ) -> Result<Surface, SceneError> {
-    let grey = |name: &str| Surface { name: name.to_owned(), bsdf: mtl_bsdf::grey(), emission: DVec3::ZERO };
+    let grey = |name: &str| Surface { name: name.to_owned(), bsdf: mtl_surface::grey(), emission: DVec3::ZERO };
     let (Some(name), Some(library)) = (name, library) else { return Ok(grey(name.unwrap_or("default"))) };
     let warnings = &mut model.warnings;
     let mut warn = |what: String| {
@@ -197,7 +197,7 @@ fn surface(
         warn(format!("is not defined, it is grey 0.5{close}"));
         return Ok(grey(name));
     };
-    let bsdf = mtl_bsdf::bsdf(m, placed, &mut warn)?;
+    let bsdf = mtl_surface::surface(m, placed, &mut warn)?;
     let emission = m.emission.unwrap_or(DVec3::ZERO);
     if let (Some(a), DVec3::ZERO) = (m.ambient.filter(|a| a.max_element() > 0.0), emission) {
         let lamp = ["light", "lamp", "lumi", "emit", "emis"].iter().any(|w| name.to_lowercase().contains(w));

@@ -11,7 +11,6 @@
 use super::{
     beside,
     cursor::{Cursor, LARGEST_LIGHT, SMALLEST_LENGTH},
-    materials,
     mesh::{FLAT, mesh, transform},
     nearest::suggest,
     obj,
@@ -87,7 +86,7 @@ fn placed(at: &Cursor, material: &Material, geometry: &Geometry, kind: &str) -> 
         Geometry::Mesh { uvs, .. } => !uvs.is_empty(),
         _ => false,
     };
-    if has_uv || !materials::texture_of(material) {
+    if has_uv || !material.bsdf.colour().is_some_and(crate::scene::description::Colour::is_texture) {
         return Ok(());
     }
     let e = at.error(format!("material `{}` has a texture, this {kind} has no texture coordinates", material.name));

@@ -87,14 +87,16 @@ fn bounds(shapes: &[crate::scene::description::Shape]) -> [DVec3; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::bsdf::register::KINDS;
 
     #[test]
     fn the_schema_documents_every_key() {
         let readme = include_str!("../../../scenes/README.md");
-        let kinds = shapes::KINDS.iter().chain(&materials::KINDS).chain(&lights::KINDS);
-        let keys = kinds.flat_map(|(kind, keys)| keys.iter().chain([kind]));
+        let kinds = shapes::KINDS.iter().chain(&lights::KINDS).copied();
+        let kinds = kinds.chain(KINDS.iter().map(|k| (k.name, k.keys))).chain([("type", &materials::KEYS[..])]);
+        let keys: Vec<&str> = kinds.flat_map(|(kind, keys)| keys.iter().copied().chain([kind])).collect();
         let all = ROOT_KEYS.iter().chain(&EXPECT_KEYS).chain(&camera::KEYS).chain(&shapes::LIGHT_KEYS);
-        for key in all.chain(keys) {
+        for key in all.copied().chain(keys) {
             assert!(readme.contains(&format!("`{key}`")), "scenes/README.md says nothing about `{key}`");
         }
     }
