@@ -3,7 +3,7 @@
 use super::{Ending, Failure};
 use clap::Args;
 use fredholm::engine::known::coplanar;
-use fredholm::report::table;
+use fredholm::report::text::table;
 use fredholm::scene::coplanar::{Kind, Relation};
 use fredholm::scene::description::{
     BsdfDescription, Choice, Colour, Description, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky,

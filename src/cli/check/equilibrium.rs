@@ -9,10 +9,13 @@ use clap::Args;
 use fredholm::engine::Settings;
 use fredholm::engine::known::coplanar;
 use fredholm::estimator::{Roulette, Technique};
-use fredholm::report::contact_sheet::{self, Cell};
-use fredholm::report::equilibrium::{self as figure, Dot};
-use fredholm::report::table::significant;
-use fredholm::report::{picture, summary, table, typeset::Caption, zmap};
+use fredholm::report::figures::equilibrium::{self as figure, Dot};
+use fredholm::report::image::contact_sheet::{self, Cell};
+use fredholm::report::text::table::significant;
+use fredholm::report::{
+    image::{picture, typeset::Caption, zmap},
+    text::{summary, table},
+};
 use fredholm::scene::bsdf::Sampling;
 use fredholm::stats::{Evidence, Outcome, estimate};
 use fredholm::study::equilibrium::{self, Balance, Group, Judgement, Origin, judge};

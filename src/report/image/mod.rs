@@ -1,0 +1,7 @@
+//! Pictures: linear radiance in files, developed to 8 bits, on sheets with words.
+
+pub mod contact_sheet;
+pub mod exr;
+pub mod picture;
+pub mod typeset;
+pub mod zmap;

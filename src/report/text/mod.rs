@@ -1,0 +1,7 @@
+//! What is made of text only: tables, Markdown, `summary.json`.
+
+pub mod markdown;
+mod null_as_nan;
+pub mod pixel_errors;
+pub mod summary;
+pub mod table;
