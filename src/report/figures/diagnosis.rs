@@ -12,7 +12,7 @@ use crate::report::{
     ReportError,
     image::{typeset::Caption, zmap},
     plot::{Axis, BLACK, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, Words, figure},
-    text::table::significant,
+    text::number::significant,
 };
 use plotters::{prelude::RGBColor, style::text_anchor::HPos};
 

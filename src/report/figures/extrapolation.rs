@@ -13,7 +13,10 @@
 //! E is left out: it is no part of the decay. All errors are to first order in the noise. The whole is measured by the same
 //! paths, so that the noise of what both share leaves `off`.
 
-use crate::report::text::table::{Side, aligned, plus_minus, significant};
+use crate::report::text::{
+    number::{plus_minus, significant},
+    table::{Side, aligned},
+};
 use crate::solver::accelerate::{self, METHODS};
 use nalgebra::{DMatrix, DVector};
 

@@ -15,7 +15,10 @@ use crate::report::{
         zmap,
     },
     plot::{Axis, BLACK, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, Words, figure},
-    text::table::{Side, aligned, significant},
+    text::{
+        number::significant,
+        table::{Side, aligned},
+    },
 };
 use serde_json::{Value, json};
 

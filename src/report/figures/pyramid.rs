@@ -9,7 +9,10 @@ use crate::report::{
         picture::{Picture, auto_gain, develop, gain_label, shrink},
         typeset::{Caption, LINE, SANS, caption_elements, page, superscript, text_element, text_width},
     },
-    text::table::{Side, aligned, average, error, known, significant},
+    text::{
+        number::{average, error, known, significant},
+        table::{Side, aligned},
+    },
 };
 
 use crate::study::strategies::Strategy;

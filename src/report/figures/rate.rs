@@ -12,7 +12,7 @@
 
 use crate::report::{
     plot::{GREEN, ORANGE, PURPLE, SKY, Stroke},
-    text::table::significant,
+    text::number::significant,
 };
 use crate::stats;
 

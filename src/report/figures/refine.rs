@@ -12,7 +12,10 @@ use crate::report::{
         typeset::{Caption, superscript},
     },
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, Words, figure},
-    text::table::{Side, aligned, significant},
+    text::{
+        number::significant,
+        table::{Side, aligned},
+    },
 };
 use crate::stats::{Limit, Order, convergence_order};
 use crate::study::refinement::{Mesh, Quantity, Refinement};

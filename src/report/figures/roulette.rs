@@ -11,7 +11,10 @@ use crate::report::{
     ReportError,
     image::typeset::Caption,
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, Look, Panel, Point, Sample, Words, figure},
-    text::table::{Side, aligned, significant},
+    text::{
+        number::significant,
+        table::{Side, aligned},
+    },
 };
 use crate::stats::Noise;
 use crate::terms::cross_moments::Value;

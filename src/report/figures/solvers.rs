@@ -12,7 +12,10 @@ use crate::report::{
     ReportError,
     image::typeset::Caption,
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Mark, Panel, Point, Sample, Stroke, Words, figure},
-    text::table::{Side, aligned, significant},
+    text::{
+        number::significant,
+        table::{Side, aligned},
+    },
 };
 use crate::solver::accelerate::{self, Accelerated, METHODS};
 use crate::solver::comparison::{History, Solver};

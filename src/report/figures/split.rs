@@ -10,7 +10,10 @@ use crate::report::{
     ReportError, half_width_95,
     image::typeset::{Caption, superscript},
     plot::{BLACK, BLUE, Canvas, Drawn, Figure, GREY, VERMILION, Words, figure},
-    text::table::{Side, aligned, significant},
+    text::{
+        number::significant,
+        table::{Side, aligned},
+    },
 };
 use crate::study::split::{REPLICATES, Study, Term, Unit, Work, best, work};
 use crate::terms::covariance::Covariance;

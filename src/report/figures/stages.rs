@@ -9,7 +9,10 @@ use crate::report::{
         picture::{auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shown_mean},
         typeset::Caption,
     },
-    text::table::{Side, aligned, average, significant},
+    text::{
+        number::{average, significant},
+        table::{Side, aligned},
+    },
 };
 use crate::study::stages::Grown;
 

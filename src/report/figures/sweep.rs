@@ -21,7 +21,10 @@ mod figure;
 pub use figure::draw;
 
 use crate::engine::by_rays::Sampled;
-use crate::report::text::table::{Side, aligned, average, error, significant};
+use crate::report::text::{
+    number::{average, error, significant},
+    table::{Side, aligned},
+};
 use crate::terms::variance::Variance;
 use crate::terms::{Estimate, Functional};
 

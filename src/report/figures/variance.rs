@@ -16,7 +16,7 @@ use crate::report::{
     ReportError,
     image::typeset::Caption,
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, GREY, Panel, Sample, Stroke, Words, figure},
-    text::table::plus_minus,
+    text::number::plus_minus,
 };
 
 /// One curve and the slope fitted to it.

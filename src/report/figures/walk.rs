@@ -13,7 +13,10 @@ use crate::report::{
     ReportError,
     image::typeset::{Caption, superscript},
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, Words, figure},
-    text::table::{Side, aligned, average, error, significant},
+    text::{
+        number::{average, error, significant},
+        table::{Side, aligned},
+    },
 };
 use crate::study::walk::Walked;
 use crate::study::zero_variance::{Guide, Led, Spread, ZeroVariance};

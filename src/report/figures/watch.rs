@@ -12,7 +12,10 @@ use crate::report::{
     plot::{
         Axis, BLACK, BLUE, Canvas, Drawn, Entry, Figure, GREEN, GREY, Panel, Sample, Stroke, VERMILION, Words, figure,
     },
-    text::table::{Side, aligned, known, mark, outcome, p_value, significant},
+    text::{
+        number::{known, mark, outcome, p_value, significant},
+        table::{Side, aligned},
+    },
 };
 use crate::stats::{Finding, Outcome};
 

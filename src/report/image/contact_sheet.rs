@@ -10,7 +10,7 @@ use crate::report::{
         picture::{Developed, Picture, auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shrink},
         typeset::{Caption, LINE, SANS, caption_elements, page, superscript, text_element, text_width},
     },
-    text::table::significant,
+    text::number::significant,
 };
 
 const LABEL: f64 = 14.0;

@@ -10,13 +10,14 @@ use crate::report::{
     ReportError, files,
     image::typeset::escape,
     text::{
+        number::{average, count, dash, error, known, mark, outcome, p_value, percent, signed, significant},
+        rows::{Cell, Column, Rows},
         summary::VerdictRecord,
-        table::{average, error, known, mark, outcome, p_value, signed, significant},
     },
     write_atomically,
 };
 use crate::stats::Outcome;
-use crate::terms::{Estimate, Functional};
+use crate::terms::Functional;
 
 /// Everything on the page.
 #[derive(Clone, Debug, Default)]
@@ -141,31 +142,21 @@ fn verdict_section(verdicts: &[VerdictRecord]) -> String {
     }
     let count = |wanted| verdicts.iter().filter(|v| v.outcome == wanted).count();
     let [agrees, differs, open] = [Outcome::Agrees, Outcome::Differs, Outcome::Inconclusive].map(count);
-    let mut out = format!(
+    let columns = [
+        (Column::Difference, "difference"),
+        (Column::Interval, "interval"),
+        (Column::P, "p"),
+        (Column::Detectable, "detectable"),
+        (Column::Outcome, "verdict"),
+    ];
+    let table = table("what", &columns, &Rows::verdicts(verdicts), None);
+    format!(
         "<section>\n<h2>Do the worlds agree?</h2>\n<p class=\"tally\"><b>{agrees}</b> agree, <b>{differs}</b> differ, \
          <b>{open}</b> inconclusive.</p>\n<p>Agreement is a claim that has to be earned: the interval of the \
          difference must hold zero <em>and</em> lie within the margin. If it is too wide the verdict is inconclusive, \
          and more samples decide. <em>Detectable</em> is the smallest difference the comparison would have found.</p>\n\
-         <div class=\"wide\"><table>\n<thead><tr><th scope=\"col\">what</th><th scope=\"col\">difference</th>\
-         <th scope=\"col\">interval</th><th scope=\"col\">p</th><th scope=\"col\">detectable</th>\
-         <th scope=\"col\" class=\"word\">verdict</th></tr></thead>\n<tbody>\n"
-    );
-    for v in verdicts {
-        let word = outcome(v.outcome);
-        let _ = writeln!(
-            out,
-            "<tr><th scope=\"row\">{}</th><td>{}</td><td>[{}, {}]</td><td>{}</td><td>{}</td>\
-             <td class=\"word {word}\">{} {word}</td></tr>",
-            escape(&v.name),
-            signed(v.effect),
-            signed(v.interval.0),
-            signed(v.interval.1),
-            p_value(v.p),
-            known(v.min_detectable),
-            mark(v.outcome)
-        );
-    }
-    out + "</tbody>\n</table></div>\n</section>\n"
+         {table}</section>\n"
+    )
 }
 
 fn plate_section(plate: &Plate) -> Result<String, ReportError> {
@@ -196,51 +187,71 @@ fn series_section(series: &[(String, &Functional)]) -> String {
          intervals. The dots stand on one logarithmic axis per table, the interval as a line through them; an \
          arrow to the left means that the interval reaches zero.</p>\n",
     );
+    let columns = [(Column::World(0), "mean"), (Column::Ratio, "ratio"), (Column::Share, "share")];
     for (label, functional) in series {
         let total = average(&functional.total).0;
         let values = || functional.terms.iter().chain([&functional.tail]).map(|e| average(e).0).filter(|&v| v > 0.0);
         let (lo, hi) = (values().fold(total, f64::min), values().fold(total, f64::max));
-        let _ = write!(
-            out,
-            "<h3>{}</h3>\n<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\">k</th><th scope=\"col\">mean</th>\
-             <th scope=\"col\">± 95 %</th><th scope=\"col\">ratio</th><th scope=\"col\">share</th>\
-             <th scope=\"col\">log scale</th></tr></thead>\n<tbody>\n",
-            escape(label)
-        );
-        let mut row = |name: &str, estimate: &Estimate, ratio: String| {
-            let (mean, half) = average(estimate);
-            let share = 100.0 * mean / total;
-            let share = if share.is_finite() { format!("{share:.1} %") } else { "–".into() };
-            let _ = writeln!(
-                out,
-                "<tr><th scope=\"row\">{name}</th><td>{}</td><td>{}</td><td>{ratio}</td><td>{share}</td><td>{}</td></tr>",
-                if estimate.is_none() { "not estimated".into() } else { significant(mean, 4) },
-                error(estimate),
-                dot(mean, half, lo / 1.5, hi * 1.5)
-            );
-        };
-        let mut previous = f64::NAN;
-        for (k, term) in functional.terms.iter().enumerate() {
-            let mean = average(term).0;
-            let ratio = mean / previous;
-            row(&k.to_string(), term, if ratio.is_finite() { significant(ratio, 3) } else { "–".into() });
-            previous = mean;
-        }
-        if let Some(last) = functional.terms.len().checked_sub(1) {
-            row(&format!("k &gt; {last}"), &functional.tail, String::new());
-            row(&format!("Σ k ≤ {last}"), &functional.sum, String::new());
-        }
-        // without a tail the total is the sum, which stands there already
-        if functional.terms.is_empty() || !functional.tail.is_none() {
-            row(if functional.tail.is_none() { "cut at K" } else { "all" }, &functional.total, String::new());
-        }
-        out += "</tbody>\n</table></div>\n";
+        let rows = Rows::series(&[functional], &[]).without_repetition();
+        let table = table("k", &columns, &rows, Some((lo / 1.5, hi * 1.5)));
+        out += &format!("<h3>{}</h3>\n{table}", escape(label));
     }
     out + "</section>\n"
 }
 
+/// A table; an estimate takes two columns, its mean and its error. With a `scale`, estimates are also drawn in a last column.
+fn table(first: &str, columns: &[(Column, &str)], rows: &Rows, scale: Option<(f64, f64)>) -> String {
+    let mut head = format!("<th scope=\"col\">{first}</th>");
+    for (column, words) in columns {
+        let class = if *column == Column::Outcome { " class=\"word\"" } else { "" };
+        head += &format!("<th scope=\"col\"{class}>{words}</th>");
+        if matches!(column, Column::World(_)) {
+            head += "<th scope=\"col\">± 95 %</th>";
+        }
+    }
+    if scale.is_some() {
+        head += "<th scope=\"col\">log scale</th>";
+    }
+    let mut body = String::new();
+    let columns: Vec<Column> = columns.iter().map(|c| c.0).collect();
+    for (name, cells) in rows.pick(&columns) {
+        let words: String = cells.iter().copied().map(cell).collect();
+        let drawn = scale.map_or(String::new(), |scale| {
+            format!("<td>{}</td>", cells.iter().map(|c| dot(c, scale)).collect::<String>())
+        });
+        let _ = writeln!(body, "<tr><th scope=\"row\">{}</th>{words}{drawn}</tr>", escape(&name.to_string()));
+    }
+    format!("<div class=\"wide\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n")
+}
+
+fn cell(cell: &Cell) -> String {
+    let words = match cell {
+        Cell::Blank => String::new(),
+        Cell::Words(words) => escape(words),
+        Cell::Estimate(e) => {
+            let mean = if e.is_none() { "not estimated".into() } else { significant(average(e).0, 4) };
+            format!("{mean}</td><td>{}", error(e))
+        }
+        Cell::Ratio(ratio) if ratio.is_finite() => significant(*ratio, 3),
+        Cell::Ratio(_) => dash(),
+        Cell::Share(share) => percent(*share),
+        Cell::Rays(rays) => rays.map_or_else(dash, count),
+        Cell::Difference(effect) => signed(*effect),
+        Cell::Interval(low, high) => format!("[{}, {}]", signed(*low), signed(*high)),
+        Cell::P(p) => p_value(*p),
+        Cell::Size(size) => known(*size),
+        Cell::Outcome(found) => {
+            let word = outcome(*found);
+            return format!("<td class=\"word {word}\">{} {word}</td>", mark(*found));
+        }
+    };
+    format!("<td>{words}</td>")
+}
+
 /// A dot with its interval on a logarithmic axis from `lo` to `hi`, 180 pixels wide.
-fn dot(mean: f64, half: f64, lo: f64, hi: f64) -> String {
+fn dot(cell: &Cell, (lo, hi): (f64, f64)) -> String {
+    let Cell::Estimate(estimate) = cell else { return String::new() };
+    let (mean, half) = average(estimate);
     let half = if half.is_nan() { 0.0 } else { half };
     if !(lo > 0.0 && hi > lo && mean > 0.0) {
         return String::new();

@@ -1,8 +1,11 @@
 //! Tables for the pages of the book: what a chapter found, as Markdown that its text includes.
 
-use crate::report::text::table::{average, mark, outcome, plus_minus, significant};
-use crate::stats::{Comparison, Verdict};
-use crate::terms::{Estimate, Functional};
+use super::{
+    number::{average, count, dash, mark, outcome, plus_minus, significant},
+    rows::{Cell, Column, Name, Rows},
+};
+use crate::stats::Comparison;
+use crate::terms::Functional;
 
 /// A sentence of a text, what a run found, and whether the sentence holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,22 +41,13 @@ pub fn claims(claims: &[Claim]) -> String {
 /// Series side by side: a row per term, then the tail and the whole. The second column is the share of each term in the
 /// whole of the first series; a path tracer has a whole only.
 pub fn terms(columns: &[(&str, &Functional)]) -> String {
-    let whole = columns.iter().map(|c| average(&c.1.total).0).fold(0.0, f64::max);
+    let (names, worlds): (Vec<_>, Vec<_>) = columns.iter().copied().unzip();
+    let whole = worlds.iter().map(|f| average(&f.total).0).fold(0.0, f64::max);
     let thousands = if whole > 0.0 { (whole.log10() / 3.0).floor() as i32 } else { 0 };
     let unit = 10f64.powi(-3 * thousands);
-    let count = columns.iter().map(|c| c.1.terms.len()).max().unwrap_or(0);
-    let row = |name: String, of: &dyn Fn(&Functional) -> Option<Estimate>| {
-        let share = columns.first().and_then(|c| Some(average(&of(c.1)?).0 / average(&c.1.total).0));
-        let share = share.map_or(String::new(), |s| format!("{} %", significant(100.0 * s, 2)));
-        let values = columns.iter().map(|c| of(c.1).map_or(String::new(), |e| value(&e, unit)));
-        [name, share].into_iter().chain(values).collect::<Vec<_>>()
-    };
-    let mut rows: Vec<_> = (0..count).map(|k| row(k.to_string(), &|f| f.terms.get(k).copied())).collect();
-    if let Some(last) = count.checked_sub(1) {
-        rows.push(row(format!("&gt; {last}"), &|f| (!f.terms.is_empty()).then_some(f.tail)));
-    }
-    rows.push(row("all".into(), &|f| Some(f.total)));
-    let header: Vec<&str> = ["k", "share"].into_iter().chain(columns.iter().map(|c| c.0)).collect();
+    let shown: Vec<_> = [Column::Share].into_iter().chain((0..worlds.len()).map(Column::World)).collect();
+    let header: Vec<&str> = ["k", "share"].into_iter().chain(names).collect();
+    let rows = lines(&Rows::series(&worlds, &[]).without_sums(), &shown, unit);
     let scale = if thousands == 0 { String::new() } else { format!("10<sup>{}</sup> ", 3 * thousands) };
     let note = format!("Radiance in {scale}W sr⁻¹ m⁻², mean of the channels; ± half a 95 % interval.");
     format!("{}\n{note}\n", table(&header, &rows))
@@ -61,27 +55,48 @@ pub fn terms(columns: &[(&str, &Functional)]) -> String {
 
 /// The verdicts of a comparison: where each difference may lie, the margin, and what would decide what is undecided.
 pub fn verdicts(name: &str, comparison: &Comparison) -> String {
-    let row = |v: &Verdict| {
-        let [effect, low, high, delta] = [v.effect, v.interval.0, v.interval.1, v.delta].map(|x| significant(x, 2));
-        let samples = v.needed_factor.map(|f| format!("{} times the samples", significant(f, 2)));
-        let cure = v.reason.as_deref().and_then(|r| r.rsplit(": ").next()).map(String::from);
-        let judged = format!("{} {}", mark(v.outcome), outcome(v.outcome));
-        let interval = format!("{low} to {high}").replace('-', "−").replace("e−", "e-");
-        [v.name.clone(), effect, interval, delta, judged, samples.or(cure).unwrap_or_default()]
-    };
-    let rows: Vec<_> = comparison.rows.iter().map(row).collect();
+    let columns = [Column::Difference, Column::Interval, Column::Margin, Column::Outcome, Column::Cure];
+    let rows = lines(&Rows::comparison(comparison), &columns, 1.0);
     table(&[name, "difference", "it lies in", "δ", "verdict", "would decide"], &rows)
 }
 
-/// Mean over channels and half its 95 % interval, in multiples of 1/`unit`, to the first digit of the latter.
-fn value(estimate: &Estimate, unit: f64) -> String {
-    let (mean, half) = average(estimate);
-    plus_minus(mean * unit, half * unit, 1)
+/// The rows in words, radiance in multiples of 1/`unit`.
+fn lines(rows: &Rows, columns: &[Column], unit: f64) -> Vec<Vec<String>> {
+    let name = |name: &Name| match name {
+        Name::Tail(last) => format!("&gt; {last}"),
+        Name::Cut => Name::Whole.to_string(),
+        other => other.to_string(),
+    };
+    let row = |(n, cells): (&Name, Vec<&Cell>)| {
+        [name(n)].into_iter().chain(cells.into_iter().map(|cell| words(cell, unit))).collect()
+    };
+    rows.pick(columns).map(row).collect()
+}
+
+/// A mean and half its 95 % interval are written to the first digit of the latter.
+fn words(cell: &Cell, unit: f64) -> String {
+    match cell {
+        Cell::Blank => String::new(),
+        Cell::Words(words) => words.clone(),
+        Cell::Estimate(e) => {
+            let (mean, half) = average(e);
+            plus_minus(mean * unit, half * unit, 1)
+        }
+        Cell::Share(share) => format!("{} %", significant(100.0 * share, 2)),
+        Cell::Interval(low, high) => {
+            let [low, high] = [low, high].map(|v| significant(*v, 2));
+            format!("{low} to {high}").replace('-', "−").replace("e−", "e-")
+        }
+        Cell::Ratio(v) | Cell::Difference(v) | Cell::P(v) | Cell::Size(v) => significant(*v, 2),
+        Cell::Rays(rays) => rays.map_or_else(dash, count),
+        Cell::Outcome(found) => format!("{} {}", mark(*found), outcome(*found)),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terms::Estimate;
     use glam::DVec3;
 
     #[test]

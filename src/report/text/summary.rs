@@ -261,17 +261,21 @@ pub struct VerdictRecord {
     pub outcome: Outcome,
 }
 
+impl VerdictRecord {
+    /// Of a verdict, under a name.
+    pub fn of(name: String, v: &stats::Verdict) -> Self {
+        let (effect, interval, p, outcome) = (v.effect, v.interval, v.p, v.outcome);
+        Self { name, effect, interval, p, min_detectable: v.min_detectable, outcome }
+    }
+}
+
 /// The rows of a comparison of that name; without a name, the rows say which functional they speak of.
 pub fn verdicts(name: &str, comparison: &stats::Comparison) -> Vec<VerdictRecord> {
-    let row = |v: &stats::Verdict| VerdictRecord {
-        name: if name.is_empty() { format!("{} ({})", v.name, v.functional) } else { format!("{}: {name}", v.name) },
-        effect: v.effect,
-        interval: v.interval,
-        p: v.p,
-        min_detectable: v.min_detectable,
-        outcome: v.outcome,
+    let words = |v: &stats::Verdict| match name {
+        "" => format!("{} ({})", v.name, v.functional),
+        name => format!("{}: {name}", v.name),
     };
-    comparison.rows.iter().map(row).collect()
+    comparison.rows.iter().map(|v| VerdictRecord::of(words(v), v)).collect()
 }
 
 /// Writes the summary, indented, with a final newline.

@@ -1,13 +1,13 @@
 //! Tables for the terminal: aligned, at most 100 columns wide, made of text only.
-//!
-//! One number per term stands for the colour: the mean of the three channels. Its error is the mean of the three
-//! errors, which bounds the true one whatever the correlation of the channels (triangle inequality of the L2 norm).
-//! A dash means "not known", never zero; where the [evidence](crate::stats::evidence) is too thin for an error, the column of errors
-//! says what there is: `3 events`, `no event`, `k̂ 0.9`.
 
-use crate::report::text::summary::VerdictRecord;
-use crate::stats::{Evidence, Outcome, half_width_95};
-use crate::terms::{Estimate, Functional};
+pub use super::number::{average, count, error, mark, outcome, plus_minus, significant};
+
+use super::{
+    number::{dash, known, p_value, percent, signed},
+    rows::{Cell, Column, Name, Rows},
+    summary::VerdictRecord,
+};
+use crate::terms::Functional;
 
 /// The series of one world: a row per term, then the tail and the sums.
 ///
@@ -23,172 +23,57 @@ use crate::terms::{Estimate, Functional};
 /// assert!(table.lines().any(|l| l.split_whitespace().eq(["1", "0.5000", "0", "0.5000", "25.0", "%"])));
 /// ```
 pub fn series(label: &str, functional: &Functional, rays: &[u64]) -> String {
-    let total = average(&functional.total).0;
-    let mut rows = vec![["k", "mean", "± 95 %", "ratio", "share", "rays"].map(String::from)];
-    let mut push = |name: String, estimate: &Estimate, ratio: String, rays: String| {
-        let mean = average(estimate).0;
-        let share = 100.0 * mean / total;
-        let share = if share.is_finite() { format!("{share:.1} %") } else { dash() };
-        rows.push([name, significant(mean, 4), error(estimate), ratio, share, rays]);
-    };
-    let mut previous: Option<f64> = None;
-    for (k, term) in functional.terms.iter().enumerate() {
-        let mean = average(term).0;
-        let ratio = previous.filter(|&p| p != 0.0).map_or_else(dash, |p| significant(mean / p, 4));
-        push(k.to_string(), term, ratio, rays.get(k).map_or_else(dash, |&n| count(n)));
-        previous = Some(mean);
+    let rows = Rows::series(&[functional], rays).without_repetition();
+    let mut columns = vec![(Column::World(0), "mean"), (Column::Ratio, "ratio"), (Column::Share, "share")];
+    if !rays.is_empty() {
+        columns.push((Column::Rays, "rays"));
     }
-    if let Some(last) = functional.terms.len().checked_sub(1) {
-        push(format!("k > {last}"), &functional.tail, String::new(), String::new());
-        push(format!("Σ k ≤ {last}"), &functional.sum, String::new(), String::new());
-    }
-    // without a tail the total is the sum, which stands there already
-    if functional.terms.is_empty() || !functional.tail.is_none() {
-        let name = if functional.tail.is_none() { "cut at K" } else { "all" };
-        push(name.into(), &functional.total, String::new(), String::new());
-    }
-    let columns = if rays.is_empty() { 5 } else { 6 };
-    let rows: Vec<Vec<String>> = rows.into_iter().map(|row| row.into_iter().take(columns).collect()).collect();
-    format!("{label}\n{}", aligned(&rows, &[Side::Right; 6]))
+    format!("{label}\n{}", aligned(&lines("k", &columns, &rows), &[Side::Right; 6]))
 }
 
 /// The verdicts of a comparison.
 pub fn verdicts(verdicts: &[VerdictRecord]) -> String {
-    let header = ["what", "difference", "interval at 1 − α", "p", "detectable", "verdict"];
-    let mut rows = vec![header.map(String::from).to_vec()];
-    rows.extend(verdicts.iter().map(|v| {
-        let interval = format!("[{}, {}]", signed(v.interval.0), signed(v.interval.1));
-        let words = format!("{} {}", mark(v.outcome), outcome(v.outcome));
-        vec![shortened(&v.name, 34), signed(v.effect), interval, p_value(v.p), known(v.min_detectable), words]
-    }));
-    aligned(&rows, &[Side::Left, Side::Right, Side::Right, Side::Right, Side::Right, Side::Left])
+    let columns = [
+        (Column::Difference, "difference"),
+        (Column::Interval, "interval at 1 − α"),
+        (Column::P, "p"),
+        (Column::Detectable, "detectable"),
+        (Column::Outcome, "verdict"),
+    ];
+    let lines = lines("what", &columns, &Rows::verdicts(verdicts));
+    aligned(&lines, &[Side::Left, Side::Right, Side::Right, Side::Right, Side::Right, Side::Left])
 }
 
-/// The word of an outcome.
-pub fn outcome(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Agrees => "agrees",
-        Outcome::Differs => "differs",
-        Outcome::Inconclusive => "inconclusive",
+/// Header and rows in words; an estimate takes two columns, its mean and its error.
+fn lines(first: &str, columns: &[(Column, &str)], rows: &Rows) -> Vec<Vec<String>> {
+    let mut head = vec![first.to_owned()];
+    for (column, words) in columns {
+        head.push((*words).into());
+        if matches!(column, Column::World(_)) {
+            head.push("± 95 %".into());
+        }
     }
-}
-
-/// The sign of an outcome.
-pub fn mark(outcome: Outcome) -> char {
-    match outcome {
-        Outcome::Agrees => '✓',
-        Outcome::Differs => '✗',
-        Outcome::Inconclusive => '?',
-    }
-}
-
-/// Mean over the channels and half width of its 95 % interval (NaN: not known).
-pub fn average(estimate: &Estimate) -> (f64, f64) {
-    let mean = estimate.mean.element_sum() / 3.0;
-    let std_error = estimate.std_error.element_sum() / 3.0;
-    let known = Evidence::of(estimate).no_error.is_none();
-    (mean, if known { half_width_95(std_error, estimate.replicates) } else { f64::NAN })
-}
-
-/// What stands in the column of errors: half the 95 % interval, or what there is instead.
-pub fn error(estimate: &Estimate) -> String {
-    Evidence::of(estimate).no_error.map_or_else(|| known(average(estimate).1), |why| why.short())
-}
-
-/// A number with `digits` significant digits; powers of ten outside 10⁻³ … 10⁵.
-///
-/// ```
-/// use fredholm::report::text::table::significant;
-/// assert_eq!(significant(0.123456, 3), "0.123");
-/// assert_eq!(significant(99.996, 4), "100.0");
-/// assert_eq!(significant(1.234e-5, 3), "1.23e-5");
-/// assert_eq!(significant(0.0, 3), "0");
-/// assert_eq!(significant(f64::NAN, 3), "–");
-/// ```
-pub fn significant(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    if value.is_nan() {
-        return dash();
-    }
-    if value.is_infinite() {
-        return if value > 0.0 { "∞".into() } else { "−∞".into() };
-    }
-    // Let the formatter round first, so that 9.9996 counts as 10.00.
-    let scientific = format!("{value:.*e}", digits - 1);
-    let exponent: i32 = scientific.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
-    if !(-3..5).contains(&exponent) {
-        return scientific;
-    }
-    let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
-    format!("{value:.decimals$}")
-}
-
-/// `value ± error`, the error with `digits` significant digits and the value with as many decimals; a value that is exact,
-/// or whose error is not known, alone.
-///
-/// ```
-/// use fredholm::report::text::table::plus_minus;
-/// assert_eq!(plus_minus(-1.00316, 0.00124, 2), "−1.0032 ± 0.0012");
-/// assert_eq!(plus_minus(12.3456, 2.5, 1), "12 ± 2");
-/// assert_eq!(plus_minus(0.5, 0.0, 2), "0.5000");
-/// ```
-pub fn plus_minus(value: f64, error: f64, digits: i32) -> String {
-    let text = if error > 0.0 && error.is_finite() {
-        let decimals = (f64::from(digits - 1) - error.log10().floor()).max(0.0) as usize;
-        format!("{value:.decimals$} ± {error:.decimals$}")
-    } else {
-        significant(value, 4)
+    let row = |(name, cells): (&Name, Vec<&Cell>)| {
+        [shortened(&name.to_string(), 34)].into_iter().chain(cells.into_iter().flat_map(words)).collect()
     };
-    text.replace('-', "−").replace("e−", "e-")
+    let columns: Vec<Column> = columns.iter().map(|c| c.0).collect();
+    [head].into_iter().chain(rows.pick(&columns).map(row)).collect()
 }
 
-/// A count in thousands, millions or billions.
-///
-/// ```
-/// assert_eq!(fredholm::report::text::table::count(16_777_216), "16.8 M");
-/// assert_eq!(fredholm::report::text::table::count(999), "999");
-/// ```
-pub fn count(n: u64) -> String {
-    let value = n as f64;
-    let (scaled, unit) = match n {
-        0..1_000 => return n.to_string(),
-        1_000..999_950 => (value / 1e3, "k"),
-        999_950..999_950_000 => (value / 1e6, "M"),
-        _ => (value / 1e9, "G"),
-    };
-    format!("{scaled:.1} {unit}")
-}
-
-/// A p value: small ones as powers of ten.
-pub(crate) fn p_value(p: f64) -> String {
-    if p.is_nan() { dash() } else { significant(p, 2) }
-}
-
-/// Three digits and a sign; a dash where nothing is known.
-pub(crate) fn signed(value: f64) -> String {
-    if value.is_nan() {
-        return dash();
-    }
-    let sign = if value > 0.0 { "+" } else { "" };
-    if value.is_infinite() {
-        return if value > 0.0 { "+∞".into() } else { "−∞".into() };
-    }
-    format!("{sign}{}", significant(value, 3))
-}
-
-/// Two digits; a dash where nothing is known, ∞ for an error whose variance is infinite.
-pub(crate) fn known(value: f64) -> String {
-    match value {
-        v if v.is_nan() => dash(),
-        v if v.is_infinite() => "∞".into(),
-        v => significant(v, 2),
-    }
-}
-
-fn dash() -> String {
-    "–".into()
+fn words(cell: &Cell) -> Vec<String> {
+    vec![match cell {
+        Cell::Blank => String::new(),
+        Cell::Words(words) => words.clone(),
+        Cell::Estimate(e) => return vec![significant(average(e).0, 4), error(e)],
+        Cell::Ratio(ratio) => significant(*ratio, 4),
+        Cell::Share(share) => percent(*share),
+        Cell::Rays(rays) => rays.map_or_else(dash, count),
+        Cell::Difference(effect) => signed(*effect),
+        Cell::Interval(low, high) => format!("[{}, {}]", signed(*low), signed(*high)),
+        Cell::P(p) => p_value(*p),
+        Cell::Size(size) => known(*size),
+        Cell::Outcome(found) => format!("{} {}", mark(*found), outcome(*found)),
+    }]
 }
 
 fn shortened(text: &str, longest: usize) -> String {

@@ -12,7 +12,10 @@ use crate::report::{
     ReportError, half_width_95,
     image::typeset::{Caption, superscript},
     plot::{Axis, BLACK, Canvas, Drawn, Entry, Figure, GREY, Look, Panel, Place, Sample, Stroke, Words, figure},
-    text::table::{Side, aligned, plus_minus, significant},
+    text::{
+        number::{plus_minus, significant},
+        table::{Side, aligned},
+    },
 };
 use crate::stats::Slope;
 use crate::study::convergence::{Part, Stand};
