@@ -168,7 +168,7 @@ fn people(found: &Checked, folder: &Path, files: &[String]) -> String {
     for g in &j.groups {
         let c = worst(g);
         let (value, difference, half) = (g.value[c], g.difference.mean[c], g.half[c]);
-        let channel = ["red", "green", "blue"][c];
+        let channel = fredholm::math::CHANNELS[c];
         let apart = match g.evidence.no_error {
             None => {
                 let (apart, half, delta) = (100.0 * difference / value, 100.0 * half / value, 100.0 * args.delta);

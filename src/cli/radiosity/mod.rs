@@ -117,7 +117,7 @@ pub enum Channel {
 }
 
 /// Channels by number.
-pub const NAMES: [&str; 3] = ["red", "green", "blue"];
+pub use fredholm::math::CHANNELS as NAMES;
 
 fn csv_name(s: &str) -> Result<String, String> {
     let plain = std::path::Path::new(s).file_name().is_some_and(|n| n == s) && s.ends_with(".csv");

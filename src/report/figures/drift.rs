@@ -12,7 +12,10 @@ use crate::report::{
     ReportError,
     image::typeset::Caption,
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Mark, Panel, Point, Sample, Stroke, Words, figure},
-    text::table::{Side, aligned},
+    text::{
+        csv::Csv,
+        table::{Side, aligned},
+    },
 };
 use crate::study::refinement::{Ends, Mesh, Refinement};
 use plotters::style::RGBColor;
@@ -86,16 +89,16 @@ pub fn table(r: &Refinement, channel: &str) -> String {
 
 /// A line per eigenvalue and mesh.
 pub fn csv(r: &Refinement) -> String {
-    let mut out = String::from("patches,h,channel,eigenvalue,value,residual,band\n");
+    let mut csv = Csv::new("patches,h,channel,eigenvalue,value,residual,band");
     for (m, e) in known(r) {
         for (side, values) in e.values.iter().enumerate() {
             for (i, v) in values.iter().enumerate() {
                 let number = (i + 1) as i64 * if side == 0 { 1 } else { -1 };
-                out += &format!("{},{},{},{number},{},{},{}\n", m.patches, m.h, e.channel, v.value, v.residual, e.band);
+                csv.put(m.patches).put(m.h).put(e.channel).put(number).put(v.value).put(v.residual).put(e.band).end();
             }
         }
     }
-    out
+    csv.text()
 }
 
 const BAND: Stroke = Stroke { color: GREY, width: 1.6, dash: Some((7.0, 5.0)) };

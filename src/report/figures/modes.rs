@@ -11,7 +11,8 @@ use crate::report::{
     ReportError,
     image::{
         picture::Picture,
-        typeset::{Caption, LINE, SANS, caption_elements, page, text_element, text_width},
+        sheet::{Layout, Tile, columns_in, in_rows},
+        typeset::Caption,
         zmap,
     },
     plot::{Axis, BLACK, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, Words, figure},
@@ -251,49 +252,21 @@ pub fn sheet(
     modes: &[Painted],
     caption: &Caption,
 ) -> Result<Picture, ReportError> {
-    const GAP: f64 = 16.0;
-    const LABEL: f64 = 14.0;
-    const TITLE: f64 = 18.0;
-    const SMALL: f64 = 10.5;
     if modes.is_empty() || modes.iter().any(|m| m.values.len() != width * height) {
         let cause = format!("modes that do not fill {width}×{height} pixels");
         return Err(ReportError::new("(modes)", cause, "paint modes of one size"));
     }
-    let images: Vec<Picture> = modes
-        .iter()
-        .map(|m| {
-            let mut sizes: Vec<f64> = m.values.iter().map(|v| v.abs()).collect();
-            sizes.sort_by(f64::total_cmp);
-            let scale = sizes[(sizes.len() - 1) * 99 / 100].max(f64::MIN_POSITIVE);
-            // the map goes from −4 to 4
-            let pixels = m.values.iter().map(|v| zmap::color(4.0 * v / scale)).collect();
-            Picture { width, height, pixels }.enlarged(192usize.div_ceil(width))
-        })
-        .collect();
-    let widest = modes.iter().map(|m| text_width(&m.label, SANS, LABEL));
-    let cell_w = widest.fold(images[0].width as f64, f64::max).ceil();
-    let columns = ((1200.0 / (cell_w + GAP)) as usize).clamp(1, modes.len().min(4));
-    let rows = modes.len().div_ceil(columns);
-    let note = "red: positive, blue: negative, white: zero; each at its own scale (99th percentile)";
-    let words_w = text_width(title, SANS, TITLE).max(text_width(note, SANS, SMALL)) + 2.0 * GAP;
-    let sheet_w = (columns as f64 * (cell_w + GAP) + GAP).max(words_w).ceil();
-    let lines = caption.lines(sheet_w - 2.0 * GAP, SMALL);
-    let cell_h = LABEL * LINE + images[0].height as f64 + GAP;
-    let top = GAP + TITLE * LINE;
-    let below = top + rows as f64 * cell_h;
-    let sheet_h = below + (lines.len() + 1) as f64 * SMALL * LINE + GAP;
-    let corner = |i: usize| (GAP + (i % columns) as f64 * (cell_w + GAP), top + (i / columns) as f64 * cell_h);
-    let mut words = text_element(GAP, GAP + TITLE * 0.8, TITLE, SANS, "", title);
-    for (i, m) in modes.iter().enumerate() {
-        let (x, y) = corner(i);
-        words += &text_element(x, y + LABEL, LABEL, SANS, "font-weight=\"bold\"", &m.label);
-    }
-    words += &text_element(GAP, below + SMALL, SMALL, SANS, "fill=\"#333333\"", note);
-    words += &caption_elements(&lines, GAP, below + SMALL * (1.0 + LINE), SMALL);
-    let mut picture = page(sheet_w as usize, sheet_h.ceil() as usize, &words)?;
-    for (i, image) in images.iter().enumerate() {
-        let (x, y) = corner(i);
-        picture.paste(image, x.round() as usize, (y + LABEL * LINE).round() as usize);
-    }
-    Ok(picture)
+    let tile = |m: &Painted| {
+        let mut sizes: Vec<f64> = m.values.iter().map(|v| v.abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let scale = sizes[(sizes.len() - 1) * 99 / 100].max(f64::MIN_POSITIVE);
+        // the map goes from −4 to 4
+        let pixels = m.values.iter().map(|v| zmap::color(4.0 * v / scale)).collect();
+        let image = Picture { width, height, pixels }.enlarged(192usize.div_ceil(width));
+        Tile { image, label: m.label.clone(), notes: vec![] }
+    };
+    let tiles: Vec<Tile> = modes.iter().map(tile).collect();
+    let places = in_rows(tiles.len(), columns_in(1216.0, &tiles).min(4));
+    let foot = Some("red: positive, blue: negative, white: zero; each at its own scale (99th percentile)");
+    Layout { title, tiles: &tiles, places: &places, heads: &[], foot }.draw(caption)
 }

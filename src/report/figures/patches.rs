@@ -14,58 +14,56 @@
 
 use crate::operator::form_factor::FormFactors;
 use crate::operator::patches::Patches;
-use crate::report::text::summary::BounceNorms;
+use std::iter;
+
+use crate::report::text::{csv::Csv, summary::BounceNorms};
 use glam::DVec3;
 
-const CHANNELS: [&str; 3] = ["r", "g", "b"];
+const LETTERS: [&str; 3] = ["r", "g", "b"];
 
-fn triple(v: DVec3) -> String {
-    format!("{},{},{}", v.x, v.y, v.z)
+fn put(csv: &mut Csv, v: DVec3) {
+    csv.put(v.x).put(v.y).put(v.z);
 }
 
 /// `mesh.csv`: `radiance` is L per patch.
 pub fn mesh(patches: &Patches, radiance: &[DVec3]) -> String {
-    let mut out =
-        String::from("patch,primitive,front,x,y,z,area,nx,ny,nz,rho_r,rho_g,rho_b,E_r,E_g,E_b,L_r,L_g,L_b,corners\n");
+    let mut csv =
+        Csv::new("patch,primitive,front,x,y,z,area,nx,ny,nz,rho_r,rho_g,rho_b,E_r,E_g,E_b,L_r,L_g,L_b,corners");
     for (i, (p, l)) in patches.iter().zip(radiance).enumerate() {
         let file = |x: DVec3| x + patches.origin();
         let corners: Vec<String> =
             p.polygon.iter().map(|c| file(*c)).map(|c| format!("{} {} {}", c.x, c.y, c.z)).collect();
-        out += &format!(
-            "{i},{},{},{},{},{},{},{},{},{}\n",
-            p.primitive,
-            u8::from(p.front),
-            triple(file(p.centre)),
-            p.area,
-            triple(p.normal),
-            triple(p.reflectance),
-            triple(p.emission),
-            triple(*l),
-            corners.join(";")
-        );
+        csv.put(i).put(p.primitive).put(u8::from(p.front));
+        put(&mut csv, file(p.centre));
+        csv.put(p.area);
+        [p.normal, p.reflectance, p.emission, *l].into_iter().for_each(|v| put(&mut csv, v));
+        csv.put(corners.join(";")).end();
     }
-    out
+    csv.text()
 }
 
 /// `mesh-terms.csv`: a column per k and channel, `T0_r,T0_g,T0_b,T1_r,…`.
 pub fn terms(terms: &[Vec<DVec3>]) -> String {
-    let names = (0..terms.len()).flat_map(|k| CHANNELS.map(|c| format!("T{k}_{c}")));
-    let mut out = std::iter::once("patch".to_string()).chain(names).collect::<Vec<_>>().join(",") + "\n";
+    let names = (0..terms.len()).flat_map(|k| LETTERS.map(|c| format!("T{k}_{c}")));
+    let mut csv = Csv::new(&iter::once("patch".to_string()).chain(names).collect::<Vec<_>>().join(","));
     for i in 0..terms.first().map_or(0, Vec::len) {
-        let values = terms.iter().map(|t| triple(t[i]));
-        out += &(std::iter::once(i.to_string()).chain(values).collect::<Vec<_>>().join(",") + "\n");
+        csv.put(i);
+        terms.iter().for_each(|t| put(&mut csv, t[i]));
+        csv.end();
     }
-    out
+    csv.text()
 }
 
 /// `norms.csv`: a line per k.
 pub fn norms(norms: &[BounceNorms]) -> String {
-    let names = ["norm_1", "norm_2", "norm_w"].iter().flat_map(|n| CHANNELS.map(|c| format!("{n}_{c}")));
-    let mut out = std::iter::once("k".to_string()).chain(names).collect::<Vec<_>>().join(",") + "\n";
+    let names = ["norm_1", "norm_2", "norm_w"].iter().flat_map(|n| LETTERS.map(|c| format!("{n}_{c}")));
+    let mut csv = Csv::new(&iter::once("k".to_string()).chain(names).collect::<Vec<_>>().join(","));
     for n in norms {
-        out += &format!("{},{},{},{}\n", n.k, triple(n.norm_1), triple(n.norm_2), triple(n.norm_w));
+        csv.put(n.k);
+        [n.norm_1, n.norm_2, n.norm_w].into_iter().for_each(|v| put(&mut csv, v));
+        csv.end();
     }
-    out
+    csv.text()
 }
 
 /// `F.npy`.

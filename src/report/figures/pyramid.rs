@@ -6,8 +6,10 @@
 use crate::report::{
     ReportError,
     image::{
-        picture::{Picture, auto_gain, develop, gain_label, shrink},
-        typeset::{Caption, LINE, SANS, caption_elements, page, superscript, text_element, text_width},
+        contact_sheet::shown,
+        picture::{Picture, auto_gain, gain_label},
+        sheet::{Layout, Tile},
+        typeset::{Caption, superscript},
     },
     text::{
         number::{average, error, known, significant},
@@ -17,11 +19,6 @@ use crate::report::{
 
 use crate::study::strategies::Strategy;
 
-const LABEL: f64 = 13.0;
-const NOTE: f64 = 10.5;
-const TITLE: f64 = 18.0;
-const GAP: f64 = 10.0;
-const MARGIN: f64 = 64.0;
 const WIDEST: usize = 144;
 const NARROWEST: usize = 96;
 
@@ -74,48 +71,20 @@ pub fn draw(
         auto_gain(&sum)
     };
     let gains: Vec<f64> = (0..rows).map(row_gain).collect();
-    let develop = |s: &Stone| {
+    let tile = |s: &Stone| {
         let gain = if common { gains[s.k] } else { auto_gain(s.pixels) };
-        let (w, h, shown) = shrink(width, height, s.pixels, width.div_ceil(WIDEST));
-        (develop(w, h, &shown, gain).picture.enlarged(NARROWEST.div_ceil(w)), gain)
+        let note = if common { s.note.clone() } else { format!("{} · {}", gain_label(gain), s.note) };
+        let image = shown(width, height, s.pixels, gain, NARROWEST, WIDEST);
+        Tile { image, label: name(s.k, s.s), notes: vec![note] }
     };
-    let images: Vec<(Picture, f64)> = stones.iter().map(develop).collect();
-    let words = |s: &Stone| text_width(&name(s.k, s.s), SANS, LABEL).max(text_width(&s.note, SANS, NOTE));
-    let (image_w, image_h) = (images[0].0.width as f64, images[0].0.height as f64);
-    let cell_w = stones.iter().map(words).fold(image_w, f64::max).ceil() + GAP;
-    let cell_h = LABEL * LINE + image_h + NOTE * LINE + GAP;
-
-    let sheet_w = (MARGIN + columns as f64 * cell_w + GAP).max(text_width(title, SANS, TITLE) + 2.0 * GAP);
-    let lines = caption.lines(sheet_w - 2.0 * GAP, NOTE);
-    let top = GAP + TITLE * LINE;
-    let sheet_h = top + rows as f64 * cell_h + lines.len() as f64 * NOTE * LINE + GAP;
+    let tiles: Vec<Tile> = stones.iter().map(tile).collect();
     // the rows of a pyramid are centred
-    let corner = |s: &Stone| {
-        let indent = 0.5 * (columns - (s.k + 2)) as f64 * cell_w;
-        (MARGIN + indent + s.s as f64 * cell_w, top + s.k as f64 * cell_h)
-    };
-
-    let mut text = text_element(GAP, GAP + TITLE * 0.8, TITLE, SANS, "", title);
-    for (k, &gain) in gains.iter().enumerate() {
-        let y = top + k as f64 * cell_h + LABEL * LINE + 0.5 * image_h;
-        text += &text_element(GAP, y, TITLE, SANS, "font-weight=\"bold\"", &format!("T{}E", superscript(k)));
-        if common {
-            text += &text_element(GAP, y + LABEL * LINE, LABEL, SANS, "fill=\"#333333\"", &gain_label(gain));
-        }
-    }
-    for (stone, (_, gain)) in stones.iter().zip(&images) {
-        let (x, y) = corner(stone);
-        text += &text_element(x, y + LABEL, LABEL, SANS, "", &name(stone.k, stone.s));
-        let note = if common { stone.note.clone() } else { format!("{} · {}", gain_label(*gain), stone.note) };
-        text += &text_element(x, y + LABEL * LINE + image_h + NOTE * 1.2, NOTE, SANS, "fill=\"#333333\"", &note);
-    }
-    text += &caption_elements(&lines, GAP, top + rows as f64 * cell_h + NOTE, NOTE);
-    let mut picture = page(sheet_w.ceil() as usize, sheet_h.ceil() as usize, &text)?;
-    for (stone, (image, _)) in stones.iter().zip(&images) {
-        let (x, y) = corner(stone);
-        picture.paste(image, x.round() as usize, (y + LABEL * LINE).round() as usize);
-    }
-    Ok(picture)
+    let place = |s: &Stone| (0.5 * (columns - (s.k + 2)) as f64 + s.s as f64, s.k);
+    let places: Vec<_> = stones.iter().map(place).collect();
+    let exposure = |gain: f64| if common { gain_label(gain) } else { String::new() };
+    let head = |(k, &gain): (usize, &f64)| [format!("T{}E", superscript(k)), exposure(gain)];
+    let heads: Vec<_> = gains.iter().enumerate().map(head).collect();
+    Layout { title, tiles: &tiles, places: &places, heads: &heads, foot: None }.draw(caption)
 }
 
 /// A row for every strategy: what it adds, what it would give alone, and the noise of both.

@@ -13,6 +13,7 @@ use crate::report::{
     },
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, Words, figure},
     text::{
+        csv::Csv,
         number::significant,
         table::{Side, aligned},
     },
@@ -100,28 +101,18 @@ fn order_words(order: Option<Order>) -> String {
 
 /// Everything, a line per mesh and quantity.
 pub fn csv(r: &Refinement, max_bounces: usize) -> String {
-    let mut out = String::from(
-        "patches,h,k,mean_error,mean_error_std_error,image_error,image_error_std_error,radius_r,radius_g,radius_b,seconds\n",
+    let mut csv = Csv::new(
+        "patches,h,k,mean_error,mean_error_std_error,image_error,image_error_std_error,radius_r,radius_g,radius_b,seconds",
     );
     for m in &r.meshes {
         for q in Quantity::all(max_bounces) {
             let ((e, s), (i, t)) = (r.mean_error(m, q), image_error(r, m, q));
-            let number = |x: f64| if x.is_nan() { String::new() } else { x.to_string() };
-            out += &format!(
-                "{},{},{},{e},{s},{},{},{},{},{},{}\n",
-                m.patches,
-                m.h,
-                q,
-                number(i),
-                number(t),
-                m.radius.value.x,
-                m.radius.value.y,
-                m.radius.value.z,
-                m.seconds
-            );
+            csv.put(m.patches).put(m.h).put(q).put(e).put(s).numbers([i, t]);
+            m.radius.value.to_array().into_iter().for_each(|x| _ = csv.put(x));
+            csv.put(m.seconds).end();
         }
     }
-    out
+    csv.text()
 }
 
 /// |e_h| of the image mean, and ‖R_h − R‖/‖R‖, against h.

@@ -12,6 +12,7 @@ use crate::report::{
     image::typeset::Caption,
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, Look, Panel, Point, Sample, Words, figure},
     text::{
+        csv::Csv,
         number::significant,
         table::{Side, aligned},
     },
@@ -111,12 +112,12 @@ fn with_error(v: Value) -> String {
 
 /// Everything: a line per schedule and part of the image (`0`, `1`, …, `tail`, `all`); what is not known is left empty.
 pub fn csv(rows: &[Row]) -> String {
-    let mut out = String::from(
+    // schedules are lists: they stand in quotes, whether they need them or not
+    let mut csv = Csv::bare(
         "schedule,table,part,predicted_variance,predicted_std_error,measured_variance,measured_std_error,z,\
          predicted_rays,measured_rays,predicted_efficiency,predicted_efficiency_std_error,measured_efficiency,\
-         measured_efficiency_std_error,seconds_per_path\n",
+         measured_efficiency_std_error,seconds_per_path",
     );
-    let number = |x: Option<f64>| x.filter(|x| !x.is_nan()).map_or(String::new(), |x| x.to_string());
     for r in rows {
         let parts = r.predicted.as_ref().or(r.measured.as_ref()).map_or(0, |n| n.terms.len()) + 2;
         for part in 0..parts {
@@ -140,12 +141,11 @@ pub fn csv(rows: &[Row]) -> String {
                 only(&r.measured, &|n| n.efficiency.std_error),
                 r.seconds.filter(|_| whole),
             ];
-            let cells = [format!("\"{}\"", r.name), format!("\"{}\"", r.schedule), name].into_iter();
-            out += &cells.chain(numbers.map(number)).collect::<Vec<_>>().join(",");
-            out.push('\n');
+            csv.put(format_args!("\"{}\"", r.name)).put(format_args!("\"{}\"", r.schedule)).put(name);
+            csv.numbers(numbers.map(|x| x.unwrap_or(f64::NAN))).end();
         }
     }
-    out
+    csv.text()
 }
 
 /// Variance, rays and their product against the schedules, predicted and measured, and q of some of them vertex by vertex.

@@ -13,6 +13,7 @@ use crate::report::{
     image::typeset::Caption,
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Mark, Panel, Point, Sample, Stroke, Words, figure},
     text::{
+        csv::Csv,
         number::significant,
         table::{Side, aligned},
     },
@@ -101,22 +102,15 @@ fn products(n: f64) -> String {
 
 /// Every step of every solver.
 pub fn csv(histories: &[History]) -> String {
-    let mut out = String::from("solver,step,products,norm,residual,error,seconds\n");
+    let mut csv = Csv::new("solver,step,products,norm,residual,error,seconds");
     for h in histories {
         for p in &h.points {
-            out += &format!(
-                "{},{},{},{:e},{:e},{:e},{:.6}\n",
-                h.solver.name(),
-                p.step,
-                p.applications,
-                p.norm,
-                p.residual,
-                p.error,
-                p.seconds
-            );
+            csv.put(h.solver.name()).put(p.step).put(p.applications);
+            [p.norm, p.residual, p.error].into_iter().for_each(|x| _ = csv.put(format_args!("{x:e}")));
+            csv.put(format_args!("{:.6}", p.seconds)).end();
         }
     }
-    out
+    csv.text()
 }
 
 /// The numbers of [`table`] and [`csv`] for programs.

@@ -11,6 +11,7 @@ use crate::report::{
     image::typeset::{Caption, superscript},
     plot::{BLACK, BLUE, Canvas, Drawn, Figure, GREY, VERMILION, Words, figure},
     text::{
+        csv::Csv,
         number::significant,
         table::{Side, aligned},
     },
@@ -134,38 +135,34 @@ pub fn table(study: &Study) -> String {
 
 /// A line per way and term; `all` for the sum. What is not known is left empty.
 pub fn csv(study: &Study) -> String {
-    let mut out = String::from(
+    let mut csv = Csv::new(
         "way,k,n,variance,variance_std_error,rays,seconds,predicted_work_rays,predicted_work_rays_std_error,\
          measured_work_rays,measured_work_rays_std_error,predicted_work_seconds,predicted_work_seconds_std_error,\
-         measured_work_seconds,measured_work_seconds_std_error\n",
+         measured_work_seconds,measured_work_seconds_std_error",
     );
-    let cell = |x: f64| if x.is_nan() { String::new() } else { x.to_string() };
-    let none = ",".repeat(8);
     for (name, terms) in [("pilot", &study.pilot), ("equal", &study.equal), ("optimal", &study.optimal)] {
         for (k, t) in terms.iter().enumerate() {
-            let numbers = [t.variance, t.std_error, t.rays, t.seconds].map(cell).join(",");
-            out += &format!("{name},{k},{},{numbers}{none}\n", t.spp);
+            csv.put(name).put(k).put(t.spp).numbers([t.variance, t.std_error, t.rays, t.seconds]).blank(8).end();
         }
     }
     for k in 0..study.reuse.covariance.slots {
-        out += &format!("prefix,{k},{},{},,,{none}\n", study.reuse.spp, study.reuse.covariance.entry(k, k));
+        csv.put("prefix").put(k).put(study.reuse.spp).put(study.reuse.covariance.entry(k, k)).blank(11).end();
     }
     for w in ways(study) {
+        csv.put(w.name).put("all").blank(3).put(w.rays).put(w.seconds);
         let works = [w.predicted[0], w.measured[0], w.predicted[1], w.measured[1]];
-        let works: Vec<String> = works.iter().flat_map(|w| [w.value, w.std_error]).map(cell).collect();
-        out += &format!("{},all,,,,{},{},{}\n", w.name, w.rays, w.seconds, works.join(","));
+        csv.numbers(works.iter().flat_map(|w| [w.value, w.std_error])).end();
     }
-    out
+    csv.text()
 }
 
 /// Every entry of C, a line each.
 pub fn covariance_csv(c: &Covariance) -> String {
-    let mut out = String::from("a,b,covariance,correlation\n");
-    let cell = |x: f64| if x.is_nan() { String::new() } else { x.to_string() };
+    let mut csv = Csv::new("a,b,covariance,correlation");
     for (a, b) in (0..c.slots).flat_map(|a| (0..c.slots).map(move |b| (a, b))) {
-        out += &format!("{a},{b},{},{}\n", cell(c.entry(a, b)), cell(c.correlation(a, b)));
+        csv.put(a).put(b).numbers([c.entry(a, b), c.correlation(a, b)]).end();
     }
-    out
+    csv.text()
 }
 
 const CELL: f64 = 46.0;

@@ -10,6 +10,7 @@ use crate::report::{
         typeset::Caption,
     },
     text::{
+        csv::Csv,
         number::{average, significant},
         table::{Side, aligned},
     },
@@ -102,13 +103,11 @@ pub fn table(grown: &Grown) -> String {
 
 /// The same for programs; what is not known is left empty.
 pub fn csv(grown: &Grown) -> String {
-    let mut out = String::from("paths,mean,mean_half_width_95,mean_shown,clipped,mse,mse_half_width_95,noise\n");
-    let cell = |x: f64| if x.is_nan() { String::new() } else { x.to_string() };
+    let mut csv = Csv::new("paths,mean,mean_half_width_95,mean_shown,clipped,mse,mse_half_width_95,noise");
     for r in rows(grown, gain(grown)) {
-        let numbers = [r.mean[0], r.mean[1], r.shown, r.clipped, r.mse[0], r.mse[1], r.deviation].map(cell);
-        out += &format!("{},{}\n", r.name, numbers.join(","));
+        csv.put(r.name).numbers(r.mean).numbers([r.shown, r.clipped]).numbers(r.mse).numbers([r.deviation]).end();
     }
-    out
+    csv.text()
 }
 
 /// The contact sheet: every stage and the reference, at one gain.

@@ -22,6 +22,7 @@ pub use figure::draw;
 
 use crate::engine::by_rays::Sampled;
 use crate::report::text::{
+    csv::Csv,
     number::{average, error, significant},
     table::{Side, aligned},
 };
@@ -149,27 +150,19 @@ fn known_to(x: f64, digits: usize) -> String {
 
 /// Everything, a line per value and k (`0`, `1`, …, `tail`, `all`); a number that is not known is left empty.
 pub fn csv(sweep: &Sweep) -> String {
-    let mut out = String::from(
+    let mut csv = Csv::new(
         "over,value,k,spp,paths,mean,std_error,mean_r,mean_g,mean_b,std_error_r,std_error_g,std_error_b,replicates,rays,\
-         rays_per_path,variance,variance_std_error,seconds,efficiency_per_ray,efficiency_per_second\n",
+         rays_per_path,variance,variance_std_error,seconds,efficiency_per_ray,efficiency_per_second",
     );
-    let number = |x: f64| if x.is_nan() { String::new() } else { x.to_string() };
     for r in &sweep.rows {
         for (k, e, v, rays) in r.parts() {
             let [per_ray, per_second] = r.efficiency(v.value);
-            let grey = [e.mean.element_sum() / 3.0, e.std_error.element_sum() / 3.0];
-            let colour = e.mean.to_array().into_iter().chain(e.std_error.to_array());
-            let mut cells = vec![sweep.over.clone(), quoted(&r.value), k, r.spp.to_string(), r.paths.to_string()];
-            cells.extend(grey.into_iter().chain(colour).map(number));
-            cells.extend([e.replicates.to_string(), rays.to_string(), number(rays as f64 / r.paths as f64)]);
-            cells.extend([v.value, v.std_error, r.seconds, per_ray, per_second].map(number));
-            out += &cells.join(",");
-            out.push('\n');
+            csv.put(&sweep.over).put(&r.value).put(k).put(r.spp).put(r.paths);
+            csv.numbers([e.mean.element_sum() / 3.0, e.std_error.element_sum() / 3.0]);
+            csv.numbers(e.mean.to_array()).numbers(e.std_error.to_array());
+            csv.put(e.replicates).put(rays).numbers([rays as f64 / r.paths as f64]);
+            csv.numbers([v.value, v.std_error, r.seconds, per_ray, per_second]).end();
         }
     }
-    out
-}
-
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into() }
+    csv.text()
 }

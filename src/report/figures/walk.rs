@@ -9,19 +9,21 @@
 //! | z | (mean − power)/error, patch by patch | [`table`] |
 //! | v | guide | [`guides`], [`draw`] |
 
+use std::fmt::Display;
+
+use crate::math::CHANNELS;
 use crate::report::{
     ReportError,
     image::typeset::{Caption, superscript},
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, Words, figure},
     text::{
+        csv::Csv,
         number::{average, error, significant},
         table::{Side, aligned},
     },
 };
 use crate::study::walk::Walked;
 use crate::study::zero_variance::{Guide, Led, Spread, ZeroVariance};
-
-const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 /// A row per term: the walk, the power, how many standard errors apart, and the same patch by patch.
 pub fn table(walked: &Walked) -> String {
@@ -84,18 +86,17 @@ pub fn terms(all: &[ZeroVariance]) -> String {
 
 /// Everything, a line per channel and guide or term.
 pub fn csv(all: &[ZeroVariance]) -> String {
-    let mut out =
-        String::from("channel,guide,guide_error,relative_variance,largest_deviation,bias,bias_std_error,steps,walks\n");
-    let mut line = |channel: usize, name: String, error: f64, s: &Spread| {
-        let error = if error.is_nan() { String::new() } else { error.to_string() };
-        let numbers = [s.variance, s.largest, s.bias[0], s.bias[1], s.steps].map(|x| x.to_string()).join(",");
-        out += &format!("{},{name},{error},{numbers},{}\n", CHANNELS[channel], s.walks);
+    let mut csv =
+        Csv::new("channel,guide,guide_error,relative_variance,largest_deviation,bias,bias_std_error,steps,walks");
+    let mut line = |channel: usize, name: &dyn Display, error: f64, s: &Spread| {
+        csv.put(CHANNELS[channel]).put(name).numbers([error]);
+        csv.put(s.variance).put(s.largest).put(s.bias[0]).put(s.bias[1]).put(s.steps).put(s.walks).end();
     };
     for z in all {
-        z.guides.iter().for_each(|l| line(z.channel, l.guide.to_string(), l.error, &l.spread));
-        z.terms.iter().enumerate().for_each(|(i, s)| line(z.channel, format!("term {}", i + 1), 0.0, s));
+        z.guides.iter().for_each(|l| line(z.channel, &l.guide, l.error, &l.spread));
+        z.terms.iter().enumerate().for_each(|(i, s)| line(z.channel, &format_args!("term {}", i + 1), 0.0, s));
     }
-    out
+    csv.text()
 }
 
 /// Relative variance against the error of the guide, on logarithmic axes: one curve per channel and kind of guide. Walks led by B itself

@@ -6,6 +6,7 @@
 //! | ±δ | margin: a bias inside is too small to matter | `delta` |
 //! | E_n | e-value: evidence against "no bias" | [`e_value`] |
 
+use crate::math::CHANNELS;
 use crate::report::{
     ReportError,
     image::typeset::{Caption, superscript},
@@ -173,7 +174,7 @@ fn narrowing(page: &Canvas, curve: &[Glimpse], paths: u64, delta: f64) -> Drawn 
             }
         }
     }
-    let mut entries: Vec<Entry> = ["red", "green", "blue"]
+    let mut entries: Vec<Entry> = CHANNELS
         .iter()
         .zip(COLOURS)
         .map(|(name, c)| Entry::new(Sample::Line(Stroke::solid(c, 2.2)), format!("{name}: estimate, bounds")))

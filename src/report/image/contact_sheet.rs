@@ -4,20 +4,13 @@
 //! repeating pixels, images wider than 512 are averaged down (in linear radiance) in the grids, never in single
 //! pictures. The 99th percentile and the mean are those of the full image.
 
-use crate::report::{
-    ReportError,
-    image::{
-        picture::{Developed, Picture, auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shrink},
-        typeset::{Caption, LINE, SANS, caption_elements, page, superscript, text_element, text_width},
-    },
-    text::number::significant,
+use super::{
+    picture::{Developed, Picture, auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shrink},
+    sheet::{LABEL, Layout, Tile, columns_in, in_rows},
+    typeset::{Caption, SANS, page, superscript, text_element, text_width},
 };
+use crate::report::{ReportError, text::number::significant};
 
-const LABEL: f64 = 14.0;
-const NOTE: f64 = 12.0;
-const CAPTION: f64 = 10.5;
-const TITLE: f64 = 18.0;
-const GAP: f64 = 16.0;
 const NARROWEST: usize = 128;
 const WIDEST: usize = 512;
 const SHEET: f64 = 1600.0;
@@ -133,54 +126,40 @@ fn laid_out(
     if cells.is_empty() {
         return Err(ReportError::new("(contact sheet)", "there is no image to show", "render at least one term"));
     }
-    // Develop every image at the size it is shown with.
-    let mut images = Vec::new();
-    let mut clipped = Vec::new();
-    for cell in cells {
+    let (mut tiles, mut clipped) = (Vec::new(), Vec::new());
+    for (cell, notes) in cells.iter().zip(notes) {
         check_size(&cell.label, width, height, cell.pixels)?;
         let gain = cell.gain.unwrap_or_else(|| auto_gain(cell.pixels));
         clipped.push(develop(width, height, cell.pixels, gain).clipped);
-        let (w, h, shown) = shrink(width, height, cell.pixels, width.div_ceil(WIDEST));
-        let image = develop(w, h, &shown, gain).picture.enlarged(NARROWEST.div_ceil(w));
-        images.push(image);
+        let image = shown(width, height, cell.pixels, gain, NARROWEST, WIDEST);
+        tiles.push(Tile { image, label: cell.label.clone(), notes: notes.clone() });
     }
-
-    // Columns: as many as fit, then as few as the same number of rows allows.
-    let noted = notes.iter().flatten().map(|note| text_width(note, SANS, NOTE));
-    let widest_text = noted.chain(cells.iter().map(|cell| text_width(&cell.label, SANS, LABEL)));
-    let (image_w, image_h) = (images[0].width as f64, images[0].height as f64);
-    let lines_below = notes.iter().map(Vec::len).max().unwrap_or(0) as f64;
-    let cell_w = widest_text.fold(image_w, f64::max).ceil();
-    let fit = (((SHEET - GAP) / (cell_w + GAP)).floor() as usize).clamp(1, cells.len());
-    let fit = if cells.len() > 4 { fit.min((cells.len() as f64 * 1.8).sqrt().ceil() as usize) } else { fit };
-    let columns = columns.unwrap_or_else(|| cells.len().div_ceil(cells.len().div_ceil(fit)));
-    let rows = cells.len().div_ceil(columns);
-
-    let natural = columns as f64 * (cell_w + GAP) + GAP;
-    let sheet_w = natural.max(text_width(title, SANS, TITLE) + 2.0 * GAP).max(400.0).ceil();
-    let lines = caption.lines(sheet_w - 2.0 * GAP, CAPTION);
-    let cell_h = LABEL * LINE + image_h + lines_below * NOTE * LINE + GAP;
-    let top = GAP + TITLE * LINE;
-    let sheet_h = top + rows as f64 * cell_h + lines.len() as f64 * CAPTION * LINE + GAP;
-
-    // Words first, then the pixels between them.
-    let corner = |i: usize| (GAP + (i % columns) as f64 * (cell_w + GAP), top + (i / columns) as f64 * cell_h);
-    let mut words = text_element(GAP, GAP + TITLE * 0.8, TITLE, SANS, "", title);
-    for (i, (notes, cell)) in notes.iter().zip(cells).enumerate() {
-        let (x, y) = corner(i);
-        words += &text_element(x, y + LABEL, LABEL, SANS, "font-weight=\"bold\"", &cell.label);
-        for (line, note) in notes.iter().enumerate() {
-            let below = y + LABEL * LINE + image_h + NOTE * (1.2 + line as f64 * LINE);
-            words += &text_element(x, below, NOTE, SANS, "fill=\"#333333\"", note);
-        }
-    }
-    words += &caption_elements(&lines, GAP, top + rows as f64 * cell_h + CAPTION, CAPTION);
-    let mut picture = page(sheet_w as usize, sheet_h.ceil() as usize, &words)?;
-    for (i, image) in images.iter().enumerate() {
-        let (x, y) = corner(i);
-        picture.paste(image, x.round() as usize, (y + LABEL * LINE).round() as usize);
-    }
+    let columns = columns.unwrap_or_else(|| balanced(&tiles));
+    let places = in_rows(tiles.len(), columns);
+    let picture = Layout { title, tiles: &tiles, places: &places, heads: &[], foot: None }.draw(caption)?;
     Ok(Sheet { picture, clipped })
+}
+
+/// As many columns as fit, then as few as the same number of rows allows.
+fn balanced(tiles: &[Tile]) -> usize {
+    let (count, mut fit) = (tiles.len(), columns_in(SHEET, tiles));
+    if count > 4 {
+        fit = fit.min((count as f64 * 1.8).sqrt().ceil() as usize);
+    }
+    count.div_ceil(count.div_ceil(fit))
+}
+
+/// An image at the size it is shown with.
+pub(crate) fn shown(
+    width: usize,
+    height: usize,
+    pixels: &[[f32; 3]],
+    gain: f64,
+    narrowest: usize,
+    widest: usize,
+) -> Picture {
+    let (w, h, small) = shrink(width, height, pixels, width.div_ceil(widest));
+    develop(w, h, &small, gain).picture.enlarged(narrowest.div_ceil(w))
 }
 
 /// The terms k = 0, 1, … each at its own exposure, and the whole if it is known.

@@ -1,5 +1,6 @@
-//! What is made of text only: tables, Markdown, `summary.json`.
+//! What is made of text only: tables, Markdown, CSV, `summary.json`.
 
+pub mod csv;
 pub mod markdown;
 mod null_as_nan;
 pub mod number;

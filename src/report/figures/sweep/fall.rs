@@ -7,12 +7,12 @@
 //! Bands and intervals are 95 %, on the logarithmic scale: V · exp(± t s/V), which never reaches zero. Slopes carry one
 //! standard error.
 
-use super::quoted;
 use crate::report::{
     ReportError, half_width_95,
     image::typeset::{Caption, superscript},
     plot::{Axis, BLACK, Canvas, Drawn, Entry, Figure, GREY, Look, Panel, Place, Sample, Stroke, Words, figure},
     text::{
+        csv::Csv,
         number::{plus_minus, significant},
         table::{Side, aligned},
     },
@@ -122,30 +122,24 @@ pub fn table(falls: &[Fall]) -> String {
 
 /// A line per render, part and n; slopes repeat on the lines of their part. What is not known is left empty.
 pub fn csv(falls: &[Fall]) -> String {
-    let mut out = String::from(
+    let mut csv = Csv::new(
         "value,k,n,replicates,variance,variance_std_error,mse,mse_std_error,slope,slope_std_error,mse_slope,\
-         mse_slope_std_error,rays,seconds,rays_per_path,efficiency_per_ray,efficiency_per_second\n",
+         mse_slope_std_error,rays,seconds,rays_per_path,efficiency_per_ray,efficiency_per_second",
     );
-    let cell = |x: f64| if x.is_nan() { String::new() } else { x.to_string() };
     let fit = |s: Option<Slope>| s.map_or([f64::NAN; 2], |s| [s.slope, s.std_error]);
     for f in falls {
         for p in &f.parts {
-            let slopes = [fit(p.slope()), fit(p.error_slope())].concat();
+            let slopes = [fit(p.slope()), fit(p.error_slope())];
             for (stand, (n, s)) in f.stands.iter().zip(&p.points) {
                 let v = s.variance();
-                let mut cells = vec![quoted(&f.label), p.name.clone(), n.to_string(), s.replicates().to_string()];
                 let mse = s.squared_error().unwrap_or(f64::NAN);
-                cells.extend([v, s.variance_error(), mse, s.squared_error_error()].map(cell));
-                cells.extend(slopes.iter().copied().map(cell));
-                cells.push(stand.rays.to_string());
-                let efficiency = f.efficiency(stand, v);
-                cells.extend([stand.seconds, f.cost(stand)[0], efficiency[0], efficiency[1]].map(cell));
-                out += &cells.join(",");
-                out.push('\n');
+                csv.put(&f.label).put(&p.name).put(n).put(s.replicates());
+                csv.numbers([v, s.variance_error(), mse, s.squared_error_error()]).numbers(slopes.concat());
+                csv.put(stand.rays).numbers([stand.seconds, f.cost(stand)[0]]).numbers(f.efficiency(stand, v)).end();
             }
         }
     }
-    out
+    csv.text()
 }
 
 /// A curve with its band.
