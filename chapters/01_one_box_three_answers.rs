@@ -12,11 +12,14 @@ use fredholm::engine::Settings;
 use fredholm::engine::by_matrix::{Discrete, MatrixError, radiosity};
 use fredholm::engine::by_rays::{self, Estimator, Sampled};
 use fredholm::progress::Progress;
-use fredholm::report::decay::{self, Decay, RateLine};
+use fredholm::report::figures::decay::{self, Decay, RateLine};
 use fredholm::report::plot::{Curve, Look};
-use fredholm::report::table::{average, significant};
+use fredholm::report::text::table::{average, significant};
 use fredholm::report::{
-    ReportError, contact_sheet, markdown, markdown::Claim, picture, typeset::Caption, write_atomically,
+    ReportError,
+    image::{contact_sheet, picture, typeset::Caption},
+    text::{markdown, markdown::Claim},
+    write_atomically,
 };
 use fredholm::scene::{Description, Scene, SceneError, load};
 use fredholm::stats::{Comparison, Criterion, Outcome, TermMeans, compare, discretisation};

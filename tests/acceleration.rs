@@ -9,7 +9,7 @@ use fredholm::estimator::{Prefix, Roulette, Technique};
 use fredholm::math::{Key, Rgb};
 use fredholm::operator::MatrixWalk;
 use fredholm::operator::matrix_walk::Rows;
-use fredholm::report::extrapolation::Measured;
+use fredholm::report::figures::extrapolation::Measured;
 use fredholm::solver::accelerate::{Accelerated, aitken, known_rate, plain, two_step, wynn};
 use glam::DVec3;
 use nalgebra::DMatrix;

@@ -1,7 +1,7 @@
 //! `fredholm check` as its users meet it: verdicts, exit codes, files.
 #![allow(clippy::unwrap_used)]
 
-use fredholm::report::summary;
+use fredholm::report::text::summary;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};

@@ -1,7 +1,7 @@
 //! The command line as its users meet it: files, texts, exit codes, and what a second run may replace.
 #![allow(clippy::unwrap_used)]
 
-use fredholm::report::{exr, summary};
+use fredholm::report::{image::exr, text::summary};
 use fredholm::terms::World;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

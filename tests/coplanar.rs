@@ -631,7 +631,7 @@ fn commands_name_what_coincides() {
     let (code, out, err) = run("series flush.toml --spp 32 --patches 60 -q -o a");
     assert!(code == 0 && err.contains(words) && out.contains(&format!("Undecided: {words}")), "{code} {out} {err}");
     assert!(out.lines().all(|l| l.chars().count() <= 100), "{out}");
-    let summary = fredholm::report::summary::read(&desk.path().join("a/summary.json")).unwrap();
+    let summary = fredholm::report::text::summary::read(&desk.path().join("a/summary.json")).unwrap();
     assert!(summary.verdicts.iter().all(|v| v.outcome == fredholm::stats::Outcome::Inconclusive));
     assert!(summary.series.iter().all(|s| s.undecided.as_deref() == Some(words)));
     let (code, out, _) = run("check bias --scene flush.toml --spp 4096 --batch 64 -q -o b");

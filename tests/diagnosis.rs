@@ -359,7 +359,7 @@ fn run(desk: &tempfile::TempDir, line: &str) -> Said {
 
 /// Writes layers as an EXR.
 fn write_exr(desk: &tempfile::TempDir, name: &str, [w, h]: [usize; 2], layers: &[(&str, &[[f32; 3]])]) {
-    use fredholm::report::exr;
+    use fredholm::report::image::exr;
     let layers: Vec<exr::Layer> = layers.iter().map(|&(name, pixels)| exr::Layer { name, pixels }).collect();
     exr::write(&desk.path().join(name), w, h, &layers, &[]).unwrap();
 }
@@ -417,7 +417,7 @@ fn the_command_says_correct_or_names_the_mistake() {
     let said = run(&desk, &format!("diagnose T00.exr T01.exr T02.exr T03.exr --against cornell -o d {QUICK}"));
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
     assert!(said.out.contains("the terms of one render"), "{}", said.out);
-    let developed = fredholm::report::picture::develop(16, 16, &good.total.mean, 2.0);
+    let developed = fredholm::report::image::picture::develop(16, 16, &good.total.mean, 2.0);
     developed.picture.write(&desk.path().join("good.png")).unwrap();
     let said = run(&desk, &format!("diagnose good.png --against cornell -o e {QUICK}"));
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);

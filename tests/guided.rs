@@ -515,7 +515,7 @@ fn fredholm(desk: &tempfile::TempDir, line: &str) -> (i32, String) {
 #[test]
 fn a_render_by_the_clock_is_one_of_so_many_samples() {
     let desk = tempfile::TempDir::new().unwrap();
-    let read = |dir: &str| fredholm::report::summary::read(&desk.path().join(dir).join("summary.json")).unwrap();
+    let read = |dir: &str| fredholm::report::text::summary::read(&desk.path().join(dir).join("summary.json")).unwrap();
     for guide in ["bsdf", "radiosity --patches 200"] {
         let line = format!("series cornell --worlds terms --size 8x8 --max-bounces 2 -q --force --guide {guide}");
         let (code, text) = fredholm(&desk, &format!("{line} --time 1500ms -o clock"));

@@ -9,17 +9,23 @@ use exr::prelude::{
 };
 use fredholm::{
     report::{
-        contact_sheet::{self, Cell},
-        decay::{self, Decay, RateKind, RateLine, independent_ratios},
-        exr as layers,
-        html::{self, Plate},
-        picture::{NON_FINITE, auto_gain, develop, gain_label, srgb},
+        figures::{
+            decay::{self, Decay, RateKind, RateLine, independent_ratios},
+            variance::{self, Falling, Variance},
+        },
+        image::{
+            contact_sheet::{self, Cell},
+            exr as layers,
+            picture::{NON_FINITE, auto_gain, develop, gain_label, srgb},
+            typeset::Caption,
+            zmap,
+        },
+        page::html::{self, Plate},
         plot::{Curve, Figure, Look, Point},
-        summary::{self, Bounds, Radiosity, Summary, VerdictRecord},
-        table,
-        typeset::Caption,
-        variance::{self, Falling, Variance},
-        zmap,
+        text::{
+            summary::{self, Bounds, Radiosity, Summary, VerdictRecord},
+            table,
+        },
     },
     stats::Outcome,
     terms::{Cost, Estimate, Functional, Series, World},

@@ -14,7 +14,7 @@ mod overrides;
 
 use fredholm::{
     math::Rgb,
-    report::picture::srgb,
+    report::image::picture::srgb,
     scene::{
         Primitive, SceneError, builtin,
         description::{BsdfDescription, Choice, Colour, Geometry, Ggx, LightDescription, Masking, Metal, Sides, Sky},

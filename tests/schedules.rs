@@ -380,7 +380,7 @@ fn the_command_predicts_verifies_and_optimises() {
     let csv = std::fs::read_to_string(folder.join("roulette.csv")).unwrap();
     // five schedules of seven terms, tail and all
     assert_eq!(csv.lines().count(), 1 + 5 * 9);
-    let summary = fredholm::report::summary::read(&folder.join("summary.json")).unwrap();
+    let summary = fredholm::report::text::summary::read(&folder.join("summary.json")).unwrap();
     let moments = summary.cross_moments.unwrap();
     assert_eq!(moments["slots"].as_array().unwrap().len(), 14);
     assert_eq!(moments["slots"][13]["kind"], "tail");
@@ -403,7 +403,7 @@ fn the_best_schedule_can_be_asked_for_wherever_there_is_roulette() {
     assert!(code == 0 && out.contains("roulette: path tracer table:"), "{out}{err}");
     let (code, _, err) = fredholm(desk.path(), &format!("series sphere --worlds terms {common} -o c"));
     assert_eq!(code, 0, "{err}");
-    let summary = fredholm::report::summary::read(&desk.path().join("c/summary.json")).unwrap();
+    let summary = fredholm::report::text::summary::read(&desk.path().join("c/summary.json")).unwrap();
     let moments = summary.cross_moments.unwrap();
     // two samples per pixel of 64; the moments of what is seen directly are those of the image
     assert_eq!((moments["paths"].as_u64(), moments["max_bounces"].as_u64()), (Some(512), Some(3)));

@@ -1,7 +1,7 @@
 //! `fredholm sweep`: a row per value, numbers that programs can read, costs that are known, and refusals.
 #![allow(clippy::unwrap_used)]
 
-use fredholm::report::summary;
+use fredholm::report::text::summary;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;

@@ -1,7 +1,7 @@
 //! `fredholm zoo`: what it lists, writes and asks.
 #![allow(clippy::unwrap_used)]
 
-use fredholm::report::exr;
+use fredholm::report::image::exr;
 use fredholm::zoo;
 use std::io::Write;
 use std::path::Path;

@@ -3,7 +3,10 @@
 use super::args::{fraction, probability};
 use super::{Ending, Failure, notes, output, write};
 use clap::Args;
-use fredholm::report::{exr, summary, table, typeset::Caption, zmap};
+use fredholm::report::{
+    image::{exr, typeset::Caption, zmap},
+    text::{summary, table},
+};
 use fredholm::stats::{Criterion, compare, discretisation};
 use fredholm::terms::{Series, World};
 use std::path::{Path, PathBuf};

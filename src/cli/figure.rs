@@ -6,7 +6,7 @@ use clap::{Args, Parser};
 use fredholm::engine::Settings;
 use fredholm::engine::known::resort::with_last_resort;
 use fredholm::estimator::Roulette;
-use fredholm::report::{stages as report, summary, typeset::Caption, write_atomically};
+use fredholm::report::{figures::stages as report, image::typeset::Caption, text::summary, write_atomically};
 use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
 use fredholm::study::stages::{KAJIYA, NOISE, Recipe, reference_seed, render_stages};

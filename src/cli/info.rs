@@ -3,7 +3,7 @@
 use super::{Ending, Failure};
 use clap::Args;
 use fredholm::engine::known::coplanar;
-use fredholm::report::table;
+use fredholm::report::text::table;
 use fredholm::scene::coplanar::{Kind, Relation};
 use fredholm::scene::description::{Description, Geometry, LightDescription, Sides, Sky};
 use fredholm::scene::{Scene, SurfaceSensor, builtin, load};

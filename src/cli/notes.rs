@@ -8,8 +8,8 @@ use fredholm::engine::guided::Prepared;
 use fredholm::engine::known::growth;
 use fredholm::estimator::Roulette;
 use fredholm::guide::warp::CELLS;
-use fredholm::report::extrapolation::{self, Measured};
-use fredholm::report::refine::limit_words;
+use fredholm::report::figures::extrapolation::{self, Measured};
+use fredholm::report::figures::refine::limit_words;
 use fredholm::scene::{Description, bsdf};
 use fredholm::stats::evidence::{JUDGED, SHOWN};
 use fredholm::stats::{self, Comparison, Evidence, TermMeans, observed_rate};
@@ -186,7 +186,7 @@ pub fn extrapolated(found: &Solved) -> Option<String> {
     Some(format!(
         "L − E from its terms k = 1 to {last}: mean over all surfaces, {}, in units of L − E as measured;\n\
          noise: standard error; gain: how much noisier than the sum of these terms{note}\n{}",
-        ["red", "green", "blue"][slowest],
+        fredholm::math::CHANNELS[slowest],
         extrapolation::table(&measured, rate)
     ))
 }
@@ -318,7 +318,7 @@ pub fn unlit(found: &[Unlit], description: &Description) -> Option<String> {
         }
     }
     let words = |(name, channels, n): &(String, [bool; 3], usize)| {
-        let colours: Vec<&str> = (0..3).filter(|&c| channels[c]).map(|c| ["red", "green", "blue"][c]).collect();
+        let colours: Vec<&str> = (0..3).filter(|&c| channels[c]).map(|c| fredholm::math::CHANNELS[c]).collect();
         let of = if colours.len() == 3 { String::new() } else { format!(" (no {})", colours.join(", ")) };
         format!("{name}: {n}{of}")
     };

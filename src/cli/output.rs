@@ -1,7 +1,7 @@
 //! The output folder: the same command replaces its own output, another run's is never overwritten without `--force`.
 
 use super::Failure;
-use fredholm::report::summary;
+use fredholm::report::text::summary;
 use std::path::{Path, PathBuf};
 
 /// The folder for this command: created, and safe to write into.

@@ -236,7 +236,11 @@ pub fn light_is_lost(scene: &Scene, settings: &Settings, worlds: &[WorldName]) -
             let time = if settings.time.is_some() {
                 String::new()
             } else {
-                format!("; {} paths take about {:.0} s", fredholm::report::table::count(paths as u64), paths * each)
+                format!(
+                    "; {} paths take about {:.0} s",
+                    fredholm::report::text::table::count(paths as u64),
+                    paths * each
+                )
             };
             super::note(&format!("note: paths are long, {} rays each in the mean{time}", rays.round()));
         }

@@ -6,9 +6,12 @@ use super::{Ending, Failure, args, output, preflight, solve, sweep};
 use fredholm::engine::Settings;
 use fredholm::engine::known::resort::with_last_resort;
 use fredholm::estimator::{self, Technique};
-use fredholm::report::roulette::{self as rows, Row};
-use fredholm::report::typeset::Caption;
-use fredholm::report::{summary, table, write_atomically};
+use fredholm::report::figures::roulette::{self as rows, Row};
+use fredholm::report::image::typeset::Caption;
+use fredholm::report::{
+    text::{summary, table},
+    write_atomically,
+};
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::load;
 use fredholm::scene::{Description, Scene, Selection};

@@ -14,7 +14,7 @@ use fredholm::estimator::Roulette;
 use fredholm::guide::ByExpectation;
 use fredholm::math::Points;
 use fredholm::progress::Progress;
-use fredholm::report::{summary, table};
+use fredholm::report::text::{summary, table};
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::{Description, Scene};
 use fredholm::solver::Radiosity;
@@ -460,7 +460,7 @@ fn people(found: &Solved, summary: &summary::Summary, verbose: bool) -> String {
     let world = |s: &Sampled, rays: &[u64]| table::series(&s.series.label, s.series.image(), rays);
     blocks.extend(found.terms.iter().map(|t| world(t, &t.rays)));
     if !found.strategies.is_empty() {
-        blocks.push(fredholm::report::pyramid::table(&found.strategies));
+        blocks.push(fredholm::report::figures::pyramid::table(&found.strategies));
     }
     blocks.extend(found.path.iter().map(|p| world(p, &[])));
     blocks.extend(found.radiosity.iter().map(|r| world(&r.fine, &[])));
@@ -471,7 +471,7 @@ fn people(found: &Solved, summary: &summary::Summary, verbose: bool) -> String {
     lines.extend(notes::orders(&found.orders));
     blocks.push(lines.join("\n"));
     blocks.extend(notes::extrapolated(found));
-    blocks.push(fredholm::report::pixel_errors::words(&summary.pixel_errors));
+    blocks.push(fredholm::report::text::pixel_errors::words(&summary.pixel_errors));
     if !found.verdicts.is_empty() {
         blocks.push(table::verdicts(&found.verdicts));
         let why = found.terms.first().and_then(|t| t.series.undecided.as_deref());

@@ -1,9 +1,9 @@
 //! `--strategies`: the pyramid of the bidirectional estimator, as pictures and layers.
 
 use super::Failure;
-use fredholm::report::pyramid::{Stone, draw};
-use fredholm::report::typeset::Caption;
-use fredholm::report::{exr, table};
+use fredholm::report::figures::pyramid::{Stone, draw};
+use fredholm::report::image::typeset::Caption;
+use fredholm::report::{image::exr, text::table};
 use fredholm::study::strategies::Strategy;
 use std::path::Path;
 

@@ -6,8 +6,12 @@ use crate::cli::open::{self, Opened};
 use fredholm::engine::Settings;
 use fredholm::engine::discretisation::Factors;
 use fredholm::estimator::Roulette;
-use fredholm::report::typeset::Caption;
-use fredholm::report::{drift, refine as report, summary, write_atomically};
+use fredholm::report::image::typeset::Caption;
+use fredholm::report::{
+    figures::{drift, refine as report},
+    text::summary,
+    write_atomically,
+};
 use fredholm::study::refinement;
 use std::time::Instant;
 

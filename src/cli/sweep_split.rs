@@ -8,7 +8,7 @@ use crate::cli::open::{self, Opened};
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::Roulette;
-use fredholm::report::{split as report, summary, typeset::Caption, write_atomically};
+use fredholm::report::{figures::split as report, image::typeset::Caption, text::summary, write_atomically};
 use fredholm::study::split;
 use std::time::Instant;
 

@@ -9,8 +9,12 @@ use fredholm::engine::by_matrix::{self, Matrix, MatrixError};
 use fredholm::engine::by_rays::Estimator;
 use fredholm::engine::discretisation::Factors;
 use fredholm::estimator::{Roulette, Technique};
-use fredholm::report::typeset::Caption;
-use fredholm::report::{summary, table, walk as report, write_atomically};
+use fredholm::report::image::typeset::Caption;
+use fredholm::report::{
+    figures::walk as report,
+    text::{summary, table},
+    write_atomically,
+};
 use fredholm::scene::Description;
 use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, Outcome, compare};

@@ -5,13 +5,14 @@ use super::{Ending, Failure, output, paragraphs, print, quiz};
 use clap::Args;
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::Sampled;
-use fredholm::report::contact_sheet::{self, Cell};
-use fredholm::report::picture::auto_gain_beside_lamps;
+use fredholm::report::figures::signature::{self, Signature};
+use fredholm::report::image::contact_sheet::{self, Cell};
+use fredholm::report::image::picture::auto_gain_beside_lamps;
+use fredholm::report::image::typeset::{Caption, superscript};
 use fredholm::report::plot::Point;
-use fredholm::report::signature::{self, Signature};
-use fredholm::report::table::significant;
-use fredholm::report::typeset::{Caption, superscript};
-use fredholm::report::{ReportError, exr, half_width_95, write_atomically};
+use fredholm::report::text::csv::Csv;
+use fredholm::report::text::table::significant;
+use fredholm::report::{ReportError, half_width_95, image::exr, write_atomically};
 use fredholm::scene::Scene;
 use fredholm::terms::Functional;
 use fredholm::zoo::signature::{Ratio, measured};
@@ -176,9 +177,9 @@ fn everyone(args: &Zoo) -> Result<Ending, Failure> {
     let progress = bar.progress();
     let stopped = || progress.stopped();
     let mut rights: Vec<(Stage, Scene, Functional)> = vec![];
-    let mut csv = format!("{}member,scene,k,ratio,std_error,predicted\n", mark());
+    let mut csv = Csv::new("member,scene,k,ratio,std_error,predicted");
     // first, so that the folder is known as this command's even if the rest never comes
-    write_atomically(&folder.join(MARK), csv.as_bytes())?;
+    write_atomically(&folder.join(MARK), mark().as_bytes())?;
     let mut table = vec![format!("{:24} {:18} r₀         r₁         r₂         r₃         whole", "member", "scene")];
     for bug in zoo::all() {
         let stage = bug.exposed_by;
@@ -199,15 +200,15 @@ fn everyone(args: &Zoo) -> Result<Ending, Failure> {
         let image = wrong.series.image();
         let ratios = measured(image, right);
         for (k, r) in ratios.iter().enumerate() {
-            let predicted = (bug.ratio)(k).map_or(String::new(), |r| r.to_string());
-            csv += &format!("{},{},{k},{},{},{predicted}\n", bug.name, stage.label, r.value, r.std_error);
+            csv.put(bug.name).put(stage.label).put(k).put(r.value).put(r.std_error);
+            csv.numbers([(bug.ratio)(k).unwrap_or(f64::NAN)]).end();
         }
         let cells: Vec<String> = ratios[..4].iter().chain([&whole(image, right)]).map(brief).collect();
         let cells: Vec<String> = cells.iter().map(|c| format!("{c:10}")).collect();
         table.push(format!("{:24} {:18} {}", bug.name, stage.label, cells.join(" ").trim_end()));
     }
     bar.finish();
-    write_atomically(&folder.join(MARK), csv.as_bytes())?;
+    write_atomically(&folder.join(MARK), (mark() + &csv.text()).as_bytes())?;
     let note =
         "rₖ = Tₖ wrong / Tₖ right, mean of the image and the channels; the last digits' 95 % interval in brackets";
     let left =
@@ -302,9 +303,9 @@ fn one(args: &Zoo, bug: &'static Bug) -> Result<Ending, Failure> {
     let ratios = measured(wrong.series.image(), right.series.image());
     signature::draw(&plot(&format!("{}: {}", bug.name, bug.what), bug, &ratios, theory), &caption)?
         .write(&folder, &format!("{}-ratios", bug.name))?;
-    let mut csv = format!("{}k,ratio,std_error\n", mark());
-    ratios.iter().enumerate().for_each(|(k, r)| csv += &format!("{k},{},{}\n", r.value, r.std_error));
-    write_atomically(&folder.join(MARK), csv.as_bytes())?;
+    let mut csv = Csv::new("k,ratio,std_error");
+    ratios.iter().enumerate().for_each(|(k, r)| csv.put(k).put(r.value).put(r.std_error).end());
+    write_atomically(&folder.join(MARK), (mark() + &csv.text()).as_bytes())?;
     blocks.push(format!(
         "{}: {n}.exr, correct.exr, {n}.png, {n}-ratios.svg and .png, {MARK}",
         folder.display(),

@@ -35,6 +35,7 @@ pub use picture::{Code, Layer, Pictures, Slot};
 pub use regions::Region;
 pub use rules::{Basis, Suspicion};
 
+use crate::math::CHANNELS;
 use crate::progress::Progress;
 use crate::stats::evidence::JUDGED_PIXELS;
 use crate::stats::min_detectable;
@@ -277,7 +278,7 @@ fn curve(fit: &gap::Fit, evidence: &Evidence) -> Vec<[f64; 2]> {
 /// The comparison that says most, in words.
 fn worst(fit: &gap::Fit, regions: &[Region]) -> String {
     let Some(g) = fit.worst() else { return String::new() };
-    let channel = ["red", "green", "blue"][g.channel];
+    let channel = CHANNELS[g.channel];
     format!(
         "{} in {} ({channel}): {:.4} where {:.4} is right, {:.1} standard errors",
         g.slot,

@@ -16,6 +16,9 @@ pub use random::{Key, Points, Purpose, Rng, Streams, fnv1a};
 /// A radiance, reflectance or throughput: linear Rec. 709, one `f32` per channel. Sums of it are kept in [`glam::DVec3`].
 pub type Rgb = glam::Vec3;
 
+/// The names of the channels.
+pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
+
 /// Relative luminance of a linear colour (ITU-R BT.709).
 pub fn luminance(c: glam::DVec3) -> f64 {
     c.dot(glam::DVec3::new(0.2126, 0.7152, 0.0722))

@@ -26,6 +26,7 @@
 use super::evidence::{Evidence, JUDGED, Reason, WIDER, doubt_in_words};
 use super::hypothesis::{Measured, ROUNDING, critical, difference, holm, two_sided_p};
 use super::power;
+use crate::math::CHANNELS;
 use crate::terms::{Doubt, Estimate, Functional, Series, World};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -137,8 +138,6 @@ fn largest_alike(allowance: &[Functional], name: &str, quantity: Quantity) -> DV
     let alike = allowance.iter().filter(|f| kind(&f.name) == kind(name));
     alike.filter_map(|f| quantity.of(f)).fold(DVec3::ZERO, |a, e| a.max(e.mean.abs()))
 }
-
-pub(super) const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 /// Compares every quantity that both results have. `allowance` holds, as the means of functionals, an absolute error
 /// that is not noise, such as [`discretisation`]; a functional not named there takes the first one's. Empty: none.

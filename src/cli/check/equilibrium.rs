@@ -9,10 +9,13 @@ use clap::Args;
 use fredholm::engine::Settings;
 use fredholm::engine::known::coplanar;
 use fredholm::estimator::{Roulette, Technique};
-use fredholm::report::contact_sheet::{self, Cell};
-use fredholm::report::equilibrium::{self as figure, Dot};
-use fredholm::report::table::significant;
-use fredholm::report::{picture, summary, table, typeset::Caption, zmap};
+use fredholm::report::figures::equilibrium::{self as figure, Dot};
+use fredholm::report::image::contact_sheet::{self, Cell};
+use fredholm::report::text::table::significant;
+use fredholm::report::{
+    image::{picture, typeset::Caption, zmap},
+    text::{summary, table},
+};
 use fredholm::scene::bsdf::Sampling;
 use fredholm::stats::{Evidence, Outcome, estimate};
 use fredholm::study::equilibrium::{self, Balance, Group, Judgement, Origin, judge};
@@ -165,7 +168,7 @@ fn people(found: &Checked, folder: &Path, files: &[String]) -> String {
     for g in &j.groups {
         let c = worst(g);
         let (value, difference, half) = (g.value[c], g.difference.mean[c], g.half[c]);
-        let channel = ["red", "green", "blue"][c];
+        let channel = fredholm::math::CHANNELS[c];
         let apart = match g.evidence.no_error {
             None => {
                 let (apart, half, delta) = (100.0 * difference / value, 100.0 * half / value, 100.0 * args.delta);

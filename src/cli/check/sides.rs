@@ -8,7 +8,7 @@ use crate::cli::open::Opened;
 use fredholm::engine::Settings;
 use fredholm::engine::batches::Side;
 use fredholm::estimator::{Roulette, Technique};
-use fredholm::report::summary;
+use fredholm::report::text::summary;
 use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::terms::{Series, World};

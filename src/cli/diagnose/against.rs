@@ -10,7 +10,7 @@ use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Estimator};
 use fredholm::engine::known::resort::with_last_resort;
 use fredholm::progress::Progress;
-use fredholm::report::{exr, summary};
+use fredholm::report::{image::exr, text::summary};
 use fredholm::scene::load;
 use fredholm::scene::{Description, Scene};
 use std::path::Path;

@@ -13,7 +13,7 @@ use fredholm::diagnosis::picture::{Code, Pictures, Slot};
 use fredholm::diagnosis::{self, Case, Diagnosis, Effort, Verdict, evidence};
 use fredholm::engine::known::coplanar;
 use fredholm::progress::Progress;
-use fredholm::report::{diagnosis as figure, summary, typeset::Caption};
+use fredholm::report::{figures::diagnosis as figure, image::typeset::Caption, text::summary};
 use read::{File, Grouping};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -9,7 +9,7 @@
 
 use super::super::Failure;
 use fredholm::diagnosis::picture::{Code, Layer, Pictures, Slot, is_half};
-use fredholm::report::exr;
+use fredholm::report::image::exr;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -3,7 +3,7 @@
 use super::read::Grouping;
 use super::{Diagnose, Diagnosed};
 use fredholm::diagnosis::{Basis, Diagnosis, Slot, Suspicion, Verdict};
-use fredholm::report::table::significant;
+use fredholm::report::text::table::significant;
 use fredholm::zoo;
 use std::path::Path;
 

@@ -13,8 +13,8 @@ use fredholm::engine::Settings;
 use fredholm::engine::by_matrix::{self, Matrix, MatrixError};
 use fredholm::engine::discretisation::{Factors, Stored};
 use fredholm::progress::Progress;
-use fredholm::report::summary;
-use fredholm::report::typeset::Caption;
+use fredholm::report::image::typeset::Caption;
+use fredholm::report::text::summary;
 use fredholm::solver::{self, comparison::Solver};
 use glam::DVec3;
 use std::path::PathBuf;
@@ -117,7 +117,7 @@ pub enum Channel {
 }
 
 /// Channels by number.
-pub const NAMES: [&str; 3] = ["red", "green", "blue"];
+pub use fredholm::math::CHANNELS as NAMES;
 
 fn csv_name(s: &str) -> Result<String, String> {
     let plain = std::path::Path::new(s).file_name().is_some_and(|n| n == s) && s.ends_with(".csv");

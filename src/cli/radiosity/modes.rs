@@ -7,7 +7,7 @@ use fredholm::engine::Settings;
 use fredholm::operator::edges::{Band, essential_band};
 use fredholm::operator::matrix::LinearOperator;
 use fredholm::operator::modes::{Modes, norm_2, radius_bounds};
-use fredholm::report::modes::{self, Painted, Row, Spectrum};
+use fredholm::report::figures::modes::{self, Painted, Row, Spectrum};
 use fredholm::report::write_atomically;
 use fredholm::solver::Neumann;
 use serde_json::json;

@@ -11,7 +11,7 @@ use super::{Laboratory, NAMES, Radiosity, SolverName};
 use fredholm::engine::by_matrix::MatrixError;
 use fredholm::engine::discretisation::{Factors, Stored};
 use fredholm::operator::matrix::Transposed;
-use fredholm::report::solvers::{self, Extrapolated};
+use fredholm::report::figures::solvers::{self, Extrapolated};
 use fredholm::report::write_atomically;
 use fredholm::solver::Neumann;
 use fredholm::solver::comparison::{History, Limits, Reference, Solver, System};

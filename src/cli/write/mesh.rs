@@ -4,7 +4,7 @@ use super::super::Failure;
 use super::super::radiosity::Export;
 use super::Files;
 use fredholm::engine::by_matrix::Discrete;
-use fredholm::report::{patches as mesh, summary, write_atomically};
+use fredholm::report::{figures::patches as mesh, text::summary, write_atomically};
 
 pub(super) fn write_mesh(r: &Discrete, what: Export, out: &mut Files) -> Result<(), Failure> {
     let m = &r.matrix;

@@ -2,8 +2,8 @@
 
 use super::Files;
 use crate::cli::{Failure, solve::Solved};
-use fredholm::report::html::{self, Page, Plate};
-use fredholm::report::summary;
+use fredholm::report::page::html::{self, Page, Plate};
+use fredholm::report::text::summary;
 
 pub(super) fn write_page(found: &Solved, out: &Files, summary: &summary::Summary) -> Result<(), Failure> {
     let path = |name: &str| out.path(name);
@@ -49,7 +49,7 @@ pub(super) fn write_page(found: &Solved, out: &Files, summary: &summary::Summary
         ("scene hash", found.hash.clone()),
         ("seconds", format!("{:.1} on {} threads", summary.seconds, summary.threads)),
     ];
-    let errors = fredholm::report::pixel_errors::words(&summary.pixel_errors);
+    let errors = fredholm::report::text::pixel_errors::words(&summary.pixel_errors);
     let facts = facts.map(|(k, v)| (k.to_string(), v)).into_iter();
     let facts = facts.chain((!errors.is_empty()).then(|| ("errors of pixels".to_string(), errors)));
     let worlds = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));

@@ -3,10 +3,10 @@
 use super::{Files, Pixels, attributes};
 use crate::cli::{Failure, solve::Solved};
 use fredholm::engine::by_rays::Sampled;
-use fredholm::report::contact_sheet::{self, Cell, Sheet, direct_and_indirect, single};
-use fredholm::report::pixel_errors::{self, PixelErrors};
-use fredholm::report::typeset::{Caption, superscript};
-use fredholm::report::{exr, picture, zmap};
+use fredholm::report::image::contact_sheet::{self, Cell, Sheet, direct_and_indirect, single};
+use fredholm::report::image::typeset::{Caption, superscript};
+use fredholm::report::image::{exr, picture, zmap};
+use fredholm::report::text::pixel_errors::{self, PixelErrors};
 use fredholm::terms::{Estimate, TermImage};
 
 /// A layer with errors: its name, its image, and what is said of these errors.

@@ -1,0 +1,105 @@
+//! The equation at points: L against E + T L on the diagonal, and the p-values against the uniform law.
+//!
+//! ```text
+//! L(x) = E(x) + (T L)(x)      every point on the diagonal, every p-value as likely as any other
+//! ```
+
+use crate::report::{
+    ReportError,
+    image::typeset::Caption,
+    plot::{
+        Axis, BLUE, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, VERMILION, Words,
+        figure,
+    },
+};
+use crate::stats::uniformity::band;
+
+/// A point: both sides, the standard error of their difference with its replicates, the p-value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dot {
+    /// L, mean over channels.
+    pub left: f64,
+    /// E + T L.
+    pub right: f64,
+    /// Standard error of the difference.
+    pub std_error: f64,
+    /// Replicates behind it.
+    pub replicates: u64,
+    /// p-value of no difference; NaN if not judged.
+    pub p: f64,
+    /// Whether a test over all points rejects this one.
+    pub rejected: bool,
+}
+
+/// Draws groups of points, each with its words in the legend.
+///
+/// # Errors
+/// If the plot crate fails, which is a defect.
+pub fn draw(groups: &[(String, Vec<Dot>)], caption: &Caption) -> Result<Figure, ReportError> {
+    figure("equilibrium", 1120, 500, caption, |page| {
+        let title = "L = E + T L at random points: two estimates from independent paths";
+        page.text(title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
+        diagonal(page, groups)?;
+        p_values(page, groups)
+    })
+}
+
+fn diagonal(page: &Canvas, groups: &[(String, Vec<Dot>)]) -> Drawn {
+    let dots = || groups.iter().flat_map(|g| &g.1).filter(|d| d.left > 0.0 && d.right > 0.0);
+    let both = || dots().flat_map(|d| [d.left, d.right]);
+    let name = "radiance   (W sr⁻¹ m⁻²)";
+    let (x, y) = (Axis::log(&format!("L, {name}"), both()), Axis::log(&format!("E + T L, {name}"), both()));
+    let panel = Panel::draw(page, "The two sides", [92.0, 78.0, 390.0, 340.0], x, y)?;
+    let line = Stroke { color: GREY, width: 1.4, dash: Some((7.0, 5.0)) };
+    let (low, high) = both().fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
+    panel.line((0.2 * low, 0.2 * low), (5.0 * high, 5.0 * high), line)?;
+    let mut entries = vec![];
+    let rejected = Look { color: VERMILION, ..Look::nth(5) };
+    for (i, (label, dots)) in groups.iter().enumerate() {
+        let look = Look { color: BLUE, ..Look::nth([0, 3][i % 2]) };
+        let point = |d: &Dot| Point { x: d.left, value: d.right, std_error: d.std_error, replicates: d.replicates };
+        let some = |rejected: bool| dots.iter().filter(|d| d.rejected == rejected).map(point).collect::<Vec<_>>();
+        panel.curve(&Curve { label: label.clone(), points: some(false), look }, 0.0, false)?;
+        panel.curve(&Curve { label: label.clone(), points: some(true), look: rejected }, 0.0, false)?;
+        entries.push(Entry::new(Sample::Mark(look), label.clone()));
+    }
+    if dots().any(|d| d.rejected) {
+        entries.push(Entry::new(Sample::Mark(rejected), "rejected"));
+    }
+    entries.push(Entry::new(Sample::Line(line), "equality"));
+    entries.push(Entry::new(Sample::Heading, "bars: 95 % of the difference"));
+    page.legend((506.0, 84.0), 140.0, &entries)?;
+    Ok(())
+}
+
+fn p_values(page: &Canvas, groups: &[(String, Vec<Dot>)]) -> Drawn {
+    let mut p: Vec<f64> = groups.iter().flat_map(|g| &g.1).map(|d| d.p).filter(|p| !p.is_nan()).collect();
+    p.sort_by(f64::total_cmp);
+    let n = p.len();
+    let unit = |title: &str| Axis::linear(title, 0.0, 1.0, 5);
+    let title = format!("p-values of {n} points");
+    let frame = [730.0, 78.0, 340.0, 340.0];
+    let panel = Panel::draw(page, &title, frame, unit("p"), unit("share of points below"))?;
+    if n == 0 {
+        return Ok(());
+    }
+    let dashed = Stroke { color: GREY, width: 1.4, dash: Some((7.0, 5.0)) };
+    panel.line((0.0, 0.0), (1.0, 1.0), Stroke::solid(GREY, 1.2))?;
+    let width = band(n, 0.05);
+    for side in [-width, width] {
+        panel.line((0.0, side), (1.0, 1.0 + side), dashed)?;
+    }
+    let step = Stroke::solid(BLUE, 2.0);
+    let (mut x, mut share) = (0.0, 0.0);
+    for (i, &next) in p.iter().chain([&1.0]).enumerate() {
+        panel.line((x, share), (next, share), step)?;
+        let up = (i + 1).min(n) as f64 / n as f64;
+        panel.line((next, share), (next, up), step)?;
+        (x, share) = (next, up);
+    }
+    page.text(
+        "dashed: where uniform p-values stay with 95 %",
+        (730.0, 474.0),
+        Words { size: 12.0, color: GREY, ..Words::default() },
+    )
+}

@@ -1,0 +1,21 @@
+//! One file for each study: its figure, its table, its CSV.
+
+pub mod decay;
+pub mod diagnosis;
+pub mod drift;
+pub mod equilibrium;
+pub mod extrapolation;
+pub mod modes;
+pub mod patches;
+pub mod pyramid;
+mod rate;
+pub mod refine;
+pub mod roulette;
+pub mod signature;
+pub mod solvers;
+pub mod split;
+pub mod stages;
+pub mod sweep;
+pub mod variance;
+pub mod walk;
+pub mod watch;

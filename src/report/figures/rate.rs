@@ -1,0 +1,100 @@
+//! Geometric lines beside the terms: what was observed, what is the spectral radius, what is guaranteed.
+//!
+//! ```text
+//! value · ratio^(k − k0),   k ≥ k0
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | γ | fitted to the terms; claims nothing beyond them | [`RateLine::observed`] |
+//! | r(T_h) | spectral radius of the matrix | [`RateLine::spectral`] |
+//! | g | ‖T‖₁ ≤ g = max albedo | [`RateLine::guaranteed`], [`RateLine::tail_bound`] |
+
+use crate::report::{
+    plot::{GREEN, ORANGE, PURPLE, SKY, Stroke},
+    text::number::significant,
+};
+use crate::stats;
+
+/// The line `value · ratio^(k − k0)` for k ≥ k0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RateLine {
+    /// Its words in the legend.
+    pub label: String,
+    /// Where it starts.
+    pub k0: f64,
+    /// Its value there.
+    pub value: f64,
+    /// Its factor per bounce.
+    pub ratio: f64,
+    /// What it claims.
+    pub kind: RateKind,
+}
+
+/// What a geometric line claims.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RateKind {
+    /// Fitted to the data; claims nothing beyond them.
+    Observed,
+    /// The spectral radius of the matrix: the asymptotic rate there.
+    Spectral,
+    /// From ‖T‖₁ ≤ max albedo: no term lies above it.
+    Guaranteed,
+    /// On everything that follows after k bounces, not on single terms.
+    TailBound,
+}
+
+impl RateKind {
+    pub(super) fn stroke(self) -> Stroke {
+        match self {
+            Self::Observed => Stroke::solid(ORANGE, 2.0),
+            Self::Spectral => Stroke { color: SKY, width: 2.0, dash: Some((9.0, 4.0)) },
+            Self::Guaranteed => Stroke::solid(GREEN, 2.0),
+            Self::TailBound => Stroke { color: PURPLE, width: 1.8, dash: Some((3.0, 3.0)) },
+        }
+    }
+}
+
+impl RateLine {
+    /// A fit, from the first term it used.
+    pub fn observed(fit: &stats::Rate) -> Self {
+        let start = fit.window.start;
+        Self {
+            label: format!("observed rate {:.4} ± {:.4}", fit.rate, fit.std_error),
+            k0: start as f64,
+            value: fit.amplitude * fit.rate.powi(start as i32),
+            ratio: fit.rate,
+            kind: RateKind::Observed,
+        }
+    }
+
+    /// The spectral radius of the matrix, as a line through the last of the norms `‖T_h^k E‖₁`, k = 0, 1, …
+    pub fn spectral(radius: f64, norms: &[f64]) -> Option<Self> {
+        let last = norms.len().checked_sub(1)?;
+        Some(Self {
+            label: format!("spectral radius of the matrix {radius:.4}"),
+            k0: 1.0,
+            value: norms[last] / radius.powi(last as i32 - 1),
+            ratio: radius,
+            kind: RateKind::Spectral,
+        })
+    }
+
+    /// `‖T^k E‖₁ ≤ g^k ‖E‖₁`.
+    pub fn guaranteed(g: f64, emission: f64) -> Self {
+        let label = format!("guaranteed: ‖T‖₁ ≤ max albedo = {g:.3}");
+        Self { label, k0: 0.0, value: emission, ratio: g, kind: RateKind::Guaranteed }
+    }
+
+    /// `‖Σ_{n>k} T^n E‖₁ ≤ g/(1−g) ‖T^k E‖₁`, if g < 1 and the term was seen at all.
+    pub fn tail_bound(g: f64, k: usize, norm: f64) -> Option<Self> {
+        let bound = g / (1.0 - g) * norm;
+        (g < 1.0 && norm > 0.0).then(|| Self {
+            label: format!("‖Σ k>{k}‖₁ ≤ {}", significant(bound, 3)),
+            k0: k as f64,
+            value: bound,
+            ratio: g,
+            kind: RateKind::TailBound,
+        })
+    }
+}

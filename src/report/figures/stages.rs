@@ -1,0 +1,134 @@
+//! One image as it grows: contact sheet, table and CSV, with the mean that the samples have and the mean that the screen shows.
+//!
+//! Symbols: [`study::stages`](crate::study::stages). One gain for all images, that of the reference where no lamp is seen.
+
+use crate::report::{
+    ReportError, half_width_95,
+    image::{
+        contact_sheet::{Cell, Sheet, annotated},
+        picture::{auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shown_mean},
+        typeset::Caption,
+    },
+    text::{
+        csv::Csv,
+        number::{average, significant},
+        table::{Side, aligned},
+    },
+};
+use crate::study::stages::Grown;
+
+/// The numbers of one image.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// `4`, `8`, …, or `reference`.
+    pub name: String,
+    /// Mean over pixels and channels, and half of its 95 % interval.
+    pub mean: [f64; 2],
+    /// The same with everything above white cut off.
+    pub shown: f64,
+    /// Fraction of pixels with something cut off.
+    pub clipped: f64,
+    /// MSE against the reference and half of its 95 % interval; NaN for the reference.
+    pub mse: [f64; 2],
+    /// Standard deviation by the replicates alone, averaged as a variance.
+    pub deviation: f64,
+}
+
+/// A row per stage, then the reference.
+pub fn rows(grown: &Grown, gain: f64) -> Vec<Row> {
+    let clipped = |pixels: &[[f32; 3]]| develop(pixels.len(), 1, pixels, gain).clipped as f64 / pixels.len() as f64;
+    let mut rows: Vec<Row> = grown
+        .stages
+        .iter()
+        .map(|s| {
+            let (mean, half) = average(&s.mean);
+            let replicates = s.scatter.replicates() as u64;
+            Row {
+                name: s.paths.to_string(),
+                mean: [mean, half],
+                shown: shown_mean(&s.pixels, gain),
+                clipped: clipped(&s.pixels),
+                mse: [
+                    s.scatter.squared_error().unwrap_or(f64::NAN),
+                    half_width_95(s.scatter.squared_error_error(), replicates),
+                ],
+                deviation: s.scatter.variance().sqrt(),
+            }
+        })
+        .collect();
+    let (mean, half) = average(&grown.reference_mean);
+    let x = &grown.reference.total;
+    let square = |p: &[f32; 3]| p.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>();
+    let variance = x.std_error.iter().map(square).sum::<f64>() / (3.0 * x.std_error.len() as f64);
+    rows.push(Row {
+        name: "reference".into(),
+        mean: [mean, half],
+        shown: shown_mean(&x.mean, gain),
+        clipped: clipped(&x.mean),
+        mse: [f64::NAN; 2],
+        deviation: variance.sqrt(),
+    });
+    rows
+}
+
+/// The gain of all images: the reference's, exposed for what is not a lamp.
+pub fn gain(grown: &Grown) -> f64 {
+    let whole = &grown.reference.total.mean;
+    grown.reference.terms.first().map_or_else(|| auto_gain(whole), |lamps| auto_gain_beside_lamps(whole, &lamps.mean))
+}
+
+fn number(x: f64, digits: usize) -> String {
+    if x.is_nan() { "–".into() } else { significant(x, digits) }
+}
+
+/// √MSE in words: an unbiased estimate of a square may be negative.
+fn rmse(mse: f64) -> String {
+    if mse < 0.0 { "≤ noise".into() } else { number(mse.sqrt(), 3) }
+}
+
+/// The table of all images.
+pub fn table(grown: &Grown) -> String {
+    let gain = gain(grown);
+    let header = ["paths", "mean", "± 95 %", "mean shown", "lost on screen", "clipped", "RMSE", "noise √V"];
+    let mut lines = vec![header.map(String::from).to_vec()];
+    lines.extend(rows(grown, gain).iter().map(|r| {
+        let lost = format!("{:.1} %", 100.0 * (1.0 - r.shown / r.mean[0]));
+        let clipped = format!("{:.2} %", 100.0 * r.clipped);
+        let numbers = [number(r.mean[0], 4), number(r.mean[1], 2), number(r.shown, 4), lost, clipped];
+        let noise = [rmse(r.mse[0]), number(r.deviation, 3)];
+        [r.name.clone()].into_iter().chain(numbers).chain(noise).collect()
+    }));
+    aligned(&lines, &[[Side::Left].as_slice(), &[Side::Right; 7]].concat())
+}
+
+/// The same for programs; what is not known is left empty.
+pub fn csv(grown: &Grown) -> String {
+    let mut csv = Csv::new("paths,mean,mean_half_width_95,mean_shown,clipped,mse,mse_half_width_95,noise");
+    for r in rows(grown, gain(grown)) {
+        csv.put(r.name).numbers(r.mean).numbers([r.shown, r.clipped]).numbers(r.mse).numbers([r.deviation]).end();
+    }
+    csv.text()
+}
+
+/// The contact sheet: every stage and the reference, at one gain.
+///
+/// # Errors
+/// As for [`contact_sheet::grid`](crate::report::image::contact_sheet::grid).
+pub fn sheet(title: &str, [w, h]: [usize; 2], grown: &Grown, caption: &Caption) -> Result<Sheet, ReportError> {
+    let g = gain(grown);
+    let images = grown.stages.iter().map(|s| s.pixels.as_slice()).chain([grown.reference.total.mean.as_slice()]);
+    let (mut cells, mut notes) = (vec![], vec![]);
+    for (r, pixels) in rows(grown, g).iter().zip(images) {
+        let reference = r.mse[0].is_nan();
+        let label = if reference { "reference".into() } else { format!("{} paths per pixel", r.name) };
+        cells.push(Cell { label, pixels, gain: Some(g) });
+        let error =
+            if reference { format!("noise {}", number(r.deviation, 3)) } else { format!("RMSE {}", rmse(r.mse[0])) };
+        notes.push(vec![
+            format!("mean {} ± {}", number(mean(pixels), 4), number(r.mean[1], 2)),
+            format!("mean shown {}", number(r.shown, 4)),
+            format!("{error} · clipped {:.2} %", 100.0 * r.clipped),
+        ]);
+    }
+    annotated(&format!("{title} ({})", gain_label(g)), w, h, &cells, &notes, caption)
+}

@@ -1,0 +1,220 @@
+//! A difference that is watched while it accumulates: the interval narrowing around 0, and where every term stands at the end.
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | x̄ ± r_n | confidence sequence of the bias, relative to the value | [`Glimpse`] |
+//! | ±δ | margin: a bias inside is too small to matter | `delta` |
+//! | E_n | e-value: evidence against "no bias" | [`e_value`] |
+
+use crate::math::CHANNELS;
+use crate::report::{
+    ReportError,
+    image::typeset::{Caption, superscript},
+    plot::{
+        Axis, BLACK, BLUE, Canvas, Drawn, Entry, Figure, GREEN, GREY, Panel, Sample, Stroke, VERMILION, Words, figure,
+    },
+    text::{
+        number::{known, mark, outcome, p_value, significant},
+        table::{Side, aligned},
+    },
+};
+use crate::stats::{Finding, Outcome};
+
+/// How far a watch had come at one moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Glimpse {
+    /// Batches so far.
+    pub batches: u64,
+    /// The mean of the whole image, channel by channel.
+    pub image: Vec<Finding>,
+}
+
+/// An e-value from its logarithm; beyond what a number holds, as a power of ten.
+///
+/// ```
+/// use fredholm::report::figures::watch::e_value;
+/// assert_eq!(e_value(0.0), "1.0");
+/// assert_eq!(e_value(2000.0), "1e868");
+/// assert_eq!(e_value(f64::NAN), "–");
+/// ```
+pub fn e_value(log_e: f64) -> String {
+    if log_e.is_nan() {
+        "–".into()
+    } else if log_e.abs() > 600.0 {
+        format!("1e{:.0}", (log_e / std::f64::consts::LN_10).floor())
+    } else {
+        significant(log_e.exp(), 2)
+    }
+}
+
+/// A part of the value in percent; a dash where the value is 0.
+fn percent(x: f64, of: f64) -> String {
+    let p = 100.0 * x / of.abs();
+    if p.is_finite() { format!("{}{} %", if p > 0.0 { "+" } else { "" }, significant(p, 2)) } else { "–".into() }
+}
+
+/// One row per quantity.
+pub fn table(findings: &[Finding]) -> String {
+    let header = ["what", "value", "bias", "interval", "e-value", "p", "detectable", "verdict"];
+    let mut rows = vec![header.map(String::from).to_vec()];
+    rows.extend(findings.iter().map(|f| {
+        let detectable = percent(f.min_detectable, f.scale).replace('+', "");
+        let place = f.functional.replace("image, ", "");
+        vec![
+            format!("{}, {place}", f.name),
+            known(f.scale),
+            percent(f.effect, f.scale),
+            format!("[{}, {}]", percent(f.interval.0, f.scale), percent(f.interval.1, f.scale)),
+            e_value(f.log_e),
+            p_value(f.p),
+            detectable,
+            format!("{} {}", mark(f.outcome), outcome(f.outcome)),
+        ]
+    }));
+    let right = Side::Right;
+    aligned(&rows, &[Side::Left, right, right, right, right, right, right, Side::Left])
+}
+
+/// The verdict in words, and the smallest bias that could have been missed.
+pub fn judgement(verdict: Outcome, findings: &[Finding], alpha: f64, beta: f64) -> String {
+    let mut text = match verdict {
+        Outcome::Differs => {
+            let named: Vec<&str> =
+                findings.iter().filter(|f| f.outcome == Outcome::Differs).map(|f| f.name.as_str()).collect();
+            format!(
+                "Biased: {} differ; without a bias this happens with probability {alpha} at most.",
+                named.join(", ")
+            )
+        }
+        Outcome::Agrees => "No bias: every image mean is bounded within its margin δ.".to_owned(),
+        Outcome::Inconclusive => match findings.iter().find_map(|f| f.reason.as_deref()) {
+            Some(reason) => format!("No bias found, and not yet excluded: {reason}."),
+            None => "No bias found, and not yet excluded.".to_owned(),
+        },
+    };
+    if verdict != Outcome::Differs
+        && let Some(whole) = findings.last()
+    {
+        let missed = percent(whole.min_detectable, whole.scale).replace('+', "");
+        text += &format!(
+            "\nThe smallest bias it could have missed: {missed} of the {} (a larger one is found by now with probability {}),",
+            whole.name,
+            1.0 - beta
+        );
+        text += "\nand term by term what stands under \"detectable\". Intervals hold all at once and at every moment.";
+    }
+    text
+}
+
+/// Draws the figure; a batch has `paths` paths on each side.
+///
+/// # Errors
+/// If the plot crate fails, which is a defect.
+pub fn draw(
+    title: &str,
+    curve: &[Glimpse],
+    findings: &[Finding],
+    paths: u64,
+    delta: f64,
+    caption: &Caption,
+) -> Result<Figure, ReportError> {
+    figure("bias", 1060, 500, caption, |page| {
+        page.text(title, (24.0, 24.0), Words { size: 16.0, ..Words::default() })?;
+        narrowing(page, curve, paths, delta)?;
+        terms(page, findings, delta)
+    })
+}
+
+const COLOURS: [plotters::prelude::RGBColor; 3] = [VERMILION, GREEN, BLUE];
+
+/// Relative bounds in percent, where the value is not 0.
+fn relative(f: &Finding) -> Option<[f64; 3]> {
+    let bounds = [f.interval.0, f.effect, f.interval.1].map(|x| 100.0 * x / f.scale.abs());
+    bounds.iter().all(|b| b.is_finite()).then_some(bounds)
+}
+
+fn axis(title: &str, reach: f64) -> Axis {
+    Axis::linear(title, -reach, reach, 8)
+}
+
+fn margins(panel: &Panel, from: f64, to: f64, delta: f64) -> Drawn {
+    panel.line((from, 0.0), (to, 0.0), Stroke::solid(GREY, 1.2))?;
+    for side in [-100.0, 100.0] {
+        panel.line((from, side * delta), (to, side * delta), margin())?;
+    }
+    Ok(())
+}
+
+fn margin() -> Stroke {
+    Stroke { color: GREY, width: 1.4, dash: Some((7.0, 5.0)) }
+}
+
+fn narrowing(page: &Canvas, curve: &[Glimpse], paths: u64, delta: f64) -> Drawn {
+    let x = |g: &Glimpse| (g.batches * paths) as f64;
+    let known = || curve.iter().filter(|g| g.image.iter().any(|f| relative(f).is_some()));
+    let last = known().next_back().map_or(0.0, |g| {
+        g.image.iter().filter_map(relative).flat_map(|b| [b[0].abs(), b[2].abs()]).fold(0.0, f64::max)
+    });
+    let reach = (300.0 * delta).max(1.5 * last);
+    let axis_x = Axis::log("paths of each side", known().map(x));
+    let panel = Panel::draw(
+        page,
+        "Bias of the whole image",
+        [84.0, 78.0, 420.0, 340.0],
+        axis_x,
+        axis("% of the value", reach),
+    )?;
+    let ends = (1.0, 1e18);
+    margins(&panel, ends.0, ends.1, delta)?;
+    for (c, color) in COLOURS.iter().enumerate() {
+        let points: Vec<(f64, [f64; 3])> = known().filter_map(|g| Some((x(g), relative(g.image.get(c)?)?))).collect();
+        for (i, width) in [(0, 1.2), (1, 2.2), (2, 1.2)] {
+            for pair in points.windows(2) {
+                panel.line((pair[0].0, pair[0].1[i]), (pair[1].0, pair[1].1[i]), Stroke::solid(*color, width))?;
+            }
+        }
+    }
+    let mut entries: Vec<Entry> = CHANNELS
+        .iter()
+        .zip(COLOURS)
+        .map(|(name, c)| Entry::new(Sample::Line(Stroke::solid(c, 2.2)), format!("{name}: estimate, bounds")))
+        .collect();
+    entries.push(Entry::new(Sample::Line(margin()), format!("margin, ±{} %", significant(100.0 * delta, 2))));
+    page.legend((590.0, 80.0), 250.0, &entries)?;
+    Ok(())
+}
+
+fn terms(page: &Canvas, findings: &[Finding], delta: f64) -> Drawn {
+    let bounds: Vec<Option<[f64; 3]>> = findings.iter().map(relative).collect();
+    let widest = bounds.iter().flatten().flat_map(|b| [b[0].abs(), b[2].abs()]).fold(0.0, f64::max);
+    let reach = (150.0 * delta).max(1.1 * widest);
+    let mut x = Axis::counts("term", findings.len().saturating_sub(1), findings.len());
+    x.ticks = findings.iter().enumerate().map(|(i, f)| (i as f64, short(&f.name))).collect();
+    let frame = [590.0, 218.0, (60.0 * findings.len() as f64).clamp(160.0, 440.0), 200.0];
+    let panel = Panel::draw(page, "Every term at the end", frame, x, axis("% of the value", reach))?;
+    margins(&panel, -0.5, findings.len() as f64, delta)?;
+    for (i, (f, b)) in findings.iter().zip(&bounds).enumerate() {
+        let Some(b) = b else { continue };
+        let color = if f.outcome == Outcome::Differs { VERMILION } else { BLACK };
+        let at = i as f64;
+        panel.line((at, b[0]), (at, b[2]), Stroke::solid(color, 2.0))?;
+        panel.line((at - 0.22, b[1]), (at + 0.22, b[1]), Stroke::solid(color, 2.6))?;
+        for end in [b[0], b[2]] {
+            panel.line((at - 0.12, end), (at + 0.12, end), Stroke::solid(color, 1.4))?;
+        }
+    }
+    let label = if findings.iter().any(|f| f.outcome == Outcome::Differs) { "bias found" } else { "" };
+    let mut entries = vec![Entry::new(Sample::Line(Stroke::solid(BLACK, 2.0)), "interval of one term, worst channel")];
+    if !label.is_empty() {
+        entries.push(Entry::new(Sample::Line(Stroke::solid(VERMILION, 2.0)), label));
+    }
+    page.legend((850.0, 80.0), 190.0, &entries)?;
+    Ok(())
+}
+
+/// `T³` for `T3`; a word as it is.
+fn short(name: &str) -> String {
+    name.strip_prefix('T')
+        .and_then(|k| k.parse().ok())
+        .map_or_else(|| name.to_owned(), |k| format!("T{}", superscript(k)))
+}

@@ -1,0 +1,216 @@
+//! Pictures with words: one term above its strip, and grids of labelled cells.
+//!
+//! No word covers a pixel: text stands on strips beside the images. Images narrower than 128 pixels are enlarged by
+//! repeating pixels, images wider than 512 are averaged down (in linear radiance) in the grids, never in single
+//! pictures. The 99th percentile and the mean are those of the full image.
+
+use super::{
+    picture::{Developed, Picture, auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shrink},
+    sheet::{LABEL, Layout, Tile, columns_in, in_rows},
+    typeset::{Caption, SANS, page, superscript, text_element, text_width},
+};
+use crate::report::{ReportError, text::number::significant};
+
+const NARROWEST: usize = 128;
+const WIDEST: usize = 512;
+const SHEET: f64 = 1600.0;
+
+/// One image of a sheet.
+#[derive(Clone, Debug)]
+pub struct Cell<'a> {
+    /// Line above the image, such as `T3 E`.
+    pub label: String,
+    /// Linear RGB; every cell of a sheet has the same size.
+    pub pixels: &'a [[f32; 3]],
+    /// Gain to show it with; absent: [`auto_gain`].
+    pub gain: Option<f64>,
+}
+
+/// A sheet ready to be written, and what is clipped on it.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// The picture.
+    pub picture: Picture,
+    /// Clipped pixels per cell, of the image as given.
+    pub clipped: Vec<usize>,
+}
+
+/// One image with a strip below that says what it is and with which gain: `T3  ×16`. Returns the gain used, too.
+///
+/// # Errors
+/// If the pixels do not match the size or the text cannot be drawn.
+pub fn single(
+    label: &str,
+    width: usize,
+    height: usize,
+    pixels: &[[f32; 3]],
+    gain: Option<f64>,
+) -> Result<(Developed, f64), ReportError> {
+    check_size(label, width, height, pixels)?;
+    let gain = gain.unwrap_or_else(|| auto_gain(pixels));
+    let mut developed = develop(width, height, pixels, gain);
+    let text = format!("{label}  {}", gain_label(gain));
+    // Shrink the letters rather than cut them on a narrow image, but keep them readable.
+    let natural = text_width(&text, SANS, LABEL) + 8.0;
+    let factor = (48usize).div_ceil(width);
+    let image = developed.picture.enlarged(factor);
+    let size = (LABEL * (image.width as f64 / natural).min(1.0)).max(9.0);
+    let strip = (size * 1.7).ceil() as usize;
+    let words = text_element(4.0, size * 1.2, size, SANS, "", &text);
+    let mut strip = page(image.width, strip, &words)?;
+    strip.pixels.splice(0..0, image.pixels);
+    strip.height += image.height;
+    developed.picture = strip;
+    Ok((developed, gain))
+}
+
+/// A grid of labelled images with a title above and the caption below.
+///
+/// Under each image stand its gain and its mean over pixels and channels. For images side by side at a common exposure
+/// give every cell the same gain.
+///
+/// # Errors
+/// If there is no cell, the pixels do not match the size, or the text cannot be drawn.
+pub fn grid(title: &str, width: usize, height: usize, cells: &[Cell], caption: &Caption) -> Result<Sheet, ReportError> {
+    laid_out(None, title, width, height, cells, &gains(cells), caption)
+}
+
+/// The same with so many cells in a row.
+///
+/// # Errors
+/// As for [`grid`].
+pub fn grid_of(
+    columns: usize,
+    title: &str,
+    width: usize,
+    height: usize,
+    cells: &[Cell],
+    caption: &Caption,
+) -> Result<Sheet, ReportError> {
+    laid_out(Some(columns), title, width, height, cells, &gains(cells), caption)
+}
+
+/// A [`grid`] with lines of one's own under each image; `notes` has an entry per cell.
+///
+/// # Errors
+/// As for [`grid`].
+pub fn annotated(
+    title: &str,
+    width: usize,
+    height: usize,
+    cells: &[Cell],
+    notes: &[Vec<String>],
+    caption: &Caption,
+) -> Result<Sheet, ReportError> {
+    laid_out(None, title, width, height, cells, notes, caption)
+}
+
+/// Gain and mean of every cell.
+fn gains(cells: &[Cell]) -> Vec<Vec<String>> {
+    let note = |cell: &Cell| {
+        let gain = cell.gain.unwrap_or_else(|| auto_gain(cell.pixels));
+        vec![format!("{} · mean {}", gain_label(gain), significant(mean(cell.pixels), 3))]
+    };
+    cells.iter().map(note).collect()
+}
+
+fn laid_out(
+    columns: Option<usize>,
+    title: &str,
+    width: usize,
+    height: usize,
+    cells: &[Cell],
+    notes: &[Vec<String>],
+    caption: &Caption,
+) -> Result<Sheet, ReportError> {
+    if cells.is_empty() {
+        return Err(ReportError::new("(contact sheet)", "there is no image to show", "render at least one term"));
+    }
+    let (mut tiles, mut clipped) = (Vec::new(), Vec::new());
+    for (cell, notes) in cells.iter().zip(notes) {
+        check_size(&cell.label, width, height, cell.pixels)?;
+        let gain = cell.gain.unwrap_or_else(|| auto_gain(cell.pixels));
+        clipped.push(develop(width, height, cell.pixels, gain).clipped);
+        let image = shown(width, height, cell.pixels, gain, NARROWEST, WIDEST);
+        tiles.push(Tile { image, label: cell.label.clone(), notes: notes.clone() });
+    }
+    let columns = columns.unwrap_or_else(|| balanced(&tiles));
+    let places = in_rows(tiles.len(), columns);
+    let picture = Layout { title, tiles: &tiles, places: &places, heads: &[], foot: None }.draw(caption)?;
+    Ok(Sheet { picture, clipped })
+}
+
+/// As many columns as fit, then as few as the same number of rows allows.
+fn balanced(tiles: &[Tile]) -> usize {
+    let (count, mut fit) = (tiles.len(), columns_in(SHEET, tiles));
+    if count > 4 {
+        fit = fit.min((count as f64 * 1.8).sqrt().ceil() as usize);
+    }
+    count.div_ceil(count.div_ceil(fit))
+}
+
+/// An image at the size it is shown with.
+pub(crate) fn shown(
+    width: usize,
+    height: usize,
+    pixels: &[[f32; 3]],
+    gain: f64,
+    narrowest: usize,
+    widest: usize,
+) -> Picture {
+    let (w, h, small) = shrink(width, height, pixels, width.div_ceil(widest));
+    develop(w, h, &small, gain).picture.enlarged(narrowest.div_ceil(w))
+}
+
+/// The terms k = 0, 1, … each at its own exposure, and the whole if it is known.
+///
+/// # Errors
+/// As for [`grid`].
+pub fn terms(
+    width: usize,
+    height: usize,
+    terms: &[&[[f32; 3]]],
+    whole: Option<&[[f32; 3]]>,
+    note: &str,
+    caption: &Caption,
+) -> Result<Sheet, ReportError> {
+    let name = |k: usize| match k {
+        0 => "T⁰E: emission".to_string(),
+        1 => "T¹E: direct light".to_string(),
+        k => format!("T{}E", superscript(k)),
+    };
+    let mut cells: Vec<Cell> =
+        terms.iter().enumerate().map(|(k, pixels)| Cell { label: name(k), pixels, gain: None }).collect();
+    cells.extend(whole.map(|pixels| Cell { label: "Σ, all k".into(), pixels, gain: None }));
+    grid(&format!("The terms of L = Σ TᵏE, {note}"), width, height, &cells, caption)
+}
+
+/// Direct light (k ≤ 1) beside direct plus indirect light, at one common exposure: that of the right image where no
+/// lamp is seen. `emitted` is the term k = 0.
+///
+/// # Errors
+/// As for [`grid`].
+pub fn direct_and_indirect(
+    width: usize,
+    height: usize,
+    emitted: &[[f32; 3]],
+    direct: &[[f32; 3]],
+    full: &[[f32; 3]],
+    caption: &Caption,
+) -> Result<Sheet, ReportError> {
+    check_size("emission", width, height, emitted)?;
+    let gain = Some(auto_gain_beside_lamps(full, emitted));
+    let cells = [
+        Cell { label: "direct: k ≤ 1".into(), pixels: direct, gain },
+        Cell { label: "direct + indirect: all k".into(), pixels: full, gain },
+    ];
+    grid("What indirect light adds", width, height, &cells, caption)
+}
+
+fn check_size(label: &str, width: usize, height: usize, pixels: &[[f32; 3]]) -> Result<(), ReportError> {
+    if width * height == pixels.len() && !pixels.is_empty() {
+        return Ok(());
+    }
+    let cause = format!("image `{label}` has {} pixels instead of {width}×{height}", pixels.len());
+    Err(ReportError::new("(sheet)", cause, "compare and combine images of one size"))
+}

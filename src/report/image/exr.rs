@@ -1,0 +1,218 @@
+//! Many images in one OpenEXR file: one part, float32, one layer per dotted prefix (`T03.R`, `T03.G`, `T03.B`).
+//!
+//! The unnamed layer `R G B` is what a viewer shows first. Compression is lossless (ZIP, 16 lines), and equal input
+//! gives equal bytes: blocks stand in scan-line order and header attributes in the order of their names (the crate
+//! keeps custom attributes in a hash map, whose order differs from run to run; `sort_attributes` mends that).
+//!
+//! Reference: Kainz, Bogart, Stanczyk, Hillman, *Technical Introduction to OpenEXR* (2013), and the file layout page of
+//! the OpenEXR documentation.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    io::Cursor,
+    path::Path,
+};
+
+use exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Layer as Part,
+    LayerAttributes, LineOrder, ReadChannels, ReadLayers, Text, WritableImage, f16,
+};
+
+use crate::report::{ReportError, files, write_atomically};
+
+/// One image to be written.
+#[derive(Clone, Copy, Debug)]
+pub struct Layer<'a> {
+    /// Prefix of its channels; empty for the unnamed layer, the one viewers open with.
+    pub name: &'a str,
+    /// Linear RGB, row by row from the top.
+    pub pixels: &'a [[f32; 3]],
+}
+
+/// What was found in a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Name (empty: the unnamed layer) and pixels, sorted by name.
+    pub layers: Vec<(String, Vec<[f32; 3]>)>,
+    /// Custom attributes that are texts or numbers, sorted by name.
+    pub attributes: Vec<(String, String)>,
+}
+
+impl Image {
+    /// The pixels of one layer.
+    pub fn layer(&self, name: &str) -> Option<&[[f32; 3]]> {
+        self.layers.iter().find(|(n, _)| n == name).map(|(_, pixels)| pixels.as_slice())
+    }
+}
+
+/// Writes all layers into one file. Values are kept bit by bit, also NaN and infinity.
+///
+/// # Errors
+/// If a layer has the wrong number of pixels, a name occurs twice, the size is zero, or the file cannot be written.
+pub fn write(
+    path: &Path,
+    width: usize,
+    height: usize,
+    layers: &[Layer],
+    attributes: &[(&str, String)],
+) -> Result<(), ReportError> {
+    let wrong = |cause: String| ReportError::new(path, cause, "this is a defect of the program: please report it");
+    if width == 0 || height == 0 || layers.is_empty() {
+        return Err(wrong(format!("an image of {width}×{height} pixels with {} layers is empty", layers.len())));
+    }
+    let mut names = BTreeSet::new();
+    for layer in layers {
+        if layer.pixels.len() != width * height {
+            let (n, name) = (layer.pixels.len(), layer.name);
+            return Err(wrong(format!("layer `{name}` has {n} pixels instead of {width}×{height}")));
+        }
+        if !names.insert(layer.name) {
+            return Err(wrong(format!("two layers are called `{}`", layer.name)));
+        }
+    }
+
+    // One channel per layer and component, sorted as the format demands.
+    let channel = |layer: &Layer, component: usize| {
+        let letter = ["R", "G", "B"][component];
+        let name = if layer.name.is_empty() { letter.to_owned() } else { format!("{}.{letter}", layer.name) };
+        let samples = layer.pixels.iter().map(|p| p[component]).collect();
+        AnyChannel::new(text(&name), FlatSamples::F32(samples))
+    };
+    let channels = layers.iter().flat_map(|layer| (0..3).map(move |c| channel(layer, c))).collect();
+
+    let mut own = LayerAttributes::named("fredholm");
+    for (name, value) in attributes {
+        own.other.insert(text(name), AttributeValue::Text(text(value)));
+    }
+    let encoding =
+        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+    let image = exr::prelude::Image::from_layer(Part::new((width, height), own, encoding, AnyChannels::sort(channels)));
+    let mut bytes = Cursor::new(Vec::new());
+    image.write().to_buffered(&mut bytes).map_err(|e| wrong(e.to_string()))?;
+    let bytes = sort_attributes(&bytes.into_inner()).ok_or_else(|| wrong("the header cannot be parsed".into()))?;
+    write_atomically(path, &bytes)
+}
+
+/// Reads every RGB layer of a file, ours or another program's: one or many parts, half or float or integer samples,
+/// grey (`Y`) counted as RGB. Channels that are no colour (alpha, depth, normals) are left out; a missing one of
+/// `R G B` is zero. In files of several parts the part's name stands in for a missing prefix.
+///
+/// # Errors
+/// If the file cannot be read, its parts differ in size, two layers share a name, or no colour is found.
+pub fn read(path: &Path) -> Result<Image, ReportError> {
+    let wrong = |cause: String, help: &str| ReportError::new(path, cause, help);
+    let bytes = files::read(path)?;
+    let found = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(|e| wrong(format!("not a readable OpenEXR file: {e}"), "give a flat (not deep) OpenEXR image"))?;
+
+    let mut size = None;
+    let mut planes: BTreeMap<String, BTreeMap<char, Vec<f32>>> = BTreeMap::new();
+    let mut seen = Vec::new();
+    let several = found.layer_data.len() > 1;
+    for part in &found.layer_data {
+        let here = (part.size.0, part.size.1);
+        if *size.get_or_insert(here) != here {
+            return Err(wrong("its parts differ in size".into(), "give parts of one size, or one part"));
+        }
+        let part_name = part.attributes.layer_name.as_ref().filter(|_| several).map(plain).unwrap_or_default();
+        for channel in &part.channel_data.list {
+            let name = plain(&channel.name);
+            let (prefix, component) = name.rsplit_once('.').unwrap_or(("", &name));
+            let prefix = if prefix.is_empty() { &part_name } else { prefix };
+            seen.push(name.clone());
+            let Some(letter @ ('R' | 'G' | 'B' | 'Y')) = single_letter(component) else { continue };
+            let samples = floats(&channel.sample_data);
+            if samples.len() != here.0 * here.1 {
+                let cause = format!("channel `{name}` is subsampled");
+                return Err(wrong(cause, "store every channel at full resolution"));
+            }
+            if planes.entry(prefix.to_owned()).or_default().insert(letter, samples).is_some() {
+                return Err(wrong(format!("two layers are called `{prefix}`"), "give each part its own name"));
+            }
+        }
+    }
+    if planes.is_empty() {
+        let cause = format!("no colour channel among: {}", seen.join(", "));
+        return Err(wrong(cause, "name the channels R G B, or LAYER.R LAYER.G LAYER.B"));
+    }
+
+    let (width, height) = size.unwrap_or((0, 0));
+    let layers = planes
+        .into_iter()
+        .map(|(name, plane)| {
+            // Grey stands for all three components only where none of them is present.
+            let grey = if plane.keys().all(|&c| c == 'Y') { plane.get(&'Y') } else { None };
+            let value = |c: char, i: usize| grey.or(plane.get(&c)).map_or(0.0, |samples| samples[i]);
+            (name, (0..width * height).map(|i| ['R', 'G', 'B'].map(|c| value(c, i))).collect())
+        })
+        .collect();
+    let mut attributes: Vec<_> = (found.layer_data.iter().flat_map(|part| &part.attributes.other))
+        .chain(&found.attributes.other)
+        .filter_map(|(name, value)| Some((plain(name), readable(value)?)))
+        .collect();
+    attributes.sort();
+    attributes.dedup();
+    Ok(Image { width, height, layers, attributes })
+}
+
+/// UTF-8 bytes as they are; the crate's own conversion accepts Latin-1 only.
+fn text(s: &str) -> Text {
+    Text::from_slice_unchecked(s.as_bytes())
+}
+
+fn plain(text: &Text) -> String {
+    String::from_utf8_lossy(text.as_slice()).into_owned()
+}
+
+fn single_letter(s: &str) -> Option<char> {
+    let mut chars = s.chars();
+    chars.next().filter(|_| chars.next().is_none())
+}
+
+fn floats(samples: &FlatSamples) -> Vec<f32> {
+    match samples {
+        FlatSamples::F32(v) => v.clone(),
+        FlatSamples::F16(v) => v.iter().copied().map(f16::to_f32).collect(),
+        FlatSamples::U32(v) => v.iter().map(|&u| u as f32).collect(),
+    }
+}
+
+fn readable(value: &AttributeValue) -> Option<String> {
+    match value {
+        AttributeValue::Text(t) => Some(plain(t)),
+        AttributeValue::I32(v) => Some(v.to_string()),
+        AttributeValue::F32(v) => Some(v.to_string()),
+        AttributeValue::F64(v) => Some(v.to_string()),
+        _ => None,
+    }
+}
+
+/// The same single-part file with its header attributes in the order of their names. An attribute is
+/// `name 0 type 0 size data`; the header ends with an empty name; offsets in the file do not change.
+fn sort_attributes(file: &[u8]) -> Option<Vec<u8>> {
+    const MAGIC_AND_VERSION: usize = 8;
+    let mut attributes = Vec::new();
+    let mut at = MAGIC_AND_VERSION;
+    while *file.get(at)? != 0 {
+        let start = at;
+        for _ in 0..2 {
+            at += file.get(at..)?.iter().position(|&b| b == 0)? + 1;
+        }
+        let size = u32::from_le_bytes(file.get(at..at + 4)?.try_into().ok()?) as usize;
+        at += 4 + size;
+        attributes.push(file.get(start..at)?);
+    }
+    // No two attributes share a name, so comparing whole records compares names first.
+    attributes.sort_unstable();
+    Some([&file[..MAGIC_AND_VERSION], &attributes.concat(), &file[at..]].concat())
+}

@@ -1,0 +1,227 @@
+//! Linear radiance to an 8-bit picture: one gain, the exact sRGB curve, nothing else (no tone mapping).
+//!
+//! ```text
+//! code = round(255 · s(gain · L)),   s(v) = 12.92 v                   v ≤ 0.0031308
+//!                                    s(v) = 1.055 v^(1/2.4) − 0.055   otherwise
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | L | linear Rec. 709 component | `pixels` |
+//! | s | transfer curve of IEC 61966-2-1 (1999) | [`srgb`] |
+//! | gain | 1, 1.5, 2, 3, 4, 6, 8, … or one over it | [`auto_gain`] |
+
+use std::{io::Cursor, path::Path};
+
+use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+
+use crate::report::{ReportError, write_atomically};
+
+/// An 8-bit sRGB picture, row by row from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// `[R, G, B]` codes.
+    pub pixels: Vec<[u8; 3]>,
+}
+
+/// A developed picture and what the screen cannot show of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Developed {
+    /// The picture.
+    pub picture: Picture,
+    /// Pixels with a component above 1 after the gain: shown as 255.
+    pub clipped: usize,
+    /// Pixels with a component below 0: shown as 0.
+    pub negative: usize,
+    /// Pixels with a component that is no number or infinite: shown in magenta.
+    pub non_finite: usize,
+}
+
+/// The sRGB transfer curve, for `0 ≤ linear ≤ 1`.
+///
+/// ```
+/// use fredholm::report::image::picture::srgb;
+/// assert_eq!(srgb(0.0), 0.0);
+/// assert!((srgb(1.0) - 1.0).abs() < 1e-12);
+/// assert!((srgb(0.0031308) - 12.92 * 0.0031308).abs() < 1e-12);
+/// assert!((srgb(0.214_041_14) - 0.5).abs() < 1e-8);
+/// ```
+pub fn srgb(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// Colour of pixels that are not finite: broken results must be seen.
+pub const NON_FINITE: [u8; 3] = [255, 0, 255];
+
+/// Applies gain and sRGB curve to linear pixels.
+pub fn develop(width: usize, height: usize, pixels: &[[f32; 3]], gain: f64) -> Developed {
+    let (mut clipped, mut negative, mut non_finite) = (0, 0, 0);
+    let codes = pixels
+        .iter()
+        .map(|pixel| {
+            if pixel.iter().any(|v| !v.is_finite()) {
+                non_finite += 1;
+                return NON_FINITE;
+            }
+            let scaled = pixel.map(|v| gain * f64::from(v));
+            clipped += usize::from(scaled.iter().any(|&v| v > 1.0));
+            negative += usize::from(scaled.iter().any(|&v| v < 0.0));
+            scaled.map(|v| (255.0 * srgb(v.clamp(0.0, 1.0))).round() as u8)
+        })
+        .collect();
+    Developed { picture: Picture { width, height, pixels: codes }, clipped, negative, non_finite }
+}
+
+/// The gain out of …, 1/3, 1/2, 1/1.5, 1, 1.5, 2, 3, 4, 6, 8, 12, 16, … that brings the 99th percentile of luminance
+/// nearest to 0.8.
+///
+/// Where more than 99 % of the pixels are black (a small lamp), the percentile is that of the others; an image that is
+/// black altogether gets 1.
+///
+/// ```
+/// use fredholm::report::image::picture::auto_gain;
+/// assert_eq!(auto_gain(&[[0.05; 3]; 100]), 16.0);
+/// assert_eq!(auto_gain(&[[4.0; 3]; 100]), 1.0 / 6.0);
+/// assert_eq!(auto_gain(&[[0.0; 3]; 100]), 1.0);
+/// ```
+pub fn auto_gain(pixels: &[[f32; 3]]) -> f64 {
+    gain_for(pixels.iter().map(|&p| luminance(p)))
+}
+
+/// The gain for what is not a lamp: [`auto_gain`] of the pixels where `emitted` (the term k = 0) is black. A lamp in
+/// view may be hundreds of times brighter than the walls; exposed for it, they would be black.
+///
+/// ```
+/// use fredholm::report::image::picture::{auto_gain, auto_gain_beside_lamps};
+/// let (lamp, wall) = ([17.0; 3], [0.1; 3]);
+/// let image = [[lamp; 5], [wall; 5]].concat();
+/// let emitted = [[lamp; 5], [[0.0; 3]; 5]].concat();
+/// assert_eq!(auto_gain_beside_lamps(&image, &emitted), 8.0);
+/// assert!(auto_gain(&image) < 0.1);
+/// ```
+pub fn auto_gain_beside_lamps(pixels: &[[f32; 3]], emitted: &[[f32; 3]]) -> f64 {
+    if emitted.iter().all(|&e| luminance(e) != 0.0) {
+        return auto_gain(pixels);
+    }
+    gain_for(pixels.iter().zip(emitted).filter(|&(_, &e)| luminance(e) == 0.0).map(|(&p, _)| luminance(p)))
+}
+
+fn gain_for(luminance: impl Iterator<Item = f64>) -> f64 {
+    let mut luminance: Vec<f64> = luminance.filter(|y| y.is_finite()).collect();
+    luminance.sort_unstable_by(f64::total_cmp);
+    let percentile = |sorted: &[f64]| sorted.get((sorted.len() * 99).div_ceil(100).max(1) - 1).copied().unwrap_or(0.0);
+    let mut bright = percentile(&luminance);
+    if bright <= 0.0 {
+        bright = percentile(&luminance[luminance.partition_point(|&y| y <= 0.0)..]);
+    }
+    if bright > 0.0 { nearest_gain(0.8 / bright) } else { 1.0 }
+}
+
+/// The nice number nearest to `gain` on a logarithmic scale.
+fn nearest_gain(gain: f64) -> f64 {
+    let up = gain.max(1.0 / gain);
+    let power = up.log2().floor().exp2();
+    let nice = [power, 1.5 * power, 2.0 * power];
+    let distance = |candidate: f64| (candidate / up).ln().abs();
+    let best = nice.into_iter().min_by(|a, b| distance(*a).total_cmp(&distance(*b))).unwrap_or(power);
+    if gain >= 1.0 { best } else { 1.0 / best }
+}
+
+/// A gain as people read it: `×16`, `÷1.5`.
+///
+/// ```
+/// use fredholm::report::image::picture::gain_label;
+/// assert_eq!((gain_label(16.0), gain_label(1.5), gain_label(1.0 / 3.0)), ("×16".into(), "×1.5".into(), "÷3".into()));
+/// ```
+pub fn gain_label(gain: f64) -> String {
+    let rounded = |v: f64| (v * 1e3).round() / 1e3;
+    if gain >= 1.0 { format!("×{}", rounded(gain)) } else { format!("÷{}", rounded(1.0 / gain)) }
+}
+
+/// Luminance of linear Rec. 709 components.
+pub fn luminance(rgb: [f32; 3]) -> f64 {
+    crate::math::luminance(glam::Vec3::from(rgb).as_dvec3())
+}
+
+/// Mean over all pixels and the three channels.
+pub fn mean(pixels: &[[f32; 3]]) -> f64 {
+    pixels.iter().flatten().map(|&v| f64::from(v)).sum::<f64>() / (3 * pixels.len()) as f64
+}
+
+/// Mean over all pixels and the three channels of what a screen shows, in the unit of the radiance: what is below 0 or, after
+/// the gain, above 1 is cut off. NaN where a pixel is no number.
+///
+/// ```
+/// use fredholm::report::image::picture::{mean, shown_mean};
+/// // one firefly among four pixels: the mean is 1, the screen shows a quarter of it
+/// let pixels = [[4.0; 3], [0.0; 3], [0.0; 3], [0.0; 3]];
+/// assert_eq!((mean(&pixels), shown_mean(&pixels, 1.0)), (1.0, 0.25));
+/// assert_eq!(shown_mean(&pixels, 0.25), 1.0);
+/// ```
+pub fn shown_mean(pixels: &[[f32; 3]], gain: f64) -> f64 {
+    pixels.iter().flatten().map(|&v| (gain * f64::from(v)).clamp(0.0, 1.0)).sum::<f64>()
+        / (3 * pixels.len()) as f64
+        / gain
+}
+
+/// Averages blocks of `factor × factor` linear pixels; blocks at the right and lower edge may be smaller.
+pub(crate) fn shrink(width: usize, height: usize, pixels: &[[f32; 3]], factor: usize) -> (usize, usize, Vec<[f32; 3]>) {
+    let (w, h) = (width.div_ceil(factor), height.div_ceil(factor));
+    let block = |i: usize| {
+        let (x0, y0) = (i % w * factor, i / w * factor);
+        let (x1, y1) = ((x0 + factor).min(width), (y0 + factor).min(height));
+        let mut sum = [0.0f64; 3];
+        for p in (y0..y1).flat_map(|y| &pixels[y * width + x0..y * width + x1]) {
+            (0..3).for_each(|c| sum[c] += f64::from(p[c]));
+        }
+        sum.map(|s| (s / ((x1 - x0) * (y1 - y0)) as f64) as f32)
+    };
+    (w, h, (0..w * h).map(block).collect())
+}
+
+impl Picture {
+    /// Repeats every pixel `factor` times in both directions.
+    #[must_use]
+    pub fn enlarged(&self, factor: usize) -> Self {
+        let (width, height) = (self.width * factor, self.height * factor);
+        let pixel = |i: usize| self.pixels[i / width / factor * self.width + i % width / factor];
+        Self { width, height, pixels: (0..width * height).map(pixel).collect() }
+    }
+
+    /// Copies `other` onto this picture with its upper left corner at `(x, y)`; it must fit.
+    pub(crate) fn paste(&mut self, other: &Self, x: usize, y: usize) {
+        for (row, source) in other.pixels.chunks(other.width).enumerate() {
+            let start = (y + row) * self.width + x;
+            self.pixels[start..start + other.width].copy_from_slice(source);
+        }
+    }
+
+    /// The PNG file as bytes; equal pictures give equal bytes.
+    ///
+    /// # Errors
+    /// If the picture is empty or its pixels do not match its size; `path` only names it in the message.
+    pub fn png(&self, path: &Path) -> Result<Vec<u8>, ReportError> {
+        let mut bytes = Cursor::new(Vec::new());
+        let flat = self.pixels.as_flattened();
+        if self.width == 0 || flat.len() != 3 * self.width * self.height {
+            let cause = format!("{} pixels do not make {}×{}", self.pixels.len(), self.width, self.height);
+            return Err(ReportError::new(path, cause, "this is a defect of the program: please report it"));
+        }
+        PngEncoder::new(&mut bytes)
+            .write_image(flat, self.width as u32, self.height as u32, ExtendedColorType::Rgb8)
+            .map_err(|e| ReportError::new(path, e, "this is a defect of the program: please report it"))?;
+        Ok(bytes.into_inner())
+    }
+
+    /// Writes the picture as PNG.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), ReportError> {
+        write_atomically(path, &self.png(path)?)
+    }
+}

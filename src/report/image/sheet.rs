@@ -1,0 +1,109 @@
+//! A sheet: a title, rows of pictures with words above and below each, and the caption.
+
+use super::{
+    picture::Picture,
+    typeset::{Caption, LINE, SANS, caption_elements, page, text_element, text_width},
+};
+use crate::report::ReportError;
+
+/// Size of the line above a picture.
+pub(super) const LABEL: f64 = 14.0;
+const NOTE: f64 = 12.0;
+const SMALL: f64 = 10.5;
+const TITLE: f64 = 18.0;
+const GAP: f64 = 16.0;
+const NARROWEST: f64 = 400.0;
+const DIM: &str = "fill=\"#333333\"";
+const BOLD: &str = "font-weight=\"bold\"";
+
+/// A picture with its words; all pictures of a sheet have one size.
+pub(crate) struct Tile {
+    pub(crate) image: Picture,
+    /// Above it.
+    pub(crate) label: String,
+    /// Below it.
+    pub(crate) notes: Vec<String>,
+}
+
+/// A sheet before it is drawn.
+pub(crate) struct Layout<'a> {
+    pub(crate) title: &'a str,
+    /// Row by row; the first column of each tile.
+    pub(crate) tiles: &'a [Tile],
+    /// Column (a half is possible) and row of every tile.
+    pub(crate) places: &'a [(f64, usize)],
+    /// Words to the left of each row: a large line and a small one. Empty: none.
+    pub(crate) heads: &'a [[String; 2]],
+    /// A line below all.
+    pub(crate) foot: Option<&'a str>,
+}
+
+/// Room for one tile without the gap beside it: its picture, or its widest words.
+fn room(tiles: &[Tile]) -> f64 {
+    let notes = tiles.iter().flat_map(|t| &t.notes).map(|note| text_width(note, SANS, NOTE));
+    let words = notes.chain(tiles.iter().map(|t| text_width(&t.label, SANS, LABEL)));
+    words.fold(tiles.first().map_or(0.0, |t| t.image.width as f64), f64::max).ceil()
+}
+
+/// How many columns fit in `width` pixels; at least one, at most as many as there are tiles.
+pub(crate) fn columns_in(width: f64, tiles: &[Tile]) -> usize {
+    (((width - GAP) / (room(tiles) + GAP)).floor() as usize).clamp(1, tiles.len().max(1))
+}
+
+/// Places row by row.
+pub(crate) fn in_rows(tiles: usize, columns: usize) -> Vec<(f64, usize)> {
+    (0..tiles).map(|i| ((i % columns) as f64, i / columns)).collect()
+}
+
+impl Layout<'_> {
+    /// Words first, then the pictures between them.
+    ///
+    /// # Errors
+    /// If the text cannot be drawn.
+    pub(crate) fn draw(&self, caption: &Caption) -> Result<Picture, ReportError> {
+        let image_h = self.tiles.first().map_or(0.0, |t| t.image.height as f64);
+        let below = self.tiles.iter().map(|t| t.notes.len()).max().unwrap_or(0) as f64;
+        let (cell_w, cell_h) = (room(self.tiles) + GAP, LABEL * LINE + image_h + below * NOTE * LINE + GAP);
+        let heads =
+            self.heads.iter().map(|[large, small]| text_width(large, SANS, TITLE).max(text_width(small, SANS, NOTE)));
+        let left = GAP + heads.map(|w| w + GAP).fold(0.0, f64::max).ceil();
+        let top = GAP + TITLE * LINE;
+        let corner = |(column, row): (f64, usize)| (left + column * cell_w, top + row as f64 * cell_h);
+
+        let right = self.places.iter().map(|&place| corner(place).0 + cell_w).fold(0.0, f64::max);
+        let words =
+            text_width(self.title, SANS, TITLE).max(self.foot.map_or(0.0, |foot| text_width(foot, SANS, SMALL)));
+        let width = right.max(words + 2.0 * GAP).max(NARROWEST).ceil();
+        let bottom = self.places.iter().map(|&place| corner(place).1 + cell_h).fold(top, f64::max);
+        let lines = caption.lines(width - 2.0 * GAP, SMALL);
+        let small = lines.len() + usize::from(self.foot.is_some());
+        let height = (bottom + small as f64 * SMALL * LINE + GAP).ceil();
+
+        let mut text = text_element(GAP, GAP + TITLE * 0.8, TITLE, SANS, "", self.title);
+        for (row, [large, small]) in self.heads.iter().enumerate() {
+            let y = corner((0.0, row)).1 + LABEL * LINE + 0.5 * image_h;
+            text += &text_element(GAP, y, TITLE, SANS, BOLD, large);
+            text += &text_element(GAP, y + LABEL * LINE, NOTE, SANS, DIM, small);
+        }
+        for (tile, &place) in self.tiles.iter().zip(self.places) {
+            let (x, y) = corner(place);
+            text += &text_element(x, y + LABEL, LABEL, SANS, BOLD, &tile.label);
+            for (line, note) in tile.notes.iter().enumerate() {
+                let below = y + LABEL * LINE + image_h + NOTE * (1.2 + line as f64 * LINE);
+                text += &text_element(x, below, NOTE, SANS, DIM, note);
+            }
+        }
+        let mut y = bottom + SMALL;
+        if let Some(foot) = self.foot {
+            text += &text_element(GAP, y, SMALL, SANS, DIM, foot);
+            y += SMALL * LINE;
+        }
+        text += &caption_elements(&lines, GAP, y, SMALL);
+        let mut picture = page(width as usize, height as usize, &text)?;
+        for (tile, &place) in self.tiles.iter().zip(self.places) {
+            let (x, y) = corner(place);
+            picture.paste(&tile.image, x.round() as usize, (y + LABEL * LINE).round() as usize);
+        }
+        Ok(picture)
+    }
+}

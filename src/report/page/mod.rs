@@ -1,0 +1,3 @@
+//! The report of a run as one page.
+
+pub mod html;

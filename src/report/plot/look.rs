@@ -1,0 +1,94 @@
+//! What a figure draws: points with errors, curves, and how they look.
+//!
+//! Colours are those of Okabe and Ito (2008), told apart also by readers with a colour-vision deficiency; marks differ
+//! in shape, too.
+
+use plotters::prelude::RGBColor;
+
+use crate::report::half_width_95;
+
+/// A value with its error at one place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Bounce k, or samples per pixel.
+    pub x: f64,
+    /// The value; NaN: no mark.
+    pub value: f64,
+    /// Standard error of `value`; NaN where it is not known (no bar).
+    pub std_error: f64,
+    /// Replicates behind it: 0 exact, 1 error unknown (no bar).
+    pub replicates: u64,
+}
+
+impl Point {
+    /// A value without error.
+    pub fn exact(x: f64, value: f64) -> Self {
+        Self { x, value, std_error: 0.0, replicates: 0 }
+    }
+
+    /// Half width of the 95 % interval; 0 where the error is not known.
+    pub(crate) fn half_width(&self) -> f64 {
+        let half = half_width_95(self.std_error, self.replicates);
+        if half.is_nan() { 0.0 } else { half }
+    }
+}
+
+/// Points that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Its words in the legend.
+    pub label: String,
+    /// Its points.
+    pub points: Vec<Point>,
+    /// Its colour and mark.
+    pub look: Look,
+}
+
+/// Colour and mark of a curve: the same thing looks the same in every figure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Look {
+    pub(crate) color: RGBColor,
+    pub(crate) mark: Mark,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mark {
+    Disk,
+    Square,
+    Diamond,
+    Triangle,
+    Ring,
+    Cross,
+}
+
+pub(crate) const BLACK: RGBColor = RGBColor(0, 0, 0);
+pub(crate) const GREY: RGBColor = RGBColor(85, 85, 85);
+pub(crate) const GRID: RGBColor = RGBColor(222, 222, 222);
+pub(crate) const FAINT: RGBColor = RGBColor(240, 240, 240);
+pub(crate) const ORANGE: RGBColor = RGBColor(230, 159, 0);
+pub(crate) const SKY: RGBColor = RGBColor(86, 180, 233);
+pub(crate) const GREEN: RGBColor = RGBColor(0, 158, 115);
+pub(crate) const BLUE: RGBColor = RGBColor(0, 114, 178);
+pub(crate) const VERMILION: RGBColor = RGBColor(213, 94, 0);
+pub(crate) const PURPLE: RGBColor = RGBColor(204, 121, 167);
+
+impl Look {
+    /// Monte Carlo, one estimator per term.
+    pub const SINGLE: Self = Self { color: BLUE, mark: Mark::Disk };
+    /// Monte Carlo, all terms from the prefixes of one path.
+    pub const PREFIX: Self = Self { color: VERMILION, mark: Mark::Square };
+    /// The radiosity matrix.
+    pub const MATRIX: Self = Self { color: BLACK, mark: Mark::Ring };
+    /// The full path tracer.
+    pub const PATH: Self = Self { color: PURPLE, mark: Mark::Triangle };
+
+    /// The mark of a second quantity on the same axes.
+    pub(crate) const CROSS: Mark = Mark::Cross;
+
+    /// Looks for any number of curves, as in a sweep.
+    pub fn nth(i: usize) -> Self {
+        let colors = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK];
+        let marks = [Mark::Disk, Mark::Square, Mark::Diamond, Mark::Triangle, Mark::Ring, Mark::Cross];
+        Self { color: colors[i % colors.len()], mark: marks[i % marks.len()] }
+    }
+}

@@ -1,0 +1,112 @@
+//! Tables for the terminal: aligned, at most 100 columns wide, made of text only.
+
+pub use super::number::{average, count, error, mark, outcome, plus_minus, significant};
+
+use super::{
+    number::{dash, known, p_value, percent, signed},
+    rows::{Cell, Column, Name, Rows},
+    summary::VerdictRecord,
+};
+use crate::terms::Functional;
+
+/// The series of one world: a row per term, then the tail and the sums.
+///
+/// `rays` counts the rays spent on each k; with an empty slice the column is left out.
+///
+/// ```
+/// use fredholm::{report::text::table::series, terms::{Estimate, Functional}};
+/// use glam::DVec3;
+/// let terms: Vec<_> = [1.0, 0.5, 0.25].map(|v| Estimate::exact(DVec3::splat(v))).into();
+/// let of = |v: f64| Estimate::exact(DVec3::splat(v));
+/// let furnace = Functional { name: "image".into(), terms, tail: of(0.25), sum: of(1.75), total: of(2.0) };
+/// let table = series("furnace", &furnace, &[]);
+/// assert!(table.lines().any(|l| l.split_whitespace().eq(["1", "0.5000", "0", "0.5000", "25.0", "%"])));
+/// ```
+pub fn series(label: &str, functional: &Functional, rays: &[u64]) -> String {
+    let rows = Rows::series(&[functional], rays).without_repetition();
+    let mut columns = vec![(Column::World(0), "mean"), (Column::Ratio, "ratio"), (Column::Share, "share")];
+    if !rays.is_empty() {
+        columns.push((Column::Rays, "rays"));
+    }
+    format!("{label}\n{}", aligned(&lines("k", &columns, &rows), &[Side::Right; 6]))
+}
+
+/// The verdicts of a comparison.
+pub fn verdicts(verdicts: &[VerdictRecord]) -> String {
+    let columns = [
+        (Column::Difference, "difference"),
+        (Column::Interval, "interval at 1 − α"),
+        (Column::P, "p"),
+        (Column::Detectable, "detectable"),
+        (Column::Outcome, "verdict"),
+    ];
+    let lines = lines("what", &columns, &Rows::verdicts(verdicts));
+    aligned(&lines, &[Side::Left, Side::Right, Side::Right, Side::Right, Side::Right, Side::Left])
+}
+
+/// Header and rows in words; an estimate takes two columns, its mean and its error.
+fn lines(first: &str, columns: &[(Column, &str)], rows: &Rows) -> Vec<Vec<String>> {
+    let mut head = vec![first.to_owned()];
+    for (column, words) in columns {
+        head.push((*words).into());
+        if matches!(column, Column::World(_)) {
+            head.push("± 95 %".into());
+        }
+    }
+    let row = |(name, cells): (&Name, Vec<&Cell>)| {
+        [shortened(&name.to_string(), 34)].into_iter().chain(cells.into_iter().flat_map(words)).collect()
+    };
+    let columns: Vec<Column> = columns.iter().map(|c| c.0).collect();
+    [head].into_iter().chain(rows.pick(&columns).map(row)).collect()
+}
+
+fn words(cell: &Cell) -> Vec<String> {
+    vec![match cell {
+        Cell::Blank => String::new(),
+        Cell::Words(words) => words.clone(),
+        Cell::Estimate(e) => return vec![significant(average(e).0, 4), error(e)],
+        Cell::Ratio(ratio) => significant(*ratio, 4),
+        Cell::Share(share) => percent(*share),
+        Cell::Rays(rays) => rays.map_or_else(dash, count),
+        Cell::Difference(effect) => signed(*effect),
+        Cell::Interval(low, high) => format!("[{}, {}]", signed(*low), signed(*high)),
+        Cell::P(p) => p_value(*p),
+        Cell::Size(size) => known(*size),
+        Cell::Outcome(found) => format!("{} {}", mark(*found), outcome(*found)),
+    }]
+}
+
+fn shortened(text: &str, longest: usize) -> String {
+    if text.chars().count() <= longest {
+        return text.into();
+    }
+    text.chars().take(longest - 1).chain(['…']).collect()
+}
+
+#[derive(Clone, Copy)]
+pub(crate) enum Side {
+    Left,
+    Right,
+}
+
+/// Rows as lines, two blanks between columns, a rule under the header.
+pub(crate) fn aligned(rows: &[Vec<String>], sides: &[Side]) -> String {
+    let columns = rows.first().map_or(0, Vec::len);
+    let width = |c: usize| rows.iter().map(|row| row[c].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut out = String::new();
+    for (i, row) in rows.iter().enumerate() {
+        let cells = row.iter().zip(&widths).zip(sides).map(|((text, &w), side)| match side {
+            Side::Left => format!("{text:<w$}"),
+            Side::Right => format!("{text:>w$}"),
+        });
+        let line = cells.collect::<Vec<_>>().join("  ");
+        out.push_str(line.trim_end());
+        out.push('\n');
+        if i == 0 {
+            out.push_str(&"─".repeat(widths.iter().sum::<usize>() + 2 * (columns.max(1) - 1)));
+            out.push('\n');
+        }
+    }
+    out
+}
