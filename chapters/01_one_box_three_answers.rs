@@ -9,8 +9,8 @@
 #![allow(clippy::print_stdout)] // a program, not the library
 
 use fredholm::engine::Settings;
-use fredholm::engine::by_matrix::{Discrete, MatrixError, radiosity};
-use fredholm::engine::by_rays::{self, Estimator, Sampled};
+use fredholm::engine::by_matrix::{Discrete, MatrixError};
+use fredholm::engine::by_rays::{Estimator, Sampled};
 use fredholm::progress::Progress;
 use fredholm::report::figures::decay::{self, Decay, RateLine};
 use fredholm::report::plot::{Curve, Look};
@@ -21,56 +21,54 @@ use fredholm::report::{
     text::{markdown, markdown::Claim},
     write_atomically,
 };
-use fredholm::scene::{Description, Scene, SceneError, load};
-use fredholm::stats::{Comparison, Criterion, Outcome, TermMeans, compare, discretisation};
-use fredholm::study::surface;
+use fredholm::scene::{Scene, SceneError, load};
+use fredholm::stats::{Comparison, Outcome, TermMeans};
+use fredholm::study::run::{Asked, Run};
 use fredholm::terms::{TermImage, functional::Replicates};
 use glam::Vec3;
 use std::{error::Error, path::Path, process::ExitCode};
 
 // ANCHOR: setup
-fn setup() -> Result<(Description, Scene, Settings), SceneError> {
+fn setup() -> Result<Run, SceneError> {
     let small = load::Options { set: vec!["camera.size=[96, 96]".into()], ..Default::default() };
     let room = load::scene("cornell", &small)?.description;
     let scene = Scene::new(&room);
     let settings = Settings { spp: 256, max_bounces: 8, patches: 600, ..Settings::default() };
-    Ok((room, scene, settings))
+    // every term from paths of its own; and ‖T^k E‖₁ in the same way, from all surfaces instead of from the eye
+    let (estimators, surface) = (vec![Estimator::Single], vec![Estimator::Single]);
+    Ok(Run::new(room, scene, settings, Asked { estimators, surface, ..Asked::default() }))
 }
 // ANCHOR_END: setup
 
 // ANCHOR: three_answers
-struct Answers {
-    series: Sampled,
-    path: Sampled,
-    matrix: Discrete,
-    /// ‖T^k E‖₁ by random paths, from all surfaces instead of from the eye
-    norms: Replicates,
+struct Answers<'a> {
+    series: &'a Sampled,
+    path: &'a Sampled,
+    matrix: &'a Discrete,
+    norms: &'a Replicates,
 }
 
-fn solve(room: &Description, scene: &Scene, settings: &Settings) -> Result<Answers, MatrixError> {
-    let nobody = Progress::NONE; // nobody watches, and nothing stops it
-    Ok(Answers {
-        series: by_rays::terms(scene, Estimator::Single, settings, nobody),
-        path: by_rays::path(scene, settings, nobody),
-        matrix: radiosity(room, scene, settings, nobody)?,
-        norms: surface::norms(scene, Estimator::Single, 1 << 18, settings, nobody),
-    })
+fn solve(mut run: Run) -> Result<Run, MatrixError> {
+    run.solve(Progress::NONE)?; // nobody watches, and nothing stops it
+    Ok(run)
+}
+
+fn answers(run: &Run) -> Option<Answers<'_>> {
+    let [series] = run.terms.as_slice() else { return None };
+    Some(Answers { series, path: run.path.as_ref()?, matrix: run.radiosity.as_ref()?, norms: run.norms()? })
 }
 // ANCHOR_END: three_answers
 
 // ANCHOR: compare
-fn verdicts(a: &Answers) -> [(&'static str, Comparison); 2] {
-    let (fine, coarse) = (&a.matrix.fine.series, &a.matrix.coarse.series);
-    let criterion = Criterion::default();
-    [
-        ("series − path tracer", compare(&a.series.series, &a.path.series, &criterion, &[])),
-        ("series − matrix", compare(&a.series.series, fine, &criterion, &discretisation(fine, coarse))),
-    ]
+fn verdicts(run: &Run) -> Option<[(&'static str, &Comparison); 2]> {
+    // the run has compared its first answer with every other
+    let [path, matrix] = run.verdicts.as_slice() else { return None };
+    Some([("series − path tracer", &path.comparison), ("series − matrix", &matrix.comparison)])
 }
 // ANCHOR_END: compare
 
 // ANCHOR: claim
-fn claims(scene: &Scene, a: &Answers, [(_, path), (_, matrix)]: &[(&str, Comparison); 2]) -> Vec<Claim> {
+fn claims(scene: &Scene, a: &Answers<'_>, [(_, path), (_, matrix)]: [(&str, &Comparison); 2]) -> Vec<Claim> {
     let k = a.norms.mean.len() - 2; // K: the tail has a place of its own
     let proved = |c: &Comparison| {
         let rows = c.rows.iter().filter(|row| row.outcome == Outcome::Agrees);
@@ -127,10 +125,10 @@ const NORM: &str = "all surfaces, $\\norm{\\T^k E}_1$";
 /// # Errors
 /// If the folder cannot be written.
 pub fn run(out: &Path) -> Result<bool, Box<dyn Error>> {
-    let (room, scene, settings) = setup()?;
-    let answers = solve(&room, &scene, &settings)?;
-    let verdicts = verdicts(&answers);
-    let claims = claims(&scene, &answers, &verdicts);
+    let solved = solve(setup()?)?;
+    let answers = answers(&solved).ok_or("an answer is missing")?;
+    let verdicts = verdicts(&solved).ok_or("a comparison is missing")?;
+    let claims = claims(&solved.scene, &answers, verdicts);
 
     std::fs::create_dir_all(out)?;
     let write = |name: &str, text: String| write_atomically(&out.join(name), text.as_bytes());
@@ -138,9 +136,9 @@ pub fn run(out: &Path) -> Result<bool, Box<dyn Error>> {
     let images = [&answers.series.series, &answers.matrix.fine.series, &answers.path.series].map(|s| s.image());
     let columns = [("series", images[0]), ("matrix", images[1]), ("path tracer", images[2]), (NORM, &surface)];
     write("terms.md", markdown::terms(&columns))?;
-    write("verdicts.md", verdicts.each_ref().map(|(name, c)| markdown::verdicts(name, c)).join("\n"))?;
+    write("verdicts.md", verdicts.map(|(name, c)| markdown::verdicts(name, c)).join("\n"))?;
     write("claims.md", markdown::claims(&claims))?;
-    figures(out, &scene, &answers, &settings)?;
+    figures(out, &solved, &answers)?;
     for Claim { says, found, holds } in &claims {
         println!("{} {says}: {found}", if *holds { '✓' } else { '✗' });
     }
@@ -148,7 +146,8 @@ pub fn run(out: &Path) -> Result<bool, Box<dyn Error>> {
     Ok(claims.iter().all(|c| c.holds))
 }
 
-fn figures(out: &Path, scene: &Scene, a: &Answers, settings: &Settings) -> Result<(), ReportError> {
+fn figures(out: &Path, run: &Run, a: &Answers<'_>) -> Result<(), ReportError> {
+    let (scene, settings) = (&run.scene, &run.settings);
     let caption = Caption { command: "fredholm chapter 1".into(), seed: settings.seed, scene: "cornell".into() };
     let [w, h] = scene.camera.size.map(|n| n as usize);
     let images: Vec<&[[f32; 3]]> = a.series.terms.iter().map(|t| t.mean.as_slice()).collect();
@@ -157,9 +156,9 @@ fn figures(out: &Path, scene: &Scene, a: &Answers, settings: &Settings) -> Resul
         .picture
         .write(&out.join("terms.png"))?;
 
-    let matrix: Vec<f64> = a.matrix.matrix.surface.iter().map(|v| v.element_sum() / 3.0).collect();
-    let (series, k) = (TermMeans::from(&a.norms), settings.max_bounces);
-    let g = f64::from(scene.max_albedo().max_element());
+    let matrix = run.norms_of_matrix().unwrap_or_default();
+    let (series, k) = (TermMeans::from(a.norms), settings.max_bounces);
+    let g = run.guaranteed_rate().max_element();
     let curve = |label: &str, terms: &TermMeans, look| Curve { label: label.into(), points: decay::norms(terms), look };
     let surface =
         vec![curve("series", &series, Look::SINGLE), curve("matrix", &TermMeans::exact(&matrix), Look::MATRIX)];

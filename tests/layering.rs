@@ -1,11 +1,17 @@
-//! One direction: nothing upstream imports from downstream. The order of the modules is the order of the data.
+//! One direction: nothing upstream imports from downstream, folder by folder; and no circle of imports, file by file.
+//!
+//! Files are read with `syn`. What a file uses are all paths that begin with `crate`, `self` or `super`, in `use`, in code and in
+//! types. A path leads to the file of the module that it names; a name that the module re-exports leads on to where it comes from,
+//! and re-exporting is no use by itself.
 #![allow(clippy::unwrap_used)]
 
-use std::{fs, path::Path};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use syn::visit::Visit;
 
-/// Rank of each folder of `src/`; a module may use modules of lower rank, and itself. Equal ranks are siblings that do
-/// not know each other. `main.rs`, `lib.rs` and `cli/` tie everything together and are exempt as users; nobody may use
-/// `cli`.
+/// Rank of each module at the root of `src/`; a module may use modules of lower rank, and itself. Equal ranks are siblings that do
+/// not know each other. `main.rs`, `lib.rs` and `cli/` tie everything together and are exempt as users; nobody may use `cli`.
 const ORDER: [(&str, u32); 15] = [
     ("math", 0),
     ("scene", 1),
@@ -28,129 +34,236 @@ fn rank(module: &str) -> Option<u32> {
     ORDER.iter().find(|(name, _)| *name == module).map(|(_, r)| *r)
 }
 
-/// The source with the contents of comments and string literals blanked out; line breaks stay.
-fn code_only(source: &str) -> String {
-    let (mut out, mut rest) = (String::new(), source);
-    while let Some(c) = rest.chars().next() {
-        let skip = if rest.starts_with("//") {
-            rest.find('\n').unwrap_or(rest.len())
-        } else if rest.starts_with("/*") {
-            rest.find("*/").map_or(rest.len(), |i| i + 2)
-        } else if rest.starts_with("'\"'") {
-            3
-        } else if c == '"' {
-            let mut escaped = false;
-            let end = rest[1..].find(|c| {
-                let closes = c == '"' && !escaped;
-                escaped = c == '\\' && !escaped;
-                closes
-            });
-            end.map_or(rest.len(), |i| i + 2)
-        } else {
-            0
-        };
-        if skip > 0 {
-            out.extend(rest[..skip].chars().filter(|&c| c == '\n'));
-            rest = &rest[skip..];
-        } else {
-            out.push(c);
-            rest = &rest[c.len_utf8()..];
-        }
-    }
-    out
+/// A path from the root of the crate, `engine::by_rays::terms`.
+type Names = Vec<String>;
+
+/// What one file says.
+#[derive(Default)]
+struct Source {
+    /// Its module.
+    module: Names,
+    /// Everything it uses, from the root of the crate.
+    uses: BTreeSet<Names>,
+    /// Names that it passes on, and where they come from; `*` for all of a module.
+    passed_on: Vec<(String, Names)>,
+    /// Modules written inside the file, while it is read.
+    inner: Names,
 }
 
-/// First identifiers of a path tail: of `a::b` it is `a`, of `{a::b, c::{d, e}}` they are `a` and `c`.
-fn heads(tail: &str) -> Vec<String> {
-    let word = |s: &str| s.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
-    let Some(group) = tail.trim_start().strip_prefix('{') else { return vec![word(tail)] };
-    let (mut depth, mut start, mut parts) = (0, 0, Vec::new());
-    for (i, c) in group.char_indices() {
-        match c {
-            '{' => depth += 1,
-            '}' if depth > 0 => depth -= 1,
-            '}' | ',' if depth == 0 => {
-                parts.push(word(&group[start..i]));
-                start = i + 1;
-                if c == '}' {
-                    break;
+impl Source {
+    fn read(module: Names, text: &str) -> Self {
+        let mut source = Self { module, ..Self::default() };
+        source.visit_file(&syn::parse_file(text).unwrap());
+        source
+    }
+
+    /// A path that begins with `crate`, `self` or `super`, from the root; nothing for others.
+    fn absolute(&self, path: &[String]) -> Option<Names> {
+        let mut base: Names = self.module.iter().chain(&self.inner).cloned().collect();
+        let mut rest = path;
+        match path.first()?.as_str() {
+            "crate" => base.clear(),
+            "self" => {}
+            "super" => {
+                base.pop();
+                while rest.get(1).is_some_and(|s| s == "super") {
+                    base.pop();
+                    rest = &rest[1..];
                 }
             }
-            _ => {}
+            _ => return None,
+        }
+        base.extend_from_slice(&rest[1..]);
+        Some(base)
+    }
+
+    /// The paths of a `use`, with the names they get here.
+    fn flatten(tree: &syn::UseTree, before: &[String], out: &mut Vec<(String, Names)>) {
+        let with = |name: &syn::Ident| -> Names { before.iter().cloned().chain([name.to_string()]).collect() };
+        match tree {
+            syn::UseTree::Path(p) => Self::flatten(&p.tree, &with(&p.ident), out),
+            syn::UseTree::Name(n) if n.ident == "self" => {
+                out.push((before.last().cloned().unwrap_or_default(), before.to_vec()));
+            }
+            syn::UseTree::Name(n) => out.push((n.ident.to_string(), with(&n.ident))),
+            syn::UseTree::Rename(r) => out.push((r.rename.to_string(), with(&r.ident))),
+            syn::UseTree::Glob(_) => out.push(("*".into(), before.to_vec())),
+            syn::UseTree::Group(g) => g.items.iter().for_each(|t| Self::flatten(t, before, out)),
         }
     }
-    parts.retain(|p| !p.is_empty());
-    parts
 }
 
-/// Every path of `source` from the root of the crate: (line number, first identifier). `depth` is the number of modules
-/// between the root and the file (2 for `src/stats/slope.rs`), to follow chains of `super`.
-fn imports(source: &str, depth: usize) -> Vec<(usize, String)> {
-    let code = code_only(source);
-    let mut found = Vec::new();
-    for (at, _) in code.match_indices("::") {
-        let (before, tail) = (&code[..at], &code[at + 2..]);
-        let path: Vec<&str> = before
-            .rsplit("::")
-            .map(|p| p.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or(""))
-            .collect();
-        let supers = path.iter().take_while(|p| **p == "super").count();
-        let from_root = path[0] == "crate" || (supers >= depth && !tail.starts_with("super"));
-        if from_root {
-            let line = before.matches('\n').count() + 1;
-            found.extend(heads(tail).into_iter().map(|h| (line, h)));
+impl<'ast> Visit<'ast> for Source {
+    fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
+        let mut paths = vec![];
+        Self::flatten(&item.tree, &[], &mut paths);
+        for (name, path) in paths {
+            // `pub use child::Name` names a module below without saying so
+            let relative = self.absolute(&path);
+            if matches!(item.vis, syn::Visibility::Inherited) || !self.inner.is_empty() {
+                self.uses.extend(relative.or_else(|| self.below(&path)));
+            } else if let Some(path) = relative.or_else(|| self.below(&path)) {
+                self.passed_on.push((name, path));
+            }
         }
     }
-    // a chain of supers inside `mod tests { … }` ends one level lower: only names of modules can be meant
-    found.retain(|(_, h)| rank(h).is_some() || code.contains(&format!("crate::{h}")));
-    found
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        let names: Names = path.segments.iter().map(|s| s.ident.to_string()).collect();
+        self.uses.extend(self.absolute(&names));
+        syn::visit::visit_path(self, path);
+    }
+
+    fn visit_item_mod(&mut self, item: &'ast syn::ItemMod) {
+        if item.content.is_some() {
+            self.inner.push(item.ident.to_string());
+            syn::visit::visit_item_mod(self, item);
+            self.inner.pop();
+        }
+    }
 }
 
-/// What is wrong with one file.
-fn violations(module: &str, depth: usize, name: &str, source: &str) -> Vec<String> {
-    let Some(own) = rank(module) else { return vec![format!("{name}: module `{module}` has no place in the order")] };
-    let lines: Vec<&str> = source.lines().collect();
-    let complaint = |(line, target): (usize, String)| {
-        let why = match rank(&target) {
-            _ if target == module => return None,
-            Some(r) if r < own => return None,
-            Some(_) => format!("`{module}` must not use `{target}`, which is downstream or beside it"),
-            None => format!("`{module}` uses `{target}` of the crate root: name the module it comes from"),
+impl Source {
+    /// A path that may begin with a module below this one: it does if there is such a file.
+    fn below(&self, path: &[String]) -> Option<Names> {
+        Some(self.module.iter().chain(path).cloned().collect())
+    }
+}
+
+/// The files of a crate by module.
+struct Crate(BTreeMap<Names, Source>);
+
+impl Crate {
+    fn read(src: &Path) -> Self {
+        let mut all = Self(BTreeMap::new());
+        all.folder(src, &[]);
+        all
+    }
+
+    fn folder(&mut self, folder: &Path, module: &[String]) {
+        let mut entries: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+        entries.sort();
+        for path in entries {
+            let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+            let below = || module.iter().cloned().chain([name.clone()]).collect::<Names>();
+            if path.is_dir() {
+                self.folder(&path, &below());
+            } else if path.extension().is_some_and(|e| e == "rs") && !["lib", "main"].contains(&name.as_str()) {
+                let module = if name == "mod" { module.to_vec() } else { below() };
+                self.add(module, &fs::read_to_string(&path).unwrap());
+            }
+        }
+    }
+
+    fn add(&mut self, module: Names, text: &str) {
+        self.0.insert(module.clone(), Source::read(module, text));
+    }
+
+    /// The file that a path leads to.
+    fn target(&self, path: &[String], depth: usize) -> Option<Names> {
+        let mut known = (0..=path.len()).rev().map(|n| &path[..n]).filter(|m| self.0.contains_key(*m));
+        let module = known.next()?;
+        let file = &self.0[module];
+        let Some(name) = path.get(module.len()) else { return Some(module.to_vec()) };
+        let passed_on = file.passed_on.iter().find(|(n, _)| n == name);
+        match passed_on {
+            Some((_, from)) if depth < 8 => {
+                let onward: Names = from.iter().chain(&path[module.len() + 1..]).cloned().collect();
+                self.target(&onward, depth + 1)
+            }
+            _ => Some(module.to_vec()),
+        }
+    }
+
+    /// What each file uses, as files.
+    fn edges(&self) -> BTreeMap<&Names, BTreeSet<Names>> {
+        let of = |source: &Source| {
+            let targets = source.uses.iter().filter_map(|path| self.target(path, 0));
+            targets.filter(|t| *t != source.module).collect()
         };
-        Some(format!("{name}:{line}: {why}\n    {}", lines.get(line - 1).map_or("", |l| l.trim())))
-    };
-    imports(source, depth).into_iter().filter_map(complaint).collect()
+        self.0.iter().map(|(module, source)| (module, of(source))).collect()
+    }
+
+    /// Uses of a folder that is downstream, or beside.
+    fn violations(&self) -> Vec<String> {
+        let mut found = vec![];
+        for source in self.0.values() {
+            let own = &source.module[0];
+            let Some(rank_of_own) = rank(own) else {
+                found.push(format!("module `{own}` has no place in the order"));
+                continue;
+            };
+            if own == "cli" {
+                continue;
+            }
+            for path in source.uses.iter().chain(source.passed_on.iter().map(|p| &p.1)) {
+                let Some(target) = path.first().filter(|t| *t != own) else { continue };
+                let what = match rank(target) {
+                    Some(r) if r < rank_of_own => continue,
+                    Some(_) => format!("must not use `{target}`, which is downstream or beside it"),
+                    // a name without `crate::` before it
+                    None if !path.is_empty() => {
+                        format!("uses `{target}` of the crate root: name the module it comes from")
+                    }
+                    None => continue,
+                };
+                found.push(format!("{}: `{own}` {what}: {}", source.module.join("::"), path.join("::")));
+            }
+        }
+        found
+    }
+
+    /// Files that use each other, in a circle, however long: the strongly connected components of more than one.
+    fn circles(&self) -> Vec<Vec<String>> {
+        let edges = self.edges();
+        let reach = |from: &Names| {
+            let (mut seen, mut stack) = (BTreeSet::new(), vec![from.clone()]);
+            while let Some(at) = stack.pop() {
+                for next in &edges[&at] {
+                    if seen.insert(next.clone()) {
+                        stack.push(next.clone());
+                    }
+                }
+            }
+            seen
+        };
+        let reach: BTreeMap<&Names, BTreeSet<Names>> = edges.keys().map(|m| (*m, reach(m))).collect();
+        let mut circles = BTreeSet::new();
+        for (from, to) in &reach {
+            let circle: Vec<String> = to.iter().filter(|t| reach[t].contains(*from)).map(|t| t.join("::")).collect();
+            if circle.len() > 1 {
+                circles.insert(circle);
+            }
+        }
+        circles.into_iter().collect()
+    }
 }
 
-fn walk(folder: &Path, module: &str, depth: usize, out: &mut Vec<String>) {
-    let mut entries: Vec<_> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
-    entries.sort();
-    for path in entries {
-        if path.is_dir() {
-            walk(&path, module, depth + 1, out);
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            let is_mod = path.file_name().is_some_and(|n| n == "mod.rs");
-            let source = fs::read_to_string(&path).unwrap();
-            let name = path.strip_prefix(env!("CARGO_MANIFEST_DIR")).unwrap_or(&path).display().to_string();
-            out.extend(violations(module, depth + usize::from(!is_mod), &name, &source));
-        }
-    }
+fn src() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
 #[test]
 fn nothing_upstream_imports_from_downstream() {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut found = Vec::new();
-    let mut folders: Vec<_> = fs::read_dir(&src).unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_dir()).collect();
-    folders.sort();
-    assert!(folders.len() >= 5, "the modules of src/ were not found");
-    for folder in folders {
-        let module = folder.file_name().unwrap().to_str().unwrap().to_owned();
-        if module != "cli" {
-            walk(&folder, &module, 1, &mut found);
-        }
-    }
+    let all = Crate::read(&src());
+    assert!(all.0.len() > 100, "the modules of src/ were not found");
+    let found = all.violations();
     assert!(found.is_empty(), "\n{}\n", found.join("\n"));
+}
+
+#[test]
+fn no_files_import_each_other_in_a_circle() {
+    let circles: Vec<String> = Crate::read(&src()).circles().into_iter().map(|c| c.join("\n  ")).collect();
+    assert!(circles.is_empty(), "{} circles:\n  {}\n", circles.len(), circles.join("\n\n  "));
+}
+
+/// A crate of a few files.
+fn small(files: &[(&str, &str)]) -> Crate {
+    let mut all = Crate(BTreeMap::new());
+    for (module, text) in files {
+        all.add(module.split("::").map(str::to_owned).collect(), text);
+    }
+    all
 }
 
 #[test]
@@ -161,31 +274,57 @@ fn the_check_sees_every_form_of_import() {
         "use crate::{\n    math::Frame,\n    stats::compare,\n};",
         "fn f() { crate::cli::run() }",
         "use super::super::estimator::Prefix;",
-        "let s = \"//\"; use crate::solver::lu;",
+        "use crate::solver::lu;",
         "use crate::Everything;",
+        "pub use crate::report::Plot;",
+        "fn f(p: crate::report::Plot) {}",
+        "mod tests { use super::super::super::report::Plot; }",
     ];
     for source in bad {
-        assert_eq!(violations("operator", 2, "x.rs", source).len(), 1, "{source}");
+        assert!(!small(&[("operator::x", source)]).violations().is_empty(), "{source}");
     }
     let good = [
         "use crate::{math::Frame, scene::Scene, terms::Series};",
         "// use crate::report::Plot;\n/* crate::cli::run() */",
         "/// use crate::stats::compare;\nuse super::matrix::Matrix;",
-        "let s = \"crate::report::Plot\";",
-        "let quote = '\"'; // crate::report",
+        "const S: &str = \"crate::report::Plot\";",
+        "const Q: char = '\"'; // crate::report",
         "mod tests { use super::super::matrix::Matrix; }",
         "use crate::operator::patches;",
     ];
     for source in good {
-        assert!(violations("operator", 2, "x.rs", source).is_empty(), "{source}");
+        assert_eq!(small(&[("operator::x", source)]).violations(), Vec::<String>::new(), "{source}");
     }
-    let shown = violations("scene", 1, "src/scene/mod.rs", "use std::fs;\n  use crate::report::Plot;");
-    assert_eq!(
-        shown,
-        [
-            "src/scene/mod.rs:2: `scene` must not use `report`, which is downstream or beside it\n    use crate::report::Plot;"
-        ]
-    );
-    assert_eq!(violations("solver", 1, "x", "use crate::estimator::x;").len(), 1);
-    assert_eq!(violations("novel", 1, "x", "").len(), 1);
+    assert_eq!(small(&[("solver::x", "use crate::estimator::x;")]).violations().len(), 1);
+    assert_eq!(small(&[("novel", "")]).violations().len(), 1);
+}
+
+#[test]
+fn the_check_sees_circles_and_only_circles() {
+    // a re-export is no use by itself, and a name leads to where it comes from
+    let tree = [
+        ("scene", "pub use shape::Shape; pub struct Scene;"),
+        ("scene::shape", "pub struct Shape;"),
+        ("scene::load", "use super::{Scene, Shape};"),
+    ];
+    assert!(small(&tree).circles().is_empty());
+    let two = [("scene::a", "use super::b::B; pub struct A;"), ("scene::b", "fn f(_: crate::scene::a::A) {}")];
+    assert_eq!(small(&two).circles(), [["scene::a", "scene::b"]]);
+    let three = [
+        ("scene", "pub use c::C; fn f() { self::a::g() }"),
+        ("scene::a", "use super::C;"),
+        ("scene::c", "use super::h;"),
+    ];
+    assert_eq!(small(&three).circles(), [["scene", "scene::a", "scene::c"]]);
+}
+
+/// The lecture's table names files that exist.
+#[test]
+fn the_table_of_symbols_names_files() {
+    let lib = fs::read_to_string(src().join("lib.rs")).unwrap();
+    let rows = lib.lines().filter(|l| l.starts_with("//! |") && l.ends_with("` |"));
+    let files: Vec<&str> = rows.flat_map(|l| l.rsplit('|').nth(1).unwrap().split('`').skip(1).step_by(2)).collect();
+    assert!(files.len() > 20, "{files:?}");
+    let missing: Vec<&&str> = files.iter().filter(|f| !src().join(f).exists()).collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }

@@ -2,6 +2,7 @@
 
 use super::{Ending, Failure};
 use clap::Args;
+use fredholm::engine::by_matrix;
 use fredholm::engine::known::coplanar;
 use fredholm::report::text::table;
 use fredholm::scene::coplanar::{Kind, Relation};
@@ -107,7 +108,7 @@ fn people(d: &Description, scene: &Scene) -> String {
     if scene.has_environment() {
         out += "  T is not closed: a ray that leaves the scene meets the sky, and the light it brings is E\n";
     }
-    if let Some(matrix) = super::solve::coarse(d, scene)
+    if let Some(matrix) = by_matrix::coarse(d, scene)
         && let Some(what) = super::notes::unlit(&matrix.unlit, d)
     {
         let radius = matrix.spectral.each_ref().map(|s| format!("{:.3}", s.radius)).join(", ");

@@ -21,7 +21,6 @@ mod quiz;
 mod radiosity;
 mod roulette;
 mod solve;
-mod strategies;
 mod sweep;
 mod sweep_patches;
 mod sweep_split;

@@ -1,6 +1,5 @@
 //! What a run says beside its tables: the judgement, facts about the matrix and the decay, warnings.
 
-use super::solve::Solved;
 use fredholm::engine::by_matrix::{Discrete, Unlit};
 use fredholm::engine::by_rays::Estimator;
 use fredholm::engine::discretisation::{Difference, SampledRows};
@@ -12,7 +11,8 @@ use fredholm::report::figures::extrapolation::{self, Measured};
 use fredholm::report::figures::refine::limit_words;
 use fredholm::scene::{Description, bsdf};
 use fredholm::stats::evidence::{JUDGED, SHOWN};
-use fredholm::stats::{self, Comparison, Evidence, TermMeans, observed_rate};
+use fredholm::stats::{self, Comparison, Evidence};
+use fredholm::study::run::Run;
 use fredholm::terms::Series;
 use fredholm::terms::functional::Replicates;
 use glam::DVec3;
@@ -133,43 +133,38 @@ pub fn guide(g: &Prepared) -> String {
 }
 
 /// What is printed about the decay.
-pub fn decay_facts(found: &Solved) -> Vec<String> {
-    let mut out = vec![];
-    if let Some((_, r)) = found.surface.iter().find(|s| s.0 == Estimator::Single) {
-        let means = TermMeans::from(r);
-        out.push(match observed_rate(&means) {
-            Ok(f) => {
-                // two terms fit any line: there is nothing to test
-                let p = if f.p.is_finite() { format!("p = {:.2}", f.p) } else { "two terms: no p".into() };
-                let (first, last) = (f.window.start, f.window.end - 1);
-                format!(
-                    "observed rate of the surface norm {:.4} ± {:.4} (k = {first} to {last}, {p})\nguaranteed: ‖T‖₁ ≤ {:.4}",
-                    f.rate,
-                    f.std_error,
-                    found.scene.max_albedo().max_element()
-                )
-            }
-            Err(why) => format!("no rate fitted: {}", why.to_string().replace("; ", ";\n")),
-        });
-    }
-    out
+pub fn decay_facts(run: &Run) -> Option<String> {
+    Some(match run.observed_rate()? {
+        Ok(f) => {
+            // two terms fit any line: there is nothing to test
+            let p = if f.p.is_finite() { format!("p = {:.2}", f.p) } else { "two terms: no p".into() };
+            let (first, last) = (f.window.start, f.window.end - 1);
+            format!(
+                "observed rate of the surface norm {:.4} ± {:.4} (k = {first} to {last}, {p})\nguaranteed: ‖T‖₁ ≤ {:.4}",
+                f.rate,
+                f.std_error,
+                run.guaranteed_rate().max_element()
+            )
+        }
+        Err(why) => format!("no rate fitted: {}", why.to_string().replace("; ", ";\n")),
+    })
 }
 
 /// What the first half of the terms says about the whole, in the slowest channel.
-pub fn extrapolated(found: &Solved) -> Option<String> {
-    let last = found.settings.max_bounces / 2 + 1;
+pub fn extrapolated(run: &Run) -> Option<String> {
+    let last = run.settings.max_bounces / 2 + 1;
     // two terms are too few for what is shown, and without a tail there is no whole
     // and where the tail has no error bar, nothing is known of how far off anything is
-    let doubted = found.terms.iter().any(|t| t.series.variance != fredholm::terms::Variance::Finite);
-    if last < 3 || found.surface.is_empty() || doubted || !found.settings.roulette.ends() {
+    let doubted = run.terms.iter().any(|t| t.series.variance != fredholm::terms::Variance::Finite);
+    if last < 3 || run.surface.is_empty() || doubted || !run.settings.roulette.ends() {
         return None;
     }
     let rests = |r: &Replicates| (1..=last).find_map(|k| Some((k, Evidence::of(&r.estimate(k..k + 1)).no_error?)));
-    if let Some((k, why)) = found.surface.iter().find_map(|(_, r)| rests(r)) {
+    if let Some((k, why)) = run.surface.iter().find_map(|(_, r)| rests(r)) {
         return Some(format!("no extrapolation from the surface means of the terms: of k = {k}, {why}"));
     }
-    let radii = found.radiosity.as_ref().map(|r| r.matrix.spectral.each_ref().map(|s| s.radius));
-    let by = radii.unwrap_or(found.scene.max_albedo().as_dvec3().to_array());
+    let radii = run.radiosity.as_ref().map(|r| r.matrix.spectral.each_ref().map(|s| s.radius));
+    let by = radii.unwrap_or(run.scene.max_albedo().as_dvec3().to_array());
     let slowest = DVec3::from_array(by).max_position();
     let measured = |(estimator, r): &(Estimator, Replicates)| {
         let n = r.mean.len() - 1;
@@ -180,7 +175,7 @@ pub fn extrapolated(found: &Solved) -> Option<String> {
             used: last,
         }
     };
-    let measured: Vec<Measured> = found.surface.iter().map(measured).collect();
+    let measured: Vec<Measured> = run.surface.iter().map(measured).collect();
     let rate = radii.map_or(f64::NAN, |r| r[slowest]);
     let note = if rate.is_nan() { "" } else { "; the known rate is r(T)" };
     Some(format!(
@@ -192,25 +187,17 @@ pub fn extrapolated(found: &Solved) -> Option<String> {
 }
 
 /// The fitted order of convergence of the radiosity, from three meshes.
-pub fn orders(meshes: &[Series]) -> Vec<String> {
-    let [coarsest, coarse, fine] = meshes else { return vec![] };
-    let grey = |s: &Series, k: Option<usize>| {
-        let f = s.image();
-        k.map_or(f.total.mean, |k| f.terms[k].mean).element_sum() / 3.0
-    };
-    let order = |k: Option<usize>| {
-        let (a, b, c) = (grey(coarsest, k), grey(coarse, k), grey(fine, k));
-        let order = ((a - b) / (b - c)).abs().log2();
-        if order.is_finite() { format!("{order:.1}") } else { "–".into() }
-    };
-    let terms = fine.image().terms.len();
-    let per_term: Vec<String> = (2..terms).map(|k| format!("T{k} {}", order(Some(k)))).collect();
-    vec![format!(
+pub fn orders(run: &Run) -> Option<String> {
+    let whole = run.order(None)?;
+    let order = |order: f64| if order.is_finite() { format!("{order:.1}") } else { "–".into() };
+    let terms = run.meshes.last()?.image().terms.len();
+    let per_term = (2..terms).filter_map(|k| Some(format!("T{k} {}", order(run.order(Some(k))?))));
+    Some(format!(
         "order of convergence in h, from {}: whole image {}\n{}",
-        meshes.iter().map(|m| m.label.split(' ').nth(1).unwrap_or("?")).collect::<Vec<_>>().join(", "),
-        order(None),
-        per_term.join(", ")
-    )]
+        run.meshes.iter().map(|m| m.label.split(' ').nth(1).unwrap_or("?")).collect::<Vec<_>>().join(", "),
+        order(whole),
+        per_term.collect::<Vec<_>>().join(", ")
+    ))
 }
 
 /// What the samples of some results cannot know, where too few events are to be expected for a verdict.
@@ -229,18 +216,18 @@ pub fn doubts<'a>(results: impl Iterator<Item = &'a Series>) -> Vec<String> {
 }
 
 /// Where a whole picture is black: that nothing was found, and what there is to be seen.
-pub fn black(found: &Solved) -> Option<String> {
-    let mut all = found.terms.iter().chain(&found.path).peekable();
+pub fn black(run: &Run) -> Option<String> {
+    let mut all = run.sampled().peekable();
     all.peek()?;
-    let paths: u64 = found.terms.iter().chain(&found.path).map(|s| s.series.cost.paths).sum();
+    let paths: u64 = run.sampled().map(|s| s.series.cost.paths).sum();
     if !all.all(|s| s.series.image().total.mean == DVec3::ZERO) {
         return None;
     }
-    let camera = &found.scene.camera;
+    let camera = &run.scene.camera;
     let pixels = camera.size[0] * camera.size[1];
     let look = |p: u32| {
         let (start, direction) = camera.ray(p, [0.5; 2]);
-        found.scene.look(start, direction).filter(|v| v.on_surface())
+        run.scene.look(start, direction).filter(|v| v.on_surface())
     };
     let far: Vec<f64> = (0..pixels).filter_map(look).map(|v| v.p.as_dvec3().distance(camera.origin)).collect();
     let (near, far_off) = far.iter().fold((f64::INFINITY, 0.0f64), |a, &d| (a.0.min(d), a.1.max(d)));
@@ -252,41 +239,40 @@ pub fn black(found: &Solved) -> Option<String> {
 }
 
 /// What the reader must know before trusting an error bar.
-pub fn warnings(found: &Solved) -> Vec<String> {
+pub fn warnings(run: &Run) -> Vec<String> {
     let mut out = vec![];
-    out.extend(black(found));
-    out.extend(doubts(found.terms.iter().chain(&found.path).map(|s| &s.series)));
-    let all = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
-    for s in all.filter(|s| s.series.cost.non_finite > 0) {
+    out.extend(black(run));
+    out.extend(doubts(run.sampled().map(|s| &s.series)));
+    for s in run.results().filter(|s| s.series.cost.non_finite > 0) {
         out.push(format!(
             "{}: {} samples were not finite; they are left in the sums",
             s.series.label, s.series.cost.non_finite
         ));
     }
-    if let Some(r) = found.radiosity.as_ref().filter(|r| r.matrix.invariants.row_sum_max > 1.01) {
+    if let Some(r) = run.radiosity.as_ref().filter(|r| r.matrix.invariants.row_sum_max > 1.01) {
         out.push(format!(
             "the mesh is too coarse: a row of F sums to {:.3}, and no more than 1 can leave a patch;\nraise --patches",
             r.matrix.invariants.row_sum_max
         ));
     }
-    out.extend(variances(found));
+    out.extend(variances(run));
     out
 }
 
 /// What has no error bar because its variance is infinite or not known, and what would have one.
-fn variances(found: &Solved) -> Vec<String> {
-    let s = &found.settings;
-    let safe = if found.guide.is_some() {
+fn variances(run: &Run) -> Vec<String> {
+    let s = &run.settings;
+    let safe = if run.guide.is_some() {
         "leave --guide out"
-    } else if growth::proved(&found.scene, s.sampling, &Roulette::Albedo { from: 0 }) {
+    } else if growth::proved(&run.scene, s.sampling, &Roulette::Albedo { from: 0 }) {
         "--roulette albedo is safe"
     } else if s.sampling == bsdf::Sampling::Uniform {
         "leave --sampling uniform out"
     } else {
         "try --roulette albedo"
     };
-    let terms = found.terms.iter().map(|t| ("the tail of the terms", &s.roulette, t));
-    let path = found.path.iter().map(|p| ("the path tracer", &s.path_roulette, p));
+    let terms = run.terms.iter().map(|t| ("the tail of the terms", &s.roulette, t));
+    let path = run.path.iter().map(|p| ("the path tracer", &s.path_roulette, p));
     let mut out: Vec<String> = vec![];
     for (who, roulette, result) in terms.chain(path) {
         if let Some(what) = result.doubt.and_then(|d| d.doubt()) {
@@ -295,7 +281,7 @@ fn variances(found: &Solved) -> Vec<String> {
         }
     }
     // the matrix, or a bound, speaks where nothing was measured: of what it proves, and of the error of an error bar
-    if let (Some(r), true) = (found.radii, found.path.as_ref().is_some_and(|p| p.doubt.is_none())) {
+    if let (Some(r), true) = (run.radii, run.path.as_ref().is_some_and(|p| p.doubt.is_none())) {
         let proved = !r.bounds || r.second < 1.0;
         out.extend(
             r.warning()

@@ -4,6 +4,7 @@
 use super::progress::Bar;
 use super::{Ending, Failure, args, output, preflight, solve, sweep};
 use fredholm::engine::Settings;
+use fredholm::engine::by_matrix;
 use fredholm::engine::known::resort::with_last_resort;
 use fredholm::estimator::{self, Technique};
 use fredholm::report::figures::roulette::{self as rows, Row};
@@ -289,13 +290,9 @@ fn ratio(a: Value, b: Value) -> Value {
 
 /// The schedules whose variance, or whose measured variance, may be infinite, were they to go on for ever as they were typed.
 fn doubts(all: &[Row], description: &Description, scene: &Scene) -> Vec<(String, String)> {
-    let coarse = solve::coarse(description, scene);
+    let coarse = by_matrix::coarse(description, scene);
     let doubt = |row: &Row| {
-        let q = match row.name.parse().ok()? {
-            estimator::Roulette::Constant { q, .. } => q,
-            estimator::Roulette::Table(q) => *q.last()?,
-            _ => return None,
-        };
+        let q = roulette::constant(&row.name.parse().ok()?)?;
         let what = Radii::new(coarse.as_ref().map(|m| &m.radiosity), scene, q).warning()?;
         Some((row.name.clone(), what))
     };

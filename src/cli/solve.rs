@@ -2,62 +2,22 @@
 
 use super::args::{EstimatorName, FactorsName, GuideName, Run, Schedule, WorldName};
 use super::progress::Bar;
-use super::radiosity::Export;
+use super::write::Export;
 use super::{Ending, Failure, notes, output, preflight, write};
 use crate::cli::open::{self, Opened};
 use fredholm::engine::Settings;
-use fredholm::engine::by_matrix::{self, Discrete, Matrix, MatrixError};
-use fredholm::engine::by_rays::{self, Estimator, Sampled};
-use fredholm::engine::discretisation::{Difference, Factors};
-use fredholm::engine::guided::{self, Prepared};
+use fredholm::engine::by_rays::{Estimator, Sampled};
+use fredholm::engine::discretisation::Factors;
+use fredholm::engine::guided;
 use fredholm::estimator::Roulette;
 use fredholm::guide::ByExpectation;
 use fredholm::math::Points;
-use fredholm::progress::Progress;
-use fredholm::report::text::{summary, table};
-use fredholm::scene::bsdf::Sampling;
-use fredholm::scene::{Description, Scene};
-use fredholm::solver::Radiosity;
-use fredholm::stats::{Criterion, compare, discretisation};
-use fredholm::study::roulette;
-use fredholm::study::roulette::Radii;
-use fredholm::study::strategies::{self, Strategy};
-use fredholm::study::surface;
-use fredholm::terms::functional::Replicates;
-use fredholm::terms::{Recorded, Series, Variance};
-use std::path::PathBuf;
+use fredholm::report::text::summary;
+use fredholm::report::text::table;
+use fredholm::study;
+use fredholm::study::run::Asked;
+use std::path::Path;
 use std::time::Instant;
-
-/// Everything a run found.
-pub struct Solved {
-    pub command: String,
-    pub folder: PathBuf,
-    pub description: Description,
-    pub hash: String,
-    pub scene: Scene,
-    pub settings: Settings,
-    pub threads: usize,
-    pub started: Instant,
-    /// The first is the one whose images are shown.
-    pub terms: Vec<Sampled>,
-    pub path: Option<Sampled>,
-    /// What guided both, if anything did.
-    pub guide: Option<Prepared>,
-    pub radiosity: Option<Discrete>,
-    /// How far stored rays are from the matrix, where both were asked for.
-    pub by_rays: Option<Difference>,
-    /// Three meshes, coarse to fine, for the order of convergence: patches and image means.
-    pub orders: Vec<Series>,
-    /// Every strategy of the bidirectional estimator, where they were asked for.
-    pub strategies: Vec<Strategy>,
-    /// Surface norms by estimator.
-    pub surface: Vec<(Estimator, Replicates)>,
-    /// Whether the moments of the path tracer are finite, where its roulette is constant.
-    pub radii: Option<Radii>,
-    /// Moments of paths without roulette, where the terms are estimated by prefixes.
-    pub moments: Option<Recorded>,
-    pub verdicts: Vec<summary::VerdictRecord>,
-}
 
 /// What a command computes unless told otherwise.
 struct Default {
@@ -181,153 +141,53 @@ fn solve(run: &Run, default: Default) -> Result<Ending, Failure> {
         return Err(Failure::Usage(format!("error: stored rays have no matrix to write\nhelp: {help}")));
     }
     let folder = output::folder(run.shared.out.as_deref(), &description.name, &command, run.shared.force)?;
-    let preview = write::preview(&folder, &description, &command, run.seed);
-    let bar = Bar::new(run.shared.quiet, preview);
+    let bar = Bar::new(run.shared.quiet, write::preview(&folder, &description, &command, run.seed));
     let progress = bar.progress();
-    let stopped = || progress.stopped();
-
-    let mut found = Solved {
-        hash,
-        threads: rayon::current_num_threads(),
-        command,
-        folder,
-        description,
-        scene,
-        settings,
-        started,
-        terms: vec![],
-        path: None,
-        guide: None,
-        radiosity: None,
-        by_rays: None,
-        orders: vec![],
-        surface: vec![],
-        strategies: vec![],
-        radii: None,
-        moments: None,
-        verdicts: vec![],
+    let asked = Asked {
+        worlds: worlds.iter().map(|w| w.world()).collect(),
+        estimators,
+        optimal_roulette: run.roulette == Some(Schedule::Optimal),
+        guide: (run.guide == GuideName::Radiosity).then(|| run.patches.map_or(guided::PATCHES, |n| n as usize)),
+        strategies: run.strategies,
+        against_rays: (run.factors == Some(FactorsName::Both)).then(|| preflight::rays(run)),
+        orders: run.orders,
+        ..Asked::default()
     };
-
-    if run.roulette == Some(Schedule::Optimal)
-        && let Some(best) = roulette::optimal(&found.scene, &found.settings, progress)
-    {
-        (found.settings.roulette, found.settings.path_roulette) = (best.roulette.clone(), best.roulette);
-    }
-    if run.guide == GuideName::Radiosity {
-        let patches = run.patches.map_or(guided::PATCHES, |n| n as usize);
-        found.guide = guided::prepare(&found.description, patches, &found.settings, progress)?;
-        // without its guide the run would not be the one that was asked for
-        if found.guide.is_none() {
-            bar.finish();
-            return Ok(nothing_to_save(&found));
-        }
-    }
-    // the quick estimator first, so that there is something to see
-    for &estimator in estimators.iter().rev() {
-        if !stopped() {
-            let (scene, settings) = (&found.scene, &found.settings);
-            let guided = found.guide.as_ref().and_then(|g| g.terms(scene, estimator, settings, progress));
-            let result = guided.unwrap_or_else(|| by_rays::terms(scene, estimator, settings, progress));
-            found.terms.insert(0, result);
-        }
-    }
-    if run.strategies && !stopped() {
-        found.strategies = strategies::strategies(&found.scene, &found.settings, progress);
-    }
-    if worlds.contains(&WorldName::Path) && !stopped() {
-        let (scene, settings) = (&found.scene, &found.settings);
-        found.path = Some(match &found.guide {
-            Some(guide) => guide.path(scene, settings, progress),
-            None => by_rays::path(scene, settings, progress),
-        });
-    }
-    if worlds.contains(&WorldName::Radiosity) && !stopped() {
-        match by_matrix::radiosity(&found.description, &found.scene, &found.settings, progress) {
-            Ok(result) => found.radiosity = Some(result),
-            Err(MatrixError::Stopped) => {}
-            Err(e) => return Err(e.into()),
-        }
-        if run.factors == Some(FactorsName::Both) && !stopped() {
-            found.by_rays = apart(run, &found, progress)?;
-        }
-        if run.orders && !stopped() {
-            found.orders = orders(&found, progress)?;
-        }
-    }
-    if !estimators.is_empty() {
-        let reached = found.terms.iter().map(|t| t.spp).min().unwrap_or(0);
-        let paths = reached.min(found.settings.spp).max(1).saturating_mul(1024).min(1 << 22);
-        for estimator in [Estimator::Single, Estimator::Prefix] {
-            if !stopped() {
-                let norms = surface::norms(&found.scene, estimator, paths, &found.settings, progress);
-                found.surface.push((estimator, norms));
-            }
-        }
-    }
-    if let (true, Some(spp)) = (estimators.contains(&Estimator::Prefix) && !stopped(), aside(&found.settings)) {
-        found.moments = roulette::pilot(&found.scene, &found.settings, spp, progress);
-    }
+    let mut found = study::run::Run::new(description, scene, settings, asked);
+    found.solve(progress)?;
     bar.finish();
-
-    if found.terms.is_empty() && found.path.is_none() && found.radiosity.is_none() {
-        return Ok(nothing_to_save(&found));
+    if found.is_empty() {
+        super::note("nothing to save yet");
+        let _ = std::fs::remove_dir(&folder); // only if it is empty
+        return Ok(Ending::Interrupted);
     }
-    found.radii = radii(&found);
-    // a matrix knows more than walkers that may have missed where light is trapped
-    if found.radii.and_then(|r| r.variance()) == Some(Variance::Infinite) {
-        let alike = found.settings.roulette == found.settings.path_roulette;
-        let terms = found.terms.iter_mut().filter(|_| alike);
-        found.path.iter_mut().chain(terms).for_each(|s| s.distrust(Variance::Infinite));
-    }
-    found.verdicts = verdicts(&found);
-    let summary = write::all(&found, default.export)?;
+    let size = found.description.camera.size;
+    let record = || summary::Summary {
+        command: command.clone(),
+        scene: found.description.name.clone(),
+        scene_hash: hash.clone(),
+        seed: run.seed,
+        threads: rayon::current_num_threads(),
+        seconds: started.elapsed().as_secs_f64(),
+        width: size[0] as usize,
+        height: size[1] as usize,
+        ..summary::Summary::default()
+    };
+    let summary = write::all(&found, &folder, default.export, record)?;
+    let old = output::left_by_the_last_run(&folder);
+    summary::write(&folder.join("summary.json"), &summary)?;
+    output::remove_stale(&folder, &old, &summary.files);
     if run.shared.json {
         notes::warnings(&found).iter().for_each(|w| super::note(&format!("warning: {w}")));
         super::print(&serde_json::to_string_pretty(&summary)?)?;
     } else {
-        super::print(&people(&found, &summary, run.verbose))?;
+        super::print(&people(&found, &summary, &folder, run.verbose))?;
     }
-    if stopped() {
-        return Ok(Ending::Interrupted);
-    }
-    let differs = found.verdicts.iter().any(|v| v.outcome == fredholm::stats::Outcome::Differs);
-    let worlds = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
-    let broken = worlds.map(|s| s.series.cost.non_finite).sum::<u64>() > 0;
-    Ok(if differs || broken { Ending::Failed } else { Ending::Ok })
-}
-
-/// Interrupted before anything was found.
-fn nothing_to_save(found: &Solved) -> Ending {
-    super::note("nothing to save yet");
-    let _ = std::fs::remove_dir(&found.folder); // only if it is empty
-    Ending::Interrupted
-}
-
-/// Whether the variance of the path tracer is finite can be known from the matrix; a coarse one will do. Where there is none,
-/// the largest albedo gives a bound.
-fn radii(found: &Solved) -> Option<Radii> {
-    let q = match &found.settings.path_roulette {
-        Roulette::Constant { q, .. } => *q,
-        Roulette::Table(q) => *q.last()?,
-        _ => return None,
-    };
-    // both speak of directions drawn by the cosine, without a guide
-    if found.path.is_none() || found.guide.is_some() || found.settings.sampling == Sampling::Uniform {
-        return None;
-    }
-    if let Some(matrix) = found.radiosity.as_ref().and_then(|r| r.matrix.radiosity.dense()) {
-        return Some(Radii::new(Some(matrix), &found.scene, q));
-    }
-    let coarse = coarse(&found.description, &found.scene);
-    Some(Radii::new(coarse.as_ref().map(|m| &m.radiosity), &found.scene, q))
-}
-
-/// A coarse matrix, where the scene has one that costs little.
-pub fn coarse(description: &Description, scene: &Scene) -> Option<Matrix<Radiosity>> {
-    if scene.sides() > 400 || description.radiosity_suits().is_err() {
-        return None;
-    }
-    by_matrix::dense_matrix(description, scene, 150, 1.0, 0, Progress::NONE).ok()
+    Ok(match (progress.stopped(), found.failed()) {
+        (true, _) => Ending::Interrupted,
+        (_, true) => Ending::Failed,
+        _ => Ending::Ok,
+    })
 }
 
 /// The schedule that was typed; none if there is none, or if it is yet to be found.
@@ -363,35 +223,6 @@ pub fn fixed(asked: Option<&Schedule>) -> Result<Option<Roulette>, Failure> {
     }
 }
 
-/// Samples per pixel of the moments that `series` records aside: 3 % of the run; none where that is less than two, or where
-/// the moments of so many slots would fill the memory.
-fn aside(settings: &Settings) -> Option<u32> {
-    (settings.spp >= 64 && settings.max_bounces <= 64).then(|| (settings.spp / 32).min(16))
-}
-
-/// How far stored rays on the same patches are from the matrix.
-fn apart(run: &Run, found: &Solved, progress: Progress<'_>) -> Result<Option<Difference>, Failure> {
-    let Some(r) = &found.radiosity else { return Ok(None) };
-    match r.matrix.against_rays(&found.scene, preflight::rays(run), found.settings.seed, progress) {
-        Ok(difference) => Ok(Some(difference)),
-        Err(MatrixError::Stopped) => Ok(None),
-        Err(e) => Err(e.into()),
-    }
-}
-
-/// Meshes of N/16, N/4 and N patches through the camera, for the order of convergence.
-fn orders(found: &Solved, progress: Progress<'_>) -> Result<Vec<Series>, Failure> {
-    let coarsest = (found.settings.patches / 16).max(1);
-    let matrix = by_matrix::matrix(&found.description, &found.scene, coarsest, &found.settings, progress);
-    let picture = match matrix {
-        Ok(m) => m.through_camera(&found.scene, &found.settings, progress),
-        Err(MatrixError::Stopped) => return Ok(vec![]),
-        Err(e) => return Err(e.into()),
-    };
-    let Some(discrete) = &found.radiosity else { return Ok(vec![]) };
-    Ok(vec![picture.series, discrete.coarse.series.clone(), discrete.fine.series.clone()])
-}
-
 /// The estimator of that name.
 pub fn estimator(name: EstimatorName, children: u32) -> Estimator {
     match name {
@@ -408,32 +239,8 @@ pub fn scene_hash(canonical: &str) -> String {
     format!("{:016x}", fredholm::math::fnv1a(canonical.bytes()))
 }
 
-fn verdicts(found: &Solved) -> Vec<summary::VerdictRecord> {
-    let criterion = Criterion::default();
-    let mut all = vec![];
-    let mut judge = |name: &str, a: &Series, b: &Series, allowance: &[fredholm::terms::Functional]| {
-        // terms that one of them does not see in full are not compared
-        let comparison = match a.gap(b) {
-            None => compare(a, b, &criterion, allowance),
-            Some((from, _)) => compare(&a.before(from), b, &criterion, allowance),
-        };
-        all.extend(summary::verdicts(name, &comparison));
-    };
-    let Some(terms) = found.terms.first().map(|t| &t.series) else { return all };
-    if let Some(other) = found.terms.get(1) {
-        judge("single − prefix", terms, &other.series, &[]);
-    }
-    if let Some(path) = &found.path {
-        judge("terms − path", terms, &path.series, &[]);
-    }
-    if let Some(r) = &found.radiosity {
-        judge("terms − radiosity", terms, &r.fine.series, &discretisation(&r.fine.series, &r.coarse.series));
-    }
-    all
-}
-
 /// What a run prints: the settings, a table per world, what is known about the decay, the verdicts, the folder.
-fn people(found: &Solved, summary: &summary::Summary, verbose: bool) -> String {
+fn people(found: &study::run::Run, summary: &summary::Summary, folder: &Path, verbose: bool) -> String {
     let s = &found.settings;
     let spp = if s.time.is_none() && summary.spp < s.spp.into() {
         format!("{} of {}", summary.spp, s.spp)
@@ -441,7 +248,7 @@ fn people(found: &Solved, summary: &summary::Summary, verbose: bool) -> String {
         summary.spp.to_string()
     };
     let mut head =
-        format!("{}\nseed {}, {spp} spp, {}×{} pixels", found.command, s.seed, summary.width, summary.height);
+        format!("{}\nseed {}, {spp} spp, {}×{} pixels", summary.command, s.seed, summary.width, summary.height);
     if !found.terms.is_empty() || found.path.is_some() {
         head += &format!("; technique {}", s.technique);
         head += if s.points == Points::Sobol { "; Sobol points" } else { "" };
@@ -466,14 +273,14 @@ fn people(found: &Solved, summary: &summary::Summary, verbose: bool) -> String {
     blocks.extend(found.radiosity.iter().map(|r| world(&r.fine, &[])));
     let mut lines: Vec<String> = found.radiosity.iter().map(|r| notes::matrix_facts(r, verbose)).collect();
     lines.extend(found.radiosity.as_ref().and_then(|r| notes::unlit(&r.matrix.unlit, &found.description)));
-    lines.extend(found.by_rays.iter().map(notes::difference));
+    lines.extend(found.against_rays.iter().map(notes::difference));
     lines.extend(notes::decay_facts(found));
-    lines.extend(notes::orders(&found.orders));
+    lines.extend(notes::orders(found));
     blocks.push(lines.join("\n"));
     blocks.extend(notes::extrapolated(found));
     blocks.push(fredholm::report::text::pixel_errors::words(&summary.pixel_errors));
-    if !found.verdicts.is_empty() {
-        blocks.push(table::verdicts(&found.verdicts));
+    if !summary.verdicts.is_empty() {
+        blocks.push(table::verdicts(&summary.verdicts));
         let why = found.terms.first().and_then(|t| t.series.undecided.as_deref());
         blocks.extend(why.map(notes::undecided));
     }
@@ -482,7 +289,7 @@ fn people(found: &Solved, summary: &summary::Summary, verbose: bool) -> String {
         "{} files after {:.1} s; open {}",
         summary.files.len(),
         summary.seconds,
-        found.folder.join("index.html").display()
+        folder.join("index.html").display()
     ));
     super::paragraphs(&blocks)
 }

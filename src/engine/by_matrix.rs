@@ -149,6 +149,14 @@ pub fn dense_matrix(
     dense(Patches::graded(description, patches, grading)?, scene, max_bounces, progress)
 }
 
+/// A coarse one without terms, where the scene has one that costs little.
+pub fn coarse(description: &Description, scene: &Scene) -> Option<Matrix<Radiosity>> {
+    if scene.sides() > 400 || description.radiosity_suits().is_err() {
+        return None;
+    }
+    dense_matrix(description, scene, 150, 1.0, 0, Progress::NONE).ok()
+}
+
 /// The same as `per_row` stored rays, for what applies T once more.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Small shared mathematics: addressed random numbers, directions, columns of vectors, convex polygons.
+//! Small shared mathematics: addressed random numbers, directions, columns of vectors, convex polygons; values by name.
 //!
 //! Everything that runs per ray is plain scalar code marked `#[inline(always)]`, so that one function serves a single
 //! path and, inside a loop over lanes, a wave of paths, with the same bits.
@@ -6,6 +6,7 @@
 pub mod columns;
 pub mod direction;
 pub mod distribution;
+pub mod names;
 pub mod polygon;
 pub mod random;
 pub mod sobol;

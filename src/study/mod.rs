@@ -3,6 +3,7 @@
 //!
 //! | study | question | place |
 //! |---|---|---|
+//! | run | what do all the ways say of one scene, and of each other? | [`run::Run`] |
 //! | convergence | how do variance and squared error fall in one render? | [`convergence::Recorder`] |
 //! | split | how many samples for which term? | [`split::study`] |
 //! | roulette | noise and cost of schedules, the best of them | [`roulette::pilot`], [`roulette::optimal`] |
@@ -18,6 +19,7 @@ pub mod convergence;
 pub mod equilibrium;
 pub mod refinement;
 pub mod roulette;
+pub mod run;
 pub mod split;
 pub mod stages;
 pub mod strategies;

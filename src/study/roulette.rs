@@ -134,8 +134,9 @@ pub fn best(recorded: &Recorded, scene: &Scene) -> Option<Optimal> {
 /// ```
 /// use fredholm::scene::{Scene, load};
 /// use fredholm::engine::Settings;
+/// use fredholm::progress::Progress;
 /// use fredholm::study::roulette;
-/// ///
+///
 /// let options = load::Options { set: vec!["camera.size=[8,8]".into()], ..Default::default() };
 /// let scene = Scene::new(&load::scene("cornell", &options)?.description);
 /// let best = roulette::optimal(&scene, &Settings::default(), Progress::NONE);
@@ -147,6 +148,15 @@ pub fn optimal(scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Op
     let [w, h] = scene.camera.size.map(u64::from);
     let spp = (PILOT / (w * h)).clamp(8, 1 << 12) as u32;
     best(&pilot(scene, &settings, spp, progress)?, scene)
+}
+
+/// q from some vertex on, where a schedule settles on one.
+pub fn constant(schedule: &Roulette) -> Option<f64> {
+    match schedule {
+        Roulette::Constant { q, .. } => Some(*q),
+        Roulette::Table(q) => q.last().copied(),
+        _ => None,
+    }
 }
 
 /// Spectral radii that decide whether moments are finite under constant survival.

@@ -1,5 +1,6 @@
 //! The result type every world returns, and all that statistics and reports know.
 
+use crate::math::names::named;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -88,6 +89,28 @@ pub enum World {
     Path,
     /// The matrix over patches.
     Radiosity,
+}
+
+impl World {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Terms, Self::Path, Self::Radiosity];
+}
+
+impl std::fmt::Display for World {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Terms => "terms",
+            Self::Path => "path",
+            Self::Radiosity => "radiosity",
+        })
+    }
+}
+
+impl std::str::FromStr for World {
+    type Err = String;
+    fn from_str(name: &str) -> Result<Self, String> {
+        named(&Self::ALL, name)
+    }
 }
 
 /// Work done for a result.

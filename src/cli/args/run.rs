@@ -7,6 +7,7 @@ use fredholm::estimator::{Roulette, Technique};
 use fredholm::guide::ByExpectation;
 use fredholm::math::Points;
 use fredholm::scene::{Selection, bsdf::Sampling};
+use fredholm::terms::World;
 use std::time::Duration;
 
 /// Roulette as it is asked for.
@@ -29,6 +30,17 @@ pub enum WorldName {
     Path,
     /// The matrix over patches
     Radiosity,
+}
+
+impl WorldName {
+    /// The world of that name.
+    pub fn world(self) -> World {
+        match self {
+            Self::Terms => World::Terms,
+            Self::Path => World::Path,
+            Self::Radiosity => World::Radiosity,
+        }
+    }
 }
 
 /// Estimators of the terms.

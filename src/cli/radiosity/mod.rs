@@ -6,6 +6,7 @@ mod solvers;
 
 use super::args::Run;
 use super::progress::Bar;
+use super::write::Export;
 use super::{Ending, Failure, args::WorldName, notes, output, preflight, solve};
 use crate::cli::open::{self, Opened};
 use clap::{Args, ValueEnum};
@@ -94,15 +95,6 @@ impl SolverName {
             Self::Lu => Solver::Lu,
         })
     }
-}
-
-/// What is written for other programs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Export {
-    /// Patches, terms and norms
-    Mesh,
-    /// F as well
-    Matrix,
 }
 
 /// A colour channel.

@@ -1,10 +1,19 @@
 //! `--export`: what another program needs to check the matrix, or to use it.
 
-use super::super::Failure;
-use super::super::radiosity::Export;
 use super::Files;
+use crate::cli::Failure;
+use clap::ValueEnum;
 use fredholm::engine::by_matrix::Discrete;
 use fredholm::report::{figures::patches as mesh, text::summary, write_atomically};
+
+/// What is written for other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Export {
+    /// Patches, terms and norms
+    Mesh,
+    /// F as well
+    Matrix,
+}
 
 pub(super) fn write_mesh(r: &Discrete, what: Export, out: &mut Files) -> Result<(), Failure> {
     let m = &r.matrix;

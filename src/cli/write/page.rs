@@ -1,11 +1,12 @@
 //! The page that shows a run.
 
 use super::Files;
-use crate::cli::{Failure, solve::Solved};
+use crate::cli::Failure;
 use fredholm::report::page::html::{self, Page, Plate};
 use fredholm::report::text::summary;
+use fredholm::study::run::Run;
 
-pub(super) fn write_page(found: &Solved, out: &Files, summary: &summary::Summary) -> Result<(), Failure> {
+pub(super) fn write_page(run: &Run, out: &Files, summary: &summary::Summary) -> Result<(), Failure> {
     let path = |name: &str| out.path(name);
     let [sheet, direct, decay, variance, z] =
         ["terms.png", "direct.png", "decay.svg", "variance.svg", "z.png"].map(path);
@@ -38,7 +39,7 @@ pub(super) fn write_page(found: &Solved, out: &Files, summary: &summary::Summary
         ),
     ];
     plates.extend(candidates.into_iter().filter(|(name, _)| out.has(name)).map(|(_, plate)| plate));
-    let s = &found.settings;
+    let s = &run.settings;
     let facts = [
         ("seed", s.seed.to_string()),
         ("samples per pixel", summary.spp.to_string()),
@@ -46,20 +47,19 @@ pub(super) fn write_page(found: &Solved, out: &Files, summary: &summary::Summary
         ("technique", s.technique.to_string()),
         ("roulette of the terms (q = termination)", s.roulette.to_string()),
         ("roulette of the path tracer", s.path_roulette.to_string()),
-        ("scene hash", found.hash.clone()),
+        ("scene hash", summary.scene_hash.clone()),
         ("seconds", format!("{:.1} on {} threads", summary.seconds, summary.threads)),
     ];
     let errors = fredholm::report::text::pixel_errors::words(&summary.pixel_errors);
     let facts = facts.map(|(k, v)| (k.to_string(), v)).into_iter();
     let facts = facts.chain((!errors.is_empty()).then(|| ("errors of pixels".to_string(), errors)));
-    let worlds = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
     let page = Page {
-        title: found.description.name.clone(),
-        command: found.command.clone(),
+        title: run.description.name.clone(),
+        command: summary.command.clone(),
         facts: facts.collect(),
-        verdicts: &found.verdicts,
+        verdicts: &summary.verdicts,
         plates,
-        series: worlds.map(|s| (s.series.label.clone(), s.series.image())).collect(),
+        series: run.results().map(|s| (s.series.label.clone(), s.series.image())).collect(),
         files: out.names.iter().map(|n| (n.clone(), meaning(n).to_string())).collect(),
     };
     html::write(&out.path("index.html"), &page)?;

@@ -1,19 +1,22 @@
 //! The images of a run: every one as floats in one EXR, and what a reader looks at as PNG.
 
-use super::{Files, Pixels, attributes};
-use crate::cli::{Failure, solve::Solved};
+use super::{Files, Pixels};
+use crate::cli::Failure;
 use fredholm::engine::by_rays::Sampled;
 use fredholm::report::image::contact_sheet::{self, Cell, Sheet, direct_and_indirect, single};
+use fredholm::report::image::exr;
+use fredholm::report::image::picture;
 use fredholm::report::image::typeset::{Caption, superscript};
-use fredholm::report::image::{exr, picture, zmap};
+use fredholm::report::image::zmap;
 use fredholm::report::text::pixel_errors::{self, PixelErrors};
+use fredholm::study::run::Run;
 use fredholm::terms::{Estimate, TermImage};
 
 /// A layer with errors: its name, its image, and what is said of these errors.
 type Layer<'a> = (String, &'a TermImage, PixelErrors);
 
 /// The layers of a run that have errors.
-fn layers(found: &Solved) -> Vec<Layer<'_>> {
+fn layers(run: &Run) -> Vec<Layer<'_>> {
     let mut layers = vec![];
     let mut push = |name: String, image, s: &Sampled, part: usize, mean: &Estimate| {
         // met by chance only: a pixel rests on no more than its share of what is to be expected
@@ -24,7 +27,7 @@ fn layers(found: &Solved) -> Vec<Layer<'_>> {
         layers.push((name, image, errors));
     };
     let series = |s: &'_ Sampled| s.series.image().clone();
-    if let Some(t) = found.terms.first() {
+    if let Some(t) = run.terms.first() {
         let (f, last) = (series(t), t.terms.len());
         t.terms.iter().enumerate().for_each(|(k, image)| push(format!("T{k:02}"), image, t, k, &f.terms[k]));
         push("Tsum".into(), &t.sum, t, last + 1, &f.sum);
@@ -33,10 +36,10 @@ fn layers(found: &Solved) -> Vec<Layer<'_>> {
             push("Tall".into(), &t.total, t, last + 2, &f.total);
         }
     }
-    if let Some(p) = &found.path {
+    if let Some(p) = &run.path {
         push("path".into(), &p.total, p, 0, &p.series.image().total);
     }
-    if let Some(r) = found.radiosity.as_ref().map(|r| &r.fine) {
+    if let Some(r) = run.radiosity.as_ref().map(|r| &r.fine) {
         let (f, last) = (series(r), r.terms.len());
         r.terms.iter().enumerate().for_each(|(k, image)| push(format!("R{k:02}"), image, r, k, &f.terms[k]));
         push("Rsum".into(), &r.sum, r, last + 1, &f.sum);
@@ -46,16 +49,16 @@ fn layers(found: &Solved) -> Vec<Layer<'_>> {
 }
 
 /// Which of the errors can be trusted.
-pub(super) fn pixel_errors(found: &Solved) -> Vec<PixelErrors> {
-    layers(found).into_iter().map(|l| l.2).collect()
+pub(super) fn pixel_errors(run: &Run) -> Vec<PixelErrors> {
+    layers(run).into_iter().map(|l| l.2).collect()
 }
 
-pub(super) fn write_exr(found: &Solved, trust: &[PixelErrors], out: &mut Files, size: [u32; 2]) -> Result<(), Failure> {
-    let all = layers(found);
+pub(super) fn write_exr(run: &Run, trust: &[PixelErrors], out: &mut Files, size: [u32; 2]) -> Result<(), Failure> {
+    let all = layers(run);
     let names: Vec<String> = all.iter().map(|l| format!("{}_se", l.0)).collect();
     let mut layers: Vec<(&str, &Pixels)> = vec![];
-    let beauty = found.path.as_ref().or(found.terms.first()).map(|s| &s.total);
-    if let Some(image) = beauty.or(found.radiosity.as_ref().map(|r| &r.fine.total)) {
+    let beauty = run.path.as_ref().or(run.terms.first()).map(|s| &s.total);
+    if let Some(image) = beauty.or(run.radiosity.as_ref().map(|r| &r.fine.total)) {
         layers.push(("", &image.mean));
     }
     for ((name, image, _), errors) in all.iter().zip(&names) {
@@ -68,20 +71,15 @@ pub(super) fn write_exr(found: &Solved, trust: &[PixelErrors], out: &mut Files, 
     let layers: Vec<exr::Layer> = layers.iter().map(|(name, pixels)| exr::Layer { name, pixels }).collect();
     let flags: Vec<(String, String)> =
         trust.iter().map(|t| (format!("fredholm.{}_se", t.layer), t.why.clone())).collect();
-    let mut attributes = attributes(found).to_vec();
+    let mut attributes = out.attributes(run).to_vec();
     attributes.extend(flags.iter().map(|(name, why)| (name.as_str(), why.clone())));
     exr::write(&out.add("terms.exr"), size[0] as usize, size[1] as usize, &layers, &attributes)?;
     Ok(())
 }
 
-pub(super) fn write_pictures(
-    found: &Solved,
-    out: &mut Files,
-    size: [u32; 2],
-    caption: &Caption,
-) -> Result<(), Failure> {
+pub(super) fn write_pictures(run: &Run, out: &mut Files, size: [u32; 2], caption: &Caption) -> Result<(), Failure> {
     let [w, h] = size.map(|s| s as usize);
-    let shown = found.terms.first().or(found.radiosity.as_ref().map(|r| &r.fine));
+    let shown = run.terms.first().or(run.radiosity.as_ref().map(|r| &r.fine));
     if let Some(s) = shown {
         for (k, image) in s.terms.iter().enumerate() {
             let (picture, _) = single(&format!("T{}E", superscript(k)), w, h, &image.mean, None)?;
@@ -104,21 +102,21 @@ pub(super) fn write_pictures(
             picture.picture.write(&out.add(&format!("partial_{k:02}.png")))?;
         }
     }
-    if let Some(p) = &found.path {
+    if let Some(p) = &run.path {
         let gain = whole_gain(&p.total.mean, shown.and_then(|s| s.terms.first()));
         let (picture, _) = single("path tracer", w, h, &p.total.mean, Some(gain))?;
         picture.picture.write(&out.add("path.png"))?;
     }
-    if let (Some(t), Some(p)) = (found.terms.first(), &found.path) {
+    if let (Some(t), Some(p)) = (run.terms.first(), &run.path) {
         let z = z_values((&t.total.mean, &t.total.std_error), (&p.total.mean, &p.total.std_error));
         zmap::draw("z of the whole image: terms − path tracer", w, h, &z, caption)?.picture.write(&out.add("z.png"))?;
     }
-    if let Some(r) = &found.radiosity {
+    if let Some(r) = &run.radiosity {
         let gain = whole_gain(&r.fine.total.mean, r.fine.terms.first());
         let (picture, _) = single("radiosity", w, h, &r.fine.total.mean, Some(gain))?;
         picture.picture.write(&out.add("radiosity.png"))?;
     }
-    if let (Some(t), Some(p), Some(r)) = (found.terms.first(), &found.path, &found.radiosity) {
+    if let (Some(t), Some(p), Some(r)) = (run.terms.first(), &run.path, &run.radiosity) {
         let gain = Some(whole_gain(&p.total.mean, t.terms.first()));
         let answers = [("the series: Σ TᵏE", t), ("the path tracer", p), ("the matrix: (I − T)⁻¹E", &r.fine)];
         let cells = answers.map(|(label, s)| Cell { label: label.into(), pixels: &s.total.mean, gain });

@@ -1,24 +1,24 @@
 //! The figures of a run: how the terms decay, and how the noise falls.
 
 use super::Files;
-use crate::cli::{Failure, solve::Solved};
-use fredholm::engine::by_matrix::Discrete;
+use crate::cli::Failure;
 use fredholm::engine::by_rays::{Estimator, Sampled};
 use fredholm::report::figures::decay::{self, Decay, RateLine, independent_ratios};
 use fredholm::report::figures::variance::{self, Falling, Variance};
 use fredholm::report::image::typeset::{Caption, superscript};
 use fredholm::report::plot::{Curve, Look, Point};
-use fredholm::stats::{TermMeans, observed_rate};
+use fredholm::stats::TermMeans;
 use fredholm::study::convergence::Part;
+use fredholm::study::run::Run;
 use fredholm::terms::{scatter::Scatter, variance::Snapshot};
 use std::path::Path;
 
-pub(super) fn write_plots(found: &Solved, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
-    if found.surface.is_empty() && found.radiosity.is_none() {
-        return write_variance(found, out, caption);
+pub(super) fn write_plots(run: &Run, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
+    if run.surface.is_empty() && run.radiosity.is_none() {
+        return write_variance(run, out, caption);
     }
     let mut figure = Decay { title: "How the terms decay".into(), ..Decay::default() };
-    for (estimator, r) in &found.surface {
+    for (estimator, r) in &run.surface {
         let look = if *estimator == Estimator::Single { Look::SINGLE } else { Look::PREFIX };
         let means = TermMeans::from(r);
         let points = decay::norms(&means);
@@ -29,8 +29,8 @@ pub(super) fn write_plots(found: &Solved, out: &mut Files, caption: &Caption) ->
         figure.ratios.push(Curve { label: estimator.to_string(), points: ratios, look });
         figure.surface.push(Curve { label: format!("Monte Carlo, {estimator}"), points, look });
     }
-    if let Some(r) = &found.radiosity {
-        let points = decay::norms(&TermMeans::exact(&matrix_norms(r)));
+    if let (Some(r), Some(matrix)) = (&run.radiosity, run.norms_of_matrix()) {
+        let points = decay::norms(&TermMeans::exact(&matrix));
         figure.ratios.push(Curve { label: "matrix".into(), points: independent_ratios(&points), look: Look::MATRIX });
         figure.surface.push(Curve {
             label: format!("matrix, {} patches", r.matrix.radiosity.patches().len()),
@@ -38,8 +38,8 @@ pub(super) fn write_plots(found: &Solved, out: &mut Files, caption: &Caption) ->
             look: Look::MATRIX,
         });
     }
-    figure.lines = lines(found);
-    for s in found.terms.iter() {
+    figure.lines = lines(run);
+    for s in run.terms.iter() {
         let look = if s.series.label.starts_with("single") { Look::SINGLE } else { Look::PREFIX };
         let point = |(k, n): (usize, &Option<fredholm::terms::norms::SquaredNorm>)| {
             let n = (*n)?;
@@ -54,7 +54,7 @@ pub(super) fn write_plots(found: &Solved, out: &mut Files, caption: &Caption) ->
     for path in decay::draw(&figure, caption)?.write(&out.folder, "decay")? {
         out.names.push(name_of(&path));
     }
-    write_variance(found, out, caption)
+    write_variance(run, out, caption)
 }
 
 fn name_of(path: &Path) -> String {
@@ -62,29 +62,24 @@ fn name_of(path: &Path) -> String {
 }
 
 /// Observed rate, guarantee, tail bound and spectral radius.
-fn lines(found: &Solved) -> Vec<RateLine> {
+fn lines(run: &Run) -> Vec<RateLine> {
     let mut lines = vec![];
-    let g = f64::from(found.scene.max_albedo().max_element());
-    if let Some((_, r)) = found.surface.iter().find(|s| s.0 == Estimator::Single) {
+    let g = run.guaranteed_rate().max_element();
+    if let Some(r) = run.norms() {
         let means = TermMeans::from(r);
-        lines.extend(observed_rate(&means).ok().as_ref().map(RateLine::observed));
+        lines.extend(run.observed_rate().and_then(Result::ok).as_ref().map(RateLine::observed));
         lines.push(RateLine::guaranteed(g, means.mean[0]));
         let k = means.mean.len() - 1;
         lines.extend(RateLine::tail_bound(g, k, means.mean[k]));
     }
-    if let Some(r) = &found.radiosity {
+    if let (Some(r), Some(matrix)) = (&run.radiosity, run.norms_of_matrix()) {
         let radius = r.matrix.spectral.iter().map(|s| s.radius).fold(0.0, f64::max);
-        lines.extend(RateLine::spectral(radius, &matrix_norms(r)));
+        lines.extend(RateLine::spectral(radius, &matrix));
     }
     lines
 }
 
-/// The mean over channels of `‖T_h^k E‖₁`.
-fn matrix_norms(r: &Discrete) -> Vec<f64> {
-    r.matrix.surface.iter().map(|v| v.element_sum() / 3.0).collect()
-}
-
-fn write_variance(found: &Solved, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
+fn write_variance(run: &Run, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
     let mut figure = Variance { title: "How the noise falls".into(), curves: vec![] };
     // a slot of the snapshots, or their sum
     let mut curve = |label: String, s: &Sampled, slot: Option<usize>| {
@@ -104,13 +99,13 @@ fn write_variance(found: &Solved, out: &mut Files, caption: &Caption) -> Result<
             figure.curves.push(Falling { curve: Curve { label, points, look }, slope });
         }
     };
-    if let Some(s) = found.terms.first() {
+    if let Some(s) = run.terms.first() {
         curve(format!("Σ, {}", s.series.label), s, None);
         for k in 0..s.terms.len() {
             curve(format!("T{}E", superscript(k)), s, Some(k));
         }
     }
-    if let Some(p) = &found.path {
+    if let Some(p) = &run.path {
         curve("path tracer".into(), p, None);
     }
     if !figure.curves.is_empty() {

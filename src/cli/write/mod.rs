@@ -4,20 +4,20 @@ mod mesh;
 mod page;
 mod pictures;
 mod plots;
+mod strategies;
 
-use super::radiosity::Export;
-use super::solve::Solved;
-use super::{Failure, output, strategies};
+use super::Failure;
 use fredholm::engine::by_matrix::Discrete;
-use fredholm::engine::by_rays::Estimator;
 use fredholm::engine::radius::radius_limit;
 use fredholm::report::image::typeset::Caption;
 use fredholm::report::text::summary;
 use fredholm::scene::Description;
-use fredholm::stats::{Limit, TermMeans, observed_rate};
+use fredholm::stats::Limit;
 use fredholm::study::roulette;
+use fredholm::study::run::Run;
 use fredholm::terms::{Estimate, TermFilm, TermImage};
 use glam::DVec3;
+pub use mesh::Export;
 use pictures::terms_sheet;
 pub use pictures::z_values;
 use std::path::{Path, PathBuf};
@@ -40,36 +40,40 @@ pub fn preview(folder: &Path, d: &Description, command: &str, seed: u64) -> impl
     }
 }
 
-/// Writes everything and returns the summary that was written.
-pub fn all(found: &Solved, export: Option<Export>) -> Result<summary::Summary, Failure> {
-    let mut out = Files { folder: found.folder.clone(), names: vec![] };
+/// Writes everything into a folder and returns the record of it, complete; `record` tells what all records tell, by now.
+pub fn all(
+    run: &Run,
+    folder: &Path,
+    export: Option<Export>,
+    record: impl Fn() -> summary::Summary,
+) -> Result<summary::Summary, Failure> {
+    let mut out = Files { folder: folder.to_path_buf(), names: vec![], record: record() };
     let caption =
-        Caption { command: found.command.clone(), seed: found.settings.seed, scene: found.description.name.clone() };
-    let size = found.description.camera.size;
-    let trust = pictures::pixel_errors(found);
-    pictures::write_exr(found, &trust, &mut out, size)?;
-    pictures::write_pictures(found, &mut out, size, &caption)?;
-    if !found.strategies.is_empty() {
+        Caption { command: out.record.command.clone(), seed: out.record.seed, scene: out.record.scene.clone() };
+    let size = run.description.camera.size;
+    let trust = pictures::pixel_errors(run);
+    pictures::write_exr(run, &trust, &mut out, size)?;
+    pictures::write_pictures(run, &mut out, size, &caption)?;
+    if !run.strategies.is_empty() {
         out.names.extend(strategies::FILES.map(str::to_owned));
-        strategies::write(&out.folder, &found.strategies, size.map(|s| s as usize), &caption, &attributes(found))?;
+        strategies::write(folder, &run.strategies, size.map(|s| s as usize), &caption, &out.attributes(run))?;
     }
-    plots::write_plots(found, &mut out, &caption)?;
-    if let (Some(what), Some(r)) = (export, &found.radiosity) {
+    plots::write_plots(run, &mut out, &caption)?;
+    if let (Some(what), Some(r)) = (export, &run.radiosity) {
         mesh::write_mesh(r, what, &mut out)?;
     }
     out.names.push("index.html".into());
     out.names.push("summary.json".into());
-    let summary = summary::Summary { pixel_errors: trust, ..summarise(found, &out.names) };
-    page::write_page(found, &out, &summary)?;
-    let old = output::left_by_the_last_run(&found.folder);
-    summary::write(&out.path("summary.json"), &summary)?;
-    output::remove_stale(&found.folder, &old, &out.names);
+    let files = out.names.clone();
+    let summary = summary::Summary { pixel_errors: trust, files, ..summarise(run, record()) };
+    page::write_page(run, &out, &summary)?;
     Ok(summary)
 }
 
 struct Files {
     folder: PathBuf,
     names: Vec<String>,
+    record: summary::Summary,
 }
 
 impl Files {
@@ -83,67 +87,44 @@ impl Files {
     fn has(&self, name: &str) -> bool {
         self.names.iter().any(|n| n == name)
     }
-}
-
-/// What an EXR says of how it was made; nothing that differs between two equal runs.
-fn attributes(found: &Solved) -> [(&'static str, String); 5] {
-    [
-        ("fredholm.command", found.command.clone()),
-        ("fredholm.seed", found.settings.seed.to_string()),
-        ("fredholm.spp", spp(found).to_string()),
-        ("fredholm.scene_hash", found.hash.clone()),
-        ("fredholm.version", env!("CARGO_PKG_VERSION").to_string()),
-    ]
-}
-
-/// Samples per pixel that every world has: fewer than asked for when interrupted.
-fn spp(found: &Solved) -> u32 {
-    let all = found.terms.iter().chain(&found.path).chain(found.radiosity.as_ref().map(|r| &r.fine));
-    all.map(|s| s.spp).min().unwrap_or(0)
-}
-
-fn summarise(found: &Solved, files: &[String]) -> summary::Summary {
-    let size = found.description.camera.size;
-    let first = found.terms.first();
-    let image = first.map(|t| t.series.image());
-    let last = first.and_then(|t| t.snapshots.last());
-    let variance: Vec<DVec3> = last.map_or(vec![], |s| s.slots.iter().map(|v| v.channels * f64::from(s.spp)).collect());
-    let g = found.scene.max_albedo().as_dvec3();
-    let single = found.surface.iter().find(|s| s.0 == Estimator::Single);
-    let fit = single.and_then(|(_, r)| observed_rate(&TermMeans::from(r)).ok());
-    let all = found.terms.iter().chain(&found.path).chain(found.radiosity.iter().flat_map(|r| [&r.fine, &r.coarse]));
-    summary::Summary {
-        command: found.command.clone(),
-        scene: found.description.name.clone(),
-        scene_hash: found.hash.clone(),
-        seed: found.settings.seed,
-        spp: u64::from(spp(found)),
-        max_bounces: found.settings.max_bounces,
-        threads: found.threads,
-        seconds: found.started.elapsed().as_secs_f64(),
-        width: size[0] as usize,
-        height: size[1] as usize,
-        terms: image.map_or(vec![], |f| summary::terms(&f.terms, &variance, first.map_or(&[], |t| &t.rays))),
-        tail: image.map_or(Estimate::NONE, |f| f.tail),
-        sum: image.map_or(Estimate::NONE, |f| f.sum),
-        path: found.path.as_ref().map(|p| p.series.image().total),
-        radiosity: found.radiosity.as_ref().map(radiosity_summary),
-        cross_moments: found.moments.as_ref().map(|m| summary::cross_moments(m, roulette::beyond(&found.scene))),
-        bounds: summary::Bounds {
-            max_albedo: g,
-            observed_rate: fit.as_ref().map_or(f64::NAN, |f| f.rate),
-            observed_rate_error: fit.as_ref().map_or(f64::NAN, |f| f.std_error),
-            tail_bound: single.map_or(DVec3::NAN, |(_, r)| tail_bound(g, r.mean[r.mean.len() - 2])),
-        },
-        verdicts: found.verdicts.clone(),
-        files: files.to_vec(),
-        series: all.map(|s| s.series.clone()).collect(),
-        ..summary::Summary::default()
+    /// What an EXR says of how it was made; nothing that differs between two equal runs.
+    fn attributes(&self, run: &Run) -> [(&'static str, String); 5] {
+        [
+            ("fredholm.command", self.record.command.clone()),
+            ("fredholm.seed", run.settings.seed.to_string()),
+            ("fredholm.spp", run.spp().to_string()),
+            ("fredholm.scene_hash", self.record.scene_hash.clone()),
+            ("fredholm.version", env!("CARGO_PKG_VERSION").to_string()),
+        ]
     }
 }
 
-fn tail_bound(g: DVec3, last: DVec3) -> DVec3 {
-    DVec3::select(g.cmplt(DVec3::ONE), g / (1.0 - g) * last, DVec3::NAN)
+/// The record of a run.
+fn summarise(run: &Run, record: summary::Summary) -> summary::Summary {
+    let first = run.terms.first();
+    let image = first.map(|t| t.series.image());
+    let last = first.and_then(|t| t.snapshots.last());
+    let variance: Vec<DVec3> = last.map_or(vec![], |s| s.slots.iter().map(|v| v.channels * f64::from(s.spp)).collect());
+    let fit = run.observed_rate().and_then(Result::ok);
+    summary::Summary {
+        spp: u64::from(run.spp()),
+        max_bounces: run.settings.max_bounces,
+        terms: image.map_or(vec![], |f| summary::terms(&f.terms, &variance, first.map_or(&[], |t| &t.rays))),
+        tail: image.map_or(Estimate::NONE, |f| f.tail),
+        sum: image.map_or(Estimate::NONE, |f| f.sum),
+        path: run.path.as_ref().map(|p| p.series.image().total),
+        radiosity: run.radiosity.as_ref().map(radiosity_summary),
+        cross_moments: run.moments.as_ref().map(|m| summary::cross_moments(m, roulette::beyond(&run.scene))),
+        bounds: summary::Bounds {
+            max_albedo: run.guaranteed_rate(),
+            observed_rate: fit.as_ref().map_or(f64::NAN, |f| f.rate),
+            observed_rate_error: fit.as_ref().map_or(f64::NAN, |f| f.std_error),
+            tail_bound: run.tail_bound().unwrap_or(DVec3::NAN),
+        },
+        verdicts: run.verdicts.iter().flat_map(|v| summary::verdicts(v.name, &v.comparison)).collect(),
+        series: run.results().chain(run.radiosity.as_ref().map(|r| &r.coarse)).map(|s| s.series.clone()).collect(),
+        ..record
+    }
 }
 
 fn radiosity_summary(r: &Discrete) -> summary::Radiosity {

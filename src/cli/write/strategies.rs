@@ -1,9 +1,10 @@
 //! `--strategies`: the pyramid of the bidirectional estimator, as pictures and layers.
 
-use super::Failure;
+use crate::cli::Failure;
 use fredholm::report::figures::pyramid::{Stone, draw};
+use fredholm::report::image::exr;
 use fredholm::report::image::typeset::Caption;
-use fredholm::report::{image::exr, text::table};
+use fredholm::report::text::table;
 use fredholm::study::strategies::Strategy;
 use std::path::Path;
 
