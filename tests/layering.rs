@@ -253,7 +253,17 @@ fn nothing_upstream_imports_from_downstream() {
 
 #[test]
 fn no_files_import_each_other_in_a_circle() {
-    let circles: Vec<String> = Crate::read(&src()).circles().into_iter().map(|c| c.join("\n  ")).collect();
+    let all = Crate::read(&src());
+    let edges = all.edges();
+    let inside = |circle: &Vec<String>| -> String {
+        let named = |m: &Names| circle.contains(&m.join("::"));
+        let lines = edges.iter().filter(|(m, _)| named(m)).map(|(m, to)| {
+            let to: Vec<String> = to.iter().filter(|t| named(t)).map(|t| t.join("::")).collect();
+            format!("{} uses {}", m.join("::"), to.join(", "))
+        });
+        lines.collect::<Vec<_>>().join("\n  ")
+    };
+    let circles: Vec<String> = all.circles().iter().map(inside).collect();
     assert!(circles.is_empty(), "{} circles:\n  {}\n", circles.len(), circles.join("\n\n  "));
 }
 
