@@ -6,11 +6,11 @@
 //! - its coordinates are `i32`, also in charts: bars and marks would be off by up to half a pixel, so that everything is drawn
 //!   ten times too large anyway;
 //! - a logarithmic axis has ticks at powers of ten only: within a decade it has none, or none with a round label;
-//! - nothing is clipped: what lies outside the axes is drawn outside, what is infinite on the edge, what is NaN at the origin;
+//! - ends outside the axes are moved onto the frame one by one: a bound that leaves the frame is drawn with another slope;
 //! - error bars have no arrow where the frame cuts them, and no upper limits where they reach zero on a logarithmic axis;
-//! - legends stand inside the frame, in one line for each curve.
+//! - legends stand inside the frame, over the data, in one line for each curve.
 //!
-//! What would be left to a chart is the frame and its grid: thirty lines of the panel.
+//! What would be left to a chart is the frame and its grid, thirty lines of the panel, with ticks that are given to it.
 
 mod axis;
 mod canvas;
