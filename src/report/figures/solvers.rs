@@ -113,7 +113,7 @@ pub fn csv(histories: &[History]) -> String {
     csv.text()
 }
 
-/// The numbers of [`table`] and [`csv`] for programs.
+/// The numbers of [`table()`] and [`csv()`] for programs.
 pub fn machine(histories: &[History]) -> Value {
     let solver = |h: &History| {
         let at = MILESTONES.map(|m| {

@@ -5,7 +5,7 @@
 //! | branching | rays per path against k, straight lines of slope log N | V against k |
 //! | any other | V against k | V · rays of a path |
 
-use super::{Row, Sweep};
+use super::rows::{Row, Sweep};
 use crate::report::{
     ReportError,
     image::typeset::Caption,
