@@ -98,7 +98,7 @@ fn cv(runs: &[Vec<(Measured, f64)>], spp: u32, slot: usize) -> f64 {
 
 /// Wrong estimators as they are, one run after another.
 #[test]
-pub(super) fn every_term_that_is_one_percent_off_is_found() {
+fn every_term_that_is_one_percent_off_is_found() {
     const RUNS: u64 = 5;
     let mut account = open("every_term_that_is_one_percent_off_is_found");
     let seed = account.seed();
