@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::ledger;
 use common::sampling::plan;
 use fredholm::estimator::render::{Amount, render, render_in_passes};
 use fredholm::estimator::{Prefix, Roulette, Technique, TermEstimator};
@@ -13,26 +14,50 @@ use fredholm::progress::Progress;
 use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::load::{self, Options};
-use fredholm::stats::{Measured, critical, two_sided_p};
+use fredholm::stats::{Measured, Slope, critical, two_sided_p};
 use fredholm::study::convergence::Part;
 use fredholm::terms::scatter::Scatter;
 use fredholm::terms::{TermFilm, TermImage, Variance};
 use std::ops::Range;
+use std::slice;
 
-/// The curve of a sum of slots from 1 to `spp / replicates` samples per replicate.
-fn curve<T: Transport>(
+/// The curves of sums of slots from 1 to `spp / replicates` samples per replicate, all of one render.
+fn curves<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
     estimator: &impl TermEstimator<T>,
     amount: Amount,
-    slots: Range<usize>,
-) -> Part {
-    let mut points = vec![];
+    slots: &[Range<usize>],
+) -> Vec<Part> {
+    let empty = |_| Part { name: "all".into(), points: vec![], variance: Variance::Finite };
+    let mut parts: Vec<Part> = slots.iter().map(empty).collect();
     render_in_passes(t, sensor, estimator, amount, Progress::NONE, &mut |film, planned| {
-        points.push((film.least_samples(), Scatter::of(film, slots.clone(), None)));
+        for (part, slots) in parts.iter_mut().zip(slots) {
+            part.points.push((film.least_samples(), Scatter::of(film, slots.clone(), None)));
+        }
         planned
     });
-    Part { name: "all".into(), points, variance: Variance::Finite }
+    parts
+}
+
+/// How often intervals of 95 % of the slopes miss −1, curve by curve: as they are, and half as long.
+fn missed(trials: u32, curves: &dyn Fn(u32) -> Vec<Part>) -> Vec<[u64; 2]> {
+    let slopes: Vec<Vec<Slope>> =
+        (0..trials).map(|i| curves(i).iter().map(|part| part.slope().unwrap()).collect()).collect();
+    let n = f64::from(trials);
+    let of = |c: usize| {
+        let all: Vec<Slope> = slopes.iter().map(|s| s[c]).collect();
+        let t = critical(0.05, 15.0);
+        let missed =
+            [1.0, 0.5].map(|f| all.iter().filter(|s| (s.slope + 1.0).abs() > f * t * s.std_error).count() as u64);
+        let mean = all.iter().map(|s| s.slope).sum::<f64>() / n;
+        let variance = all.iter().map(|s| (s.slope - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        let claimed = all.iter().map(|s| s.std_error.powi(2)).sum::<f64>() / n;
+        let ratio = (claimed / variance).sqrt();
+        eprintln!("{missed:?} of {trials} miss −1 at 95 %; mean {mean:.4}, claimed/true error {ratio:.3}");
+        missed
+    };
+    (0..slopes[0].len()).map(of).collect()
 }
 
 /// Four rows that lose light; rows 0 and 2 emit.
@@ -49,43 +74,35 @@ fn builtin(name: &str, size: [u32; 2]) -> Scene {
     Scene::new(&d)
 }
 
+/// The promise of a slope: its interval of 95 % misses −1 in 5 % of the renders at most. Nothing here is taken to be normal: hits of a
+/// lamp are rare, three channels share every path, and the three curves of a scene share their films, which Bonferroni allows.
+///
+/// ln V is skewed where few events carry V, and then misses too often: in 36 pixels T2 rests on 130 events at the end of its
+/// curve and on fewer than 10 at its beginning, and 7.7 % of 400 slopes missed. More pixels have more events: of 800 slopes in 256
+/// and 576 pixels, with other seeds, 4.4 % missed. So the promise is tested there, at its own rate.
+///
+/// **Power.** At the level of one comparison, 1.3·10⁻⁹, some 40 of 256 must miss: intervals half as long miss in a third of the
+/// renders and are found, which is asserted.
 #[test]
 fn slopes_of_renders_cover_minus_one() {
+    const TRIALS: u32 = 256;
     let mut account = common::open("slopes_of_renders_cover_minus_one");
     let key = |trial: u32| Key::new(account.seed(), "slopes").branch(trial);
     let amount = |trial| Amount { spp: 16 * 16, replicates: 16, key: key(trial) };
-    // nothing here is taken to be normal: hits of a lamp are rare, and three channels share every path
-    let (walk, estimator) = (walk(), Prefix(plan(3, Technique::Scatter, &Roulette::Never)));
-    let cornell = builtin("cornell", [6, 6]);
+    let (walk, scatter) = (walk(), Prefix(plan(3, Technique::Scatter, &Roulette::Never)));
+    let matrix = missed(1000, &|i| curves(&walk, &Rows(4), &scatter, amount(i), slice::from_ref(&(0..5))))[0];
+    let cornell = builtin("cornell", [16, 16]);
     let t = SceneTransport::new(&cornell);
-    let misses = |trials: u32, of: &dyn Fn(u32) -> Part| {
-        let (mut missed, mut sum, mut claimed) = (0, vec![], 0.0);
-        for trial in 0..trials {
-            let s = of(trial).slope().unwrap();
-            missed += u64::from((s.slope + 1.0).abs() > critical(0.05, 15.0) * s.std_error);
-            sum.push(s.slope);
-            claimed += s.std_error * s.std_error / f64::from(trials);
-        }
-        let n = f64::from(trials);
-        let mean = sum.iter().sum::<f64>() / n;
-        let variance = sum.iter().map(|b| (b - mean) * (b - mean)).sum::<f64>() / (n - 1.0);
-        eprintln!(
-            "{missed} of {trials} miss −1 at 95 %; mean {mean:.4}, claimed/true error {:.3}",
-            (claimed / variance).sqrt()
-        );
-        missed
-    };
-    let matrix = misses(1000, &|i| curve(&walk, &Rows(4), &estimator, amount(i), 0..5));
     let mis = Prefix(plan(2, Technique::Mis, &Roulette::Never));
-    let direct = misses(400, &|i| curve(&t, &cornell.camera, &mis, amount(i), 1..2));
-    let indirect = misses(400, &|i| curve(&t, &cornell.camera, &mis, amount(i), 2..3));
-    let edges = misses(400, &|i| curve(&t, &cornell.camera, &mis, amount(i), 0..4));
-    common::assert_rate(&mut account, "matrix, scatter", matrix, 1000, 0.05);
-    common::assert_rate(&mut account, "Cornell box, T1", direct, 400, 0.05);
-    // in 36 pixels a few carry all the noise of T2 and of the lamp's edge, with fourth moments that 256 samples hardly know:
-    // the promise is then twice the rate
-    common::assert_rate_at_most(&mut account, "Cornell box, T2", indirect, 400, 0.1);
-    common::assert_rate_at_most(&mut account, "Cornell box, all", edges, 400, 0.1);
+    let scene = missed(TRIALS, &|i| curves(&t, &cornell.camera, &mis, amount(i), &[1..2, 2..3, 0..4]));
+    let parts = ["Cornell box, T1", "Cornell box, T2", "Cornell box, all"].into_iter().zip(scene);
+    for (i, (what, [as_it_is, half])) in [("matrix, scatter", matrix)].into_iter().chain(parts).enumerate() {
+        let trials = if i == 0 { 1000 } else { TRIALS.into() };
+        common::assert_rate_at_most(&mut account, what, as_it_is, trials, 0.05);
+        // the errors at the edge of the lamp are half too long, so that halves of them are not far off
+        let found = common::at_least(half, trials, 0.05) < ledger::share("slopes_of_renders_cover_minus_one").level();
+        assert!(found || i == 3, "{what}: errors half as long miss in {half} of {trials} only");
+    }
 }
 
 #[test]
@@ -98,7 +115,7 @@ fn sobol_points_fall_faster_in_a_smooth_scene() {
     let slope = |points| {
         let key = Key::new(account.seed(), "smooth").with_points(points, 64);
         let amount = Amount { spp: 64 * 128, replicates: 64, key };
-        curve(&t, &scene.camera, &estimator, amount, 1..2).slope().unwrap()
+        curves(&t, &scene.camera, &estimator, amount, slice::from_ref(&(1..2)))[0].slope().unwrap()
     };
     let (loose, even) = (slope(Points::Independent), slope(Points::Sobol));
     let t = critical(account.spend(2), 63.0);

@@ -1,5 +1,5 @@
 //! The significance of the whole suite is spent once, and by tests that exist.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod common;
 

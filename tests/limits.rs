@@ -14,6 +14,7 @@ use fredholm::progress::Progress;
 use fredholm::scene::description::{Material, Sides};
 use fredholm::scene::{Description, Scene, load};
 use fredholm::solver::{Neumann, Radiosity, direct};
+use fredholm::stats::order::ORDERS;
 use fredholm::stats::{convergence_order, limit};
 use glam::DVec3;
 use serde_json::Value;
@@ -145,16 +146,25 @@ fn mixed(name: &str) -> bool {
     name.contains("at point") || name.starts_with(['T', '‖'])
 }
 
-/// The values that miss the error stated for them, and how many there are. A difference of meshes is small by accident
-/// where it changes its sign, so the error stated is the largest of its kind: that of the limit for means of L and for r(T);
-/// three times the largest difference of the last two meshes (Roache) for single terms, their norms, and points.
+/// What the error of the limit may be where parts of both signs meet, in units of the largest last step M of its kind. If steps fall
+/// from mesh to mesh at least as with the least order p that a limit allows for, what is left beyond the finest mesh
+/// is at most M/(2^p − 1) in either direction; and the limit itself was moved from the finest mesh by its share of a step, at
+/// most (1/(2^p − 1) + 1/(2^q − 1))/2 · M with q the largest order. The triangle inequality adds the two: 1.32 M. (0.9 M is the
+/// most that is found.)
+fn of_both_signs() -> f64 {
+    let [left, least] = ORDERS.map(|p| 1.0 / (2f64.powf(p) - 1.0));
+    left + 0.5 * (left + least)
+}
+
+/// The values that miss the error stated for them. A difference of meshes is small by accident where it changes its sign, so the error
+/// stated is the largest of its kind: that of the limit for means of L and for r(T), [`of_both_signs`] for the rest.
 fn misses(truths: &Values, found: &[Vec<(f64, f64, f64)>]) -> Vec<String> {
     let limits: Vec<_> = found.iter().map(|points| limit(points).unwrap()).collect();
     let mut stated = std::collections::HashMap::new();
     for (((name, ..), l), points) in truths.iter().zip(&limits).zip(found) {
         let largest: &mut f64 = stated.entry(kind(name)).or_default();
         let step = (points[2].1 - points[1].1).abs();
-        *largest = largest.max(if mixed(name) { 3.0 * step } else { l.half_width });
+        *largest = largest.max(if mixed(name) { of_both_signs() * step } else { l.half_width });
     }
     let miss = |((name, truth, known), l): (&(String, f64, f64), &fredholm::stats::Limit)| {
         let (off, allowed) = ((l.value - truth).abs(), stated[&kind(name)] + known + SINGLE);
@@ -179,9 +189,10 @@ fn the_continuous_cube_is_the_limit_of_its_meshes() {
         for ((name, truth, _), points) in truths.iter().zip(&right).filter(|(t, _)| t.0.starts_with("L over")) {
             assert!(limit(points).unwrap().half_width < 3e-3 * truth, "{id}: {name}");
         }
-        // walls that reflect a hundredth more than they should
-        let wrong = on_meshes(&case, &[4, 8, 16], 1.0, 1.01);
+        // walls that reflect three in a thousand more than they should: most values tell
+        let wrong = on_meshes(&case, &[4, 8, 16], 1.0, 1.003);
         let caught = misses(&truths, &wrong);
+        println!("{id}: {} of {} values tell of walls that are 0.3 % too bright", caught.len(), truths.len());
         assert!(caught.iter().any(|m| m.starts_with("L over faces")) && caught.len() > 30, "{id}: {}", caught.len());
     }
 }

@@ -5,7 +5,7 @@
 //! total (against the resolvent `(I − T)⁻¹ E`), for
 //! single, prefix, path tracer × scatter, connect, MIS × six roulette schedules.
 //!
-//! **Power.** 11 000 comparisons of the largest test share 2·10⁻⁸, so t* ≈ 7.5 at 255 degrees of freedom. A value of
+//! **Power.** 12 000 comparisons of the largest test share 5·10⁻⁹, so t* ≈ 7.6 at 255 degrees of freedom. A value of
 //! coefficient of variation cv is proved within 1 % (and an error of 1 % is missed as rarely as a false alarm is raised)
 //! from n = (2 t* cv/0.01)² ≈ 2·10⁶ cv² samples on, and an error of half the value is seen from 900 cv² samples on. The
 //! mean over rows has 2¹⁹ samples here (2¹⁸ on small matrices, a quarter for single): 1 % for cv ≤ 0.5, which are the low

@@ -1,7 +1,20 @@
 //! `fredholm sweep`: a row per value, numbers that programs can read, costs that are known, and refusals.
 #![allow(clippy::unwrap_used)]
 
+#[path = "sweep/refusals.rs"]
+mod refusals;
+#[path = "sweep/samples.rs"]
+mod samples;
+
+use fredholm::engine::Settings;
+use fredholm::estimator::Roulette;
+use fredholm::progress::Progress;
+use fredholm::report::image::exr;
 use fredholm::report::text::summary;
+use fredholm::scene::Scene;
+use fredholm::scene::load::{self, Options};
+use fredholm::stats::variance_slope;
+use fredholm::study::split;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
@@ -179,99 +192,6 @@ impl Swept {
     }
 }
 
-/// Every number of samples is that of a render of its own, to the last bit; nothing is rendered twice.
-#[test]
-fn variance_falls_in_one_render() {
-    let line =
-        "cornell --over spp --estimator prefix,path --technique connect,mis --size 8x8 --max-bounces 2 --seed 4 -q";
-    let s = swept(&format!("{line} --values 16,48,64"));
-    assert_eq!(s.values(), ["prefix connect", "prefix mis", "path connect", "path mis"]);
-    assert!(s.rows.iter().all(|r| ["16", "48", "64"].contains(&r["n"].as_str())));
-    assert!(s.rows.iter().all(|r| !r["value"].starts_with("path") || r["k"] == "all"), "a path tracer has one value");
-    for n in [16, 48] {
-        let short = swept(&format!("{line} --spp {n} --values {n}"));
-        for value in s.values() {
-            assert_eq!(s.at(value, "all", n, "variance"), short.at(value, "all", n, "variance"), "{value}, {n}");
-        }
-        for k in ["0", "1", "2", "tail"] {
-            assert_eq!(s.at("prefix mis", k, n, "rays"), short.at("prefix mis", k, n, "rays"));
-            assert_eq!(s.at("prefix mis", k, n, "variance"), short.at("prefix mis", k, n, "variance"), "{k}, {n}");
-        }
-    }
-    let (v, rays) = (s.at("prefix mis", "2", 64, "variance"), s.at("prefix mis", "2", 64, "rays_per_path"));
-    assert!((s.at("prefix mis", "2", 64, "efficiency_per_ray") * 64.0 * v * rays - 1.0).abs() < 1e-9);
-    assert!(s.at("prefix mis", "1", 16, "slope") < -0.5 && s.at("prefix mis", "1", 16, "slope_std_error") > 0.0);
-    let mut names: Vec<String> =
-        std::fs::read_dir(&s.folder).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    assert_eq!(names, ["summary.json", "sweep.csv", "variance.png", "variance.svg"]);
-    let svg = std::fs::read_to_string(s.folder.join("variance.svg")).unwrap();
-    for words in ["The sum of all terms", "prefix connect", "slope −1", "--over spp"] {
-        assert!(svg.contains(words), "{words}");
-    }
-    assert!(s.said.out.contains("slope of V ± se"), "{}", s.said.out);
-}
-
-#[test]
-fn squared_errors_need_a_reference_of_its_own_stream() {
-    let line = "--size 8x8 --max-bounces 2 --spp 64 -q";
-    let s = swept(&format!("cornell --over spp {line} --reference 256"));
-    // without bias the squared error is the variance, within both errors
-    for k in ["1", "2", "tail", "all"] {
-        let of = |column| s.at("prefix", k, 64, column);
-        let (off, error) = (of("mse") - of("variance"), of("mse_std_error").hypot(of("variance_std_error")));
-        assert!(off.abs() < 10.0 * error, "{k}: {off} ± {error}");
-    }
-    assert!(s.said.out.contains("its variance is subtracted") && s.said.out.contains("RMSE"), "{}", s.said.out);
-
-    let desk = TempDir::new().unwrap();
-    for (seed, out) in [(0, "same"), (9, "other")] {
-        let line = format!("series cornell --worlds terms {line} --seed {seed} -o {out}");
-        assert_eq!(run(desk.path(), &line).code, 0);
-    }
-    let against = |folder: &str, more: &str| {
-        run(desk.path(), &format!("sweep cornell --over spp {line} --reference {folder} {more} -o swept --force"))
-    };
-    assert_eq!(against("other", "").code, 0);
-    for (folder, more, says) in [
-        ("same", "", "the reference has seed 0, too"),
-        ("other", "--max-bounces 3", "this run k ≤ 3"),
-        ("other", "--size 4x4", "render both with the same scene and --size"),
-        ("nowhere", "", "nowhere"),
-    ] {
-        let line = line.replace("--max-bounces 2", if more.contains("bounces") { more } else { "--max-bounces 2" });
-        let line = line.replace("--size 8x8", if more.contains("size") { more } else { "--size 8x8" });
-        let said = run(desk.path(), &format!("sweep cornell --over spp {line} --reference {folder}"));
-        assert_eq!(said.code, 3, "{folder} {more}: {}", said.err);
-        assert!(said.err.contains(says), "{}", said.err);
-    }
-}
-
-#[test]
-fn a_split_is_predicted_and_measured() {
-    let desk = TempDir::new().unwrap();
-    let line = "sweep cornell --over split --size 8x8 --max-bounces 2 --spp 64 -q -o s";
-    let said = run(desk.path(), line);
-    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    for words in ["equal", "optimal", "prefix", "least of any split", "1ᵀC1"] {
-        assert!(said.out.contains(words), "{words}\n{}", said.out);
-    }
-    for file in ["split.csv", "covariance.csv", "covariance.png", "covariance.svg", "summary.json"] {
-        assert!(std::fs::metadata(desk.path().join("s").join(file)).unwrap().len() > 100, "{file}");
-    }
-    let csv = std::fs::read_to_string(desk.path().join("s/split.csv")).unwrap();
-    let columns = csv.lines().next().unwrap().split(',').count();
-    assert!(csv.lines().all(|l| l.split(',').count() == columns), "{csv}");
-    let rays = |way: &str| -> f64 {
-        let line = csv.lines().find(|l| l.starts_with(&format!("{way},all,"))).unwrap();
-        line.split(',').nth(5).unwrap().parse().unwrap()
-    };
-    // about the same rays: half a step of 16 samples of the dearest term is what rounding may matter
-    for way in ["optimal", "prefix"] {
-        assert!((rays(way) / rays("equal") - 1.0).abs() < 0.25, "{way}: {} {}", rays(way), rays("equal"));
-    }
-}
-
 #[test]
 fn every_figure_is_made() {
     let desk = TempDir::new().unwrap();
@@ -314,68 +234,6 @@ fn equal_rays_are_shared_out() {
     // 1 + 1 + 1 + 1 against 1 + 3 + 9 + 27 rays per path
     assert_eq!((s.number("1", "all", "spp"), s.number("3", "all", "spp")), (160.0, 16.0));
     assert_eq!(s.number("1", "all", "rays"), s.number("3", "all", "rays"));
-}
-
-#[test]
-fn what_makes_no_sense_is_refused() {
-    let desk = TempDir::new().unwrap();
-    for (line, says) in [
-        ("", "--over"),
-        ("--over colour", "colour"),
-        ("--over branching --values 0", "`0` is not a whole number from 1 to 1000"),
-        ("--over branching --values 2,x", "`x` is not a whole number"),
-        ("--over branching --values 2,", "`` is not a whole number"),
-        ("--over technique --values guess", "`guess` is none of scatter, connect, mis"),
-        ("--over sampling --values mis", "`mis` is none of uniform"),
-        ("--over points --values halton", "`halton` is none of"),
-        ("--over estimator --values dark", "`dark` is none of"),
-        ("--over roulette --values half", "unknown roulette"),
-        ("--over spp --values 0", "`0` is not a whole number"),
-        ("--over spp --equal-rays", "--equal-rays"),
-        ("--over spp --values 20", "20 samples are not the same number for each of the 16 replicates"),
-        ("--over spp --values 16,64 --spp 32", "64 samples are more than --spp renders"),
-        ("--over spp --estimator prefix,dark", "`dark` is none of prefix, single"),
-        ("--over spp --estimator prefix,prefix", "`prefix` stands twice"),
-        ("--over spp --roulette lecture,half", "unknown roulette"),
-        ("--over spp --points halton", "`halton` is none of"),
-        ("--over spp --reference 8", "a reference of 8 samples has no error of its own"),
-        ("--over technique --estimator prefix,single", "--estimator takes one value here"),
-        ("--over technique --estimator path", "`path` has one value for all terms"),
-        ("--over technique --reference 64", "--reference is for --over spp"),
-        ("--over split --estimator single", "--over split always compares single with prefix"),
-        ("--over split --values equal", "--over split has no values"),
-        ("--over split --equal-rays", "about the same rays already"),
-        ("--over split --technique mis,connect", "--technique takes one value here"),
-        ("--over spp --pilot 64", "--pilot is for --over split"),
-        ("--over spp --patches 100", "--patches has no part in a sweep"),
-        ("--over branching --values 1000", "1000 children at every vertex make 2.1e18 rays at depth 4"),
-    ] {
-        let said = run(desk.path(), &format!("sweep cornell {line}"));
-        assert_eq!(said.code, 2, "{line}: {}", said.err);
-        assert!(said.err.contains(says), "{line}: {}", said.err);
-        assert!(said.out.is_empty());
-        assert!(said.err.contains("error: "), "{}", said.err);
-    }
-    let said = run(desk.path(), "series cornell --estimator branching --branching 100 --size 64x64");
-    assert_eq!(said.code, 2, "{}", said.err);
-    assert!(said.err.contains("help: choose fewer children"), "{}", said.err);
-    assert!(!desk.path().join("fredholm-out").exists(), "nothing was written");
-}
-
-/// The rules of every other command: its own output is replaced, another run's never is.
-#[test]
-fn outputs_are_safe() {
-    let desk = TempDir::new().unwrap();
-    let sweep = |more: &str| run(desk.path(), &format!("sweep furnace --over points {SMALL} {more}")).code;
-    assert_eq!((sweep("-o a"), sweep("-o a")), (0, 0));
-    assert_eq!((sweep("-o a --seed 1"), sweep("-o a --seed 1 --force")), (3, 0));
-    assert_eq!((sweep(""), sweep("--seed 1")), (0, 0));
-    for name in ["furnace-points", "furnace-points-2"] {
-        assert!(desk.path().join("fredholm-out").join(name).join("sweep.csv").exists(), "{name}");
-    }
-    let said = run(desk.path(), &format!("sweep furnace --over points {SMALL} -o a --force --json"));
-    let json: serde_json::Value = serde_json::from_str(&said.out).unwrap();
-    assert_eq!(json["series"].as_array().unwrap().len(), 2);
 }
 
 #[test]

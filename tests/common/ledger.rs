@@ -157,7 +157,7 @@ pub const ENTRIES: &[Entry] = &[
     entry("recorded_moments_are_those_of_the_matrix", 120),
     entry("predicted_variances_are_measured", 36),
     entry("predicted_variances_are_measured_at_length", 378),
-    entry("the_best_schedule_is_the_most_efficient", 8),
+    entry("the_best_schedule_is_the_most_efficient", 11),
     // tests/points.rs
     entry("sobol_points_move_no_mean", 2_000),
     entry("errors_from_replicates_cover_the_truth", 1),
@@ -222,7 +222,7 @@ pub const ENTRIES: &[Entry] = &[
     // tests/guided.rs
     entry("guided_directions_have_the_density_they_claim", 100),
     entry("a_guide_that_nobody_accounts_for_is_found", 12),
-    entry("guided_terms_agree_with_the_others", 300),
+    entry("guided_terms_agree_with_the_others", 432),
     entry("guided_terms_agree_closely", 100),
     entry("guided_walks_have_the_terms_of_a_furnace", 200),
     // tests/diagnosis.rs

@@ -63,11 +63,16 @@ pub fn assert_rate(account: &mut Account, what: &str, hits: u64, trials: u64, p:
 #[track_caller]
 pub fn assert_rate_at_most(account: &mut Account, what: &str, hits: u64, trials: u64, p: f64) {
     let level = account.spend(1);
-    let tail = if hits == 0 { 1.0 } else { Binomial::new(p, trials).unwrap().sf(hits - 1) };
+    let tail = at_least(hits, trials, p);
     let seed = account.seed();
     assert!(
         tail > level,
         "{what}: {hits} of {trials}, at most {:.1} expected (tail {tail:.1e}, seed {seed})",
         p * trials as f64
     );
+}
+
+/// The chance of `hits` of `trials` or more, if each hits with probability `p`.
+pub fn at_least(hits: u64, trials: u64, p: f64) -> f64 {
+    if hits == 0 { 1.0 } else { Binomial::new(p, trials).unwrap().sf(hits - 1) }
 }

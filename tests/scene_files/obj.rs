@@ -102,7 +102,8 @@ fn an_imperfect_obj_loads_with_warnings() {
     assert_eq!((d.camera.target, d.camera.size, d.name.as_str()), (DVec3::new(1.0, 1.0, 0.0), [256, 256], "imperfect"));
 }
 
-/// The table of `scenes/README.md`: statements of an MTL, the material they become, and what is said about it.
+/// The table of `scenes/README.md`: statements of an MTL, the material they become, and what is said about it. Long,
+/// because it is that table.
 #[test]
 fn mtl_materials() {
     let dir = gallery();

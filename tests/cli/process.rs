@@ -1,0 +1,210 @@
+//! The program as a process: exit codes, folders of other runs, Ctrl-C, closed pipes, and the help.
+
+use super::*;
+
+#[test]
+fn another_runs_output_is_never_touched() {
+    let desk = Desk::new();
+    let line = |spp: u32| format!("series cornell --worlds terms --spp {spp} --size 8x8 -q");
+    let out = desk.path("fredholm-out");
+    let folders = || {
+        let mut all: Vec<_> = std::fs::read_dir(&out).unwrap().map(|f| f.unwrap().file_name()).collect();
+        all.sort();
+        all
+    };
+    desk.ok(&line(4));
+    let first = contents(&out.join("cornell"));
+    // the same command, also when typed with what does not matter, replaces its own
+    desk.ok(&format!("{} -vt 1 --json", line(4)));
+    assert_eq!(folders(), ["cornell"]);
+    assert_eq!(contents(&out.join("cornell"))["terms.exr"], first["terms.exr"]);
+    // another command goes next to it, and finds its own place again
+    let first = contents(&out.join("cornell"));
+    for _ in 0..2 {
+        desk.ok(&line(5));
+        assert_eq!(folders(), ["cornell", "cornell-2"]);
+        assert!(contents(&out.join("cornell")) == first, "nothing in the first folder changed");
+    }
+    // -o with another run's content is refused
+    let said = desk.run(&format!("{} -o fredholm-out/cornell", line(6)));
+    assert_eq!(said.code, 3);
+    insta::assert_snapshot!(said.err, @r"
+    error: the output folder holds something else
+      --> fredholm-out/cornell
+    help: choose another with -o, or replace it with --force
+    ");
+    assert!(contents(&out.join("cornell")) == first, "nothing in the refused folder changed");
+    // --force replaces it, and leaves nothing of the old run and everything of anybody else's
+    std::fs::write(out.join("cornell/notes.txt"), "mine").unwrap();
+    desk.ok("render cornell --spp 4 --size 8x8 -q -o fredholm-out/cornell --force");
+    let mut now = desk.summary("fredholm-out/cornell").files;
+    assert!(!now.contains(&"T00.png".into()));
+    now.push("notes.txt".into());
+    now.sort();
+    assert_eq!(names(&out.join("cornell")), now);
+}
+
+#[test]
+fn commands_end_as_they_say() {
+    let desk = Desk::new();
+    let said = desk.ok("info");
+    insta::assert_snapshot!(said.out, @r#"
+    cornell         a Cornell box of quads and two blocks, colours bleeding
+    furnace         a closed box where every surface glows and reflects half: T^k E = 0.5^k everywhere
+    sphere          an integrating sphere lit by its own cap: every term from k = 1 on is constant
+    shells          two concentric spheres: pointwise exact terms of a 2 by 2 operator, with occlusion
+    cornell-spheres a Cornell box with a mirror and a glass sphere: caustics from k = 2 and k = 3 on
+    veach-mis       glossy plates under lamps of equal power and unequal size: combined techniques
+    veach-ajar      a room lit only through a door ajar: a long series, the lamp out of sight
+    env-ggx         gold, copper and plastic under a sky and a point light: GGX at four widths
+    caustic         a glass sphere focuses a small lamp: easy from the light, hard from the eye
+    glass-furnace   a glass ball in a sky of radiance 1: every pixel sums to 1, terms known
+    mirror-corridor two parallel mirrors of 0.9: T^k E decays slowly
+    sky-bowl        part of a sphere open to a sky of radiance 1: every term is constant
+    many-lights     96 lamps from 0.01 to 10 W: choosing lights by power or uniformly
+    cube            a closed cube under a glowing ceiling: means of L and r(T) known without patches
+    "#);
+    let said = desk.ok("info furnace");
+    insta::assert_snapshot!(said.out, @r#"
+    furnace: 1 shape, 6 primitives, 64×64 pixels
+
+    materials
+      wall             diffuse, reflectance (0.500, 0.500, 0.500), front only
+
+    lights
+      shapes[0]        box, radiance (1.0000, 1.0000, 1.0000)
+                       area 24.0000 m², power (75.3982, 75.3982, 75.3982) W
+
+    operator
+      surfaces that reflect or emit: 24.0000 m²
+      ‖T‖ ≤ max albedo = (0.5000, 0.5000, 0.5000), in every Lp norm of the throughput measure
+      guaranteed: ‖L − S_K‖₁ ≤ 0.5000^(K+1)/0.5000 · ‖E‖₁; below 1 % of ‖E‖₁ from K = 7
+
+    expected image means, k = 0 to 8
+      1.0000, 0.50000, 0.25000, 0.12500, 0.062500, 0.031250, 0.015625, 0.0078125, 0.0039062
+      source: T 1 = rho 1 in a closed scene of uniform albedo, so T^k E = rho^k E
+    "#);
+    let said = desk.ok("info cornell --json");
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&said.out).unwrap()["name"], "cornell");
+    let furnace = fredholm::scene::builtin::find("furnace").unwrap().source;
+    std::fs::write(desk.path("bad.toml"), format!("bogus = 1\n{furnace}")).unwrap();
+    for line in ["info bad.toml", "series bad.toml", "render bad.toml"] {
+        let said = desk.run(line);
+        assert_eq!((said.code, said.out.as_str()), (3, ""), "{line}");
+        assert!(said.err.starts_with("error: ") && said.err.contains("--> bad.toml:1"), "{}", said.err);
+    }
+    let said = desk.ok("render cornell --spp 8 --size 8x8 -q");
+    assert!(said.out.contains("roulette: path tracer lecture (q ends a path"), "{}", said.out);
+    assert!(row(&said.out, "all").len() == 1 && row(&said.out, "Σ").is_empty(), "{}", said.out);
+    let said = desk.ok("radiosity cornell --spp 8 --size 8x8 --patches 60 -q -v");
+    assert!(said.out.contains("spectral radius (0."), "{}", said.out);
+    assert!(!said.out.contains("roulette"), "no walk, no roulette: {}", said.out);
+    let said = desk.ok("chapter");
+    assert!(said.out.starts_with(" 1  "), "{}", said.out);
+    assert_eq!(desk.run("chapter 99").code, 2);
+}
+
+#[test]
+fn a_second_ctrl_c_is_not_needed() {
+    let desk = Desk::new();
+    let line = format!("series cornell --spp 100000 {SMALL} -o long");
+    let mut child = desk.command(&line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let started = Instant::now();
+    while !desk.path("long/terms.png").exists() {
+        assert!(started.elapsed() < Duration::from_secs(20), "no preview");
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let (out, err) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert!(err.contains("interrupted: saving what exists") && !err.contains("panicked"), "{err}");
+    let s = desk.summary("long");
+    assert!((16..100_000).contains(&s.spp), "{}", s.spp);
+    assert!(out.contains(&format!("{} of 100000 spp", s.spp)), "{out}");
+    let image = desk.image("long");
+    for name in ["", "T00", "T03_se", "tail", "Tall_se"] {
+        let finite = image.layer(name).unwrap().iter().flatten().all(|v| v.is_finite());
+        assert!(finite, "{name}");
+    }
+    assert!(s.terms.iter().all(|t| t.mean.is_finite() && t.std_error.is_finite()));
+    let mut listed = s.files;
+    listed.sort();
+    assert_eq!(names(&desk.path("long")), listed, "no temporary file is left");
+}
+
+#[test]
+fn a_closed_pipe_is_no_crash() {
+    let desk = Desk::new();
+    let line = "series furnace --spp 4 --size 4x4 --json -q";
+    let mut child = desk.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_ne!(output.status.code(), Some(101));
+    assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
+}
+
+#[test]
+fn help_fits_the_screen_and_says_how_k_counts() {
+    let desk = Desk::new();
+    let picture = ["", "tour", "series", "render", "radiosity", "sweep", "compare", "info", "chapter", "figure"];
+    let study = ["walk", "roulette", "zoo", "diagnose", "check", "check bias", "check equilibrium"];
+    for command in picture.into_iter().chain(study) {
+        for flag in ["-h", "--help"] {
+            let said = desk.ok(&format!("{command} {flag}"));
+            for line in said.out.lines() {
+                assert!(line.chars().count() <= 100, "{command} {flag}: {line}");
+            }
+        }
+    }
+    let said = desk.ok("series --help");
+    assert!(said.out.contains("k = 0 is emission seen directly"), "{}", said.out);
+    assert!(said.out.contains("max_depth = K + 1") && said.out.contains("TERMINATION"), "{}", said.out);
+    insta::assert_snapshot!(desk.ok("--help").out, @r#"
+    The operator view of global illumination: L = E + T L = Σ T^k E, measured.
+
+    With no arguments: the tour. A Cornell box is solved three ways (each bounce by its own estimator,
+    the full path tracer, the radiosity matrix), compared with error bars, and written to
+    fredholm-out/cornell with pictures, plots and a report.
+
+    Usage: fredholm
+           fredholm <COMMAND>
+
+    Commands:
+      tour       One scene solved three ways and compared: what happens with no arguments
+      series     Each T^k E and the sum, beside the path tracer and the radiosity matrix
+      render     The full path tracer alone
+      radiosity  The matrix alone: form factors, terms, solve
+      compare    Two results: verdict per term, z map
+      diagnose   Somebody else's pictures: correct, or what is wrong with them
+      sweep      The terms for every value of one setting: cost beside gain
+      walk       The same estimators on the radiosity matrix, beside its powers
+      check      Is an estimator biased? Does the equation hold?
+      figure     Rebuilds a figure: data, pictures, and the command that makes them
+      roulette   Roulette schedules: predicted without rendering, verified, optimised
+      zoo        Estimators that are wrong on purpose, each beside the right one
+      info       Scenes, materials, lights, bounds on the norm of T
+      chapter    Runs a chapter of the book
+      help       Print this message or the help of the given subcommand(s)
+
+    Options:
+      -h, --help     Print help
+      -V, --version  Print version
+
+    Examples:
+      fredholm                                        the tour
+      fredholm series cornell --spp 64                each bounce, and their sum
+      fredholm series box.toml --set materials.white.reflectance=[0.6,0.6,0.6]
+      fredholm compare fredholm-out/cornell other     verdict per term
+      fredholm sweep cornell --over technique         one setting, several values: cost and gain
+      fredholm roulette cornell --optimise            how paths should end, predicted and measured
+      fredholm info                                   the built-in scenes
+      fredholm info cornell                           materials, lights, bounds
+
+    Options: `fredholm tour --help`, `fredholm series --help`, …
+
+    Exit codes: 0 ok, 1 a comparison failed, 2 usage, 3 scene or file,
+    130 interrupted (what exists is saved).
+    "#);
+}

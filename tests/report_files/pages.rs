@@ -1,0 +1,65 @@
+//! Tables are aligned, and the page needs no other file.
+
+use super::*;
+
+#[test]
+fn tables_are_aligned_and_narrow() {
+    let series = &full_summary().series[0];
+    let rays = [123_456_789_012, 5, 999_999];
+    let text = table::series("terms", series.image(), &rays);
+    let lines: Vec<_> = text.lines().collect();
+    assert_eq!(lines.len(), 1 + 2 + 3 + 3, "{text}");
+    let verdict = VerdictRecord {
+        name: "a very long name of a comparison, longer than any".into(),
+        ..full_summary().verdicts[0].clone()
+    };
+    let verdicts = table::verdicts(&[verdict]);
+    for line in text.lines().chain(verdicts.lines()) {
+        assert!(line.chars().count() <= 100, "{line}");
+    }
+    // Numbers of a column end in the same place.
+    let ends = |row: &str| row.chars().count();
+    assert!(lines[3..6].iter().all(|row| ends(row) == ends(lines[3])), "{text}");
+    // Average of (v, v/3, v/7); the interval is that of 15 degrees of freedom.
+    let mean = (1.0 + 1.0 / 3.0 + 1.0 / 7.0) / 3.0;
+    assert!(lines[3].contains(&table::significant(mean, 4)), "{text}");
+    assert!(lines[3].contains(&table::significant(2.131_449_5 * 0.01, 2)), "{text}");
+    assert!(lines[6].contains('–'), "an unknown error is a dash: {text}");
+}
+
+#[test]
+fn page_is_self_contained_and_escapes() {
+    let folder = tempfile::tempdir().unwrap();
+    let (png, svg) = (folder.path().join("terms.png"), folder.path().join("decay.svg"));
+    contact_sheet::single("T0", 20, 20, &ramp(20, 20, 1.0), None).unwrap().0.picture.write(&png).unwrap();
+    let points = (0..4).map(|k| Point::exact(f64::from(k), 0.5f64.powi(k))).collect();
+    let decay = Decay { surface: vec![curve(points)], ..Decay::default() };
+    decay::draw(&decay, &caption()).unwrap().write(folder.path(), "decay").unwrap();
+    let summary = full_summary();
+    let page = html::Page {
+        title: "<script>alert(1)</script>".into(),
+        command: "fredholm series 'a&b.toml' --set x=\"<b>\"".into(),
+        facts: vec![("se<ed".into(), "1 > 0".into())],
+        verdicts: &summary.verdicts,
+        plates: vec![Plate::terms(&png), Plate::decay(&svg)],
+        series: vec![("<i>".into(), summary.series[0].image())],
+        files: vec![("a \"b\".exr".into(), "all <terms>".into()), ("javascript:x".into(), String::new())],
+    };
+    let path = folder.path().join("index.html");
+    html::write(&path, &page).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+
+    assert!(!text.contains("http"), "the page refers to the network");
+    for raw in ["<script", "<b>\"", "<i>", "se<ed", "<terms>", "a \"b\"", "href=\"javascript"] {
+        assert!(!text.contains(raw), "{raw} is not escaped");
+    }
+    assert!(text.contains("&lt;script&gt;") && text.contains("href=\"./a%20%22b%22.exr\""));
+    assert!(text.contains("data:image/png;base64,iVBOR") && text.contains("<svg role=\"img\""));
+    // Every element that is opened is closed.
+    for tag in ["section", "table", "tbody", "tr", "td", "figure", "svg", "main", "header", "dl", "ul"] {
+        let opened = text.matches(&format!("<{tag}>")).count() + text.matches(&format!("<{tag} ")).count();
+        assert_eq!(opened, text.matches(&format!("</{tag}>")).count(), "<{tag}>");
+    }
+    let missing = Plate::terms(Path::new("absent.png"));
+    assert!(html::render(&html::Page { plates: vec![missing], ..html::Page::default() }).is_err());
+}

@@ -1,0 +1,53 @@
+//! `fredholm roulette`, and schedules wherever a command takes roulette.
+
+fn fredholm(desk: &std::path::Path, line: &str) -> (i32, String, String) {
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
+    let output = command.args(line.split_whitespace()).current_dir(desk).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn the_command_predicts_verifies_and_optimises() {
+    let desk = tempfile::TempDir::new().unwrap();
+    let line = "roulette sphere --size 16x16 --spp 64 --max-bounces 6 --schedules none,table:0,0.2,0.1,albedo --verify --optimise -o out";
+    let (code, out, err) = fredholm(desk.path(), line);
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(out.lines().all(|l| l.starts_with("fredholm ") || l.chars().count() <= 100), "{out}");
+    for word in ["table:0,0.2,0.1", "measured", "times that of lecture per ray", "times that of albedo per ray"] {
+        assert!(out.contains(word), "{word}: {out}");
+    }
+    let folder = desk.path().join("out");
+    let csv = std::fs::read_to_string(folder.join("roulette.csv")).unwrap();
+    // five schedules of seven terms, tail and all
+    assert_eq!(csv.lines().count(), 1 + 5 * 9);
+    let summary = fredholm::report::text::summary::read(&folder.join("summary.json")).unwrap();
+    let moments = summary.cross_moments.unwrap();
+    assert_eq!(moments["slots"].as_array().unwrap().len(), 14);
+    assert_eq!(moments["slots"][13]["kind"], "tail");
+    assert_eq!(moments["second"][2][13].as_array().unwrap().len(), 14);
+    assert!(summary.files.iter().all(|f| folder.join(f).exists()));
+    let (code, _, err) = fredholm(desk.path(), "roulette sphere --schedules half");
+    assert!(code == 2 && err.contains("unknown roulette `half`") && err.contains("help:"), "{err}");
+}
+
+#[test]
+fn the_best_schedule_can_be_asked_for_wherever_there_is_roulette() {
+    let desk = tempfile::TempDir::new().unwrap();
+    let common = "--size 16x16 --spp 64 --max-bounces 3 -q";
+    let (code, out, err) = fredholm(
+        desk.path(),
+        &format!("sweep sphere --over roulette --schedules lecture,albedo,optimal {common} -o a"),
+    );
+    assert!(code == 0 && out.contains("optimal") && err.contains("optimal is table:"), "{out}{err}");
+    let (code, out, err) = fredholm(desk.path(), &format!("render sphere --roulette optimal {common} -o b"));
+    assert!(code == 0 && out.contains("roulette: path tracer table:"), "{out}{err}");
+    let (code, _, err) = fredholm(desk.path(), &format!("series sphere --worlds terms {common} -o c"));
+    assert_eq!(code, 0, "{err}");
+    let summary = fredholm::report::text::summary::read(&desk.path().join("c/summary.json")).unwrap();
+    let moments = summary.cross_moments.unwrap();
+    // two samples per pixel of 64; the moments of what is seen directly are those of the image
+    assert_eq!((moments["paths"].as_u64(), moments["max_bounces"].as_u64()), (Some(512), Some(3)));
+    // the eye is a slot of its own: its ray is the only one before vertex 1 but for a connection
+    assert_eq!(moments["rays"][0], 1.0);
+}
