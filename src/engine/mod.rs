@@ -16,6 +16,7 @@ pub mod by_rays;
 pub mod discretisation;
 pub mod guided;
 pub mod known;
+mod options;
 pub mod radius;
 mod settings;
 

@@ -33,6 +33,8 @@ use crate::stats::optimal::{optimal_reach, schedule};
 use crate::stats::schedule::{Noise, Part, Separable, gain};
 use crate::terms::Variance;
 use crate::terms::cross_moments::{Recorded, Value};
+use std::fmt;
+use std::str::FromStr;
 use std::time::Instant;
 
 /// Paths of a pilot: enough for a schedule that is as good as the best to a percent or two.
@@ -148,6 +150,42 @@ pub fn optimal(scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Op
     let [w, h] = scene.camera.size.map(u64::from);
     let spp = (PILOT / (w * h)).clamp(8, 1 << 12) as u32;
     best(&pilot(scene, &settings, spp, progress)?, scene)
+}
+
+/// A schedule as it is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Schedule {
+    /// This one.
+    Given(Roulette),
+    /// The one with the most efficiency, which only the scene can tell.
+    Optimal,
+}
+
+impl Schedule {
+    /// The schedule; none if it is yet to be found.
+    pub fn given(&self) -> Option<&Roulette> {
+        match self {
+            Self::Given(roulette) => Some(roulette),
+            Self::Optimal => None,
+        }
+    }
+}
+
+impl fmt::Display for Schedule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Given(roulette) => roulette.fmt(f),
+            Self::Optimal => f.write_str("optimal"),
+        }
+    }
+}
+
+/// `optimal`, or as [`Roulette`].
+impl FromStr for Schedule {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "optimal" { Ok(Self::Optimal) } else { text.parse().map(Self::Given) }
+    }
 }
 
 /// q from some vertex on, where a schedule settles on one.
