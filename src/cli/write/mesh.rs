@@ -1,7 +1,7 @@
 //! `--export`: what another program needs to check the matrix, or to use it.
 
 use super::Files;
-use crate::cli::Failure;
+use crate::cli::base::Failure;
 use clap::ValueEnum;
 use fredholm::engine::by_matrix::Discrete;
 use fredholm::report::{patches as mesh, summary, write_atomically};

@@ -1,7 +1,7 @@
 //! The page that shows a run.
 
 use super::Files;
-use crate::cli::Failure;
+use crate::cli::base::Failure;
 use fredholm::report::html::{self, Page, Plate};
 use fredholm::report::summary;
 use fredholm::study::run::Run;

@@ -1,6 +1,6 @@
 //! `--strategies`: the pyramid of the bidirectional estimator, as pictures and layers.
 
-use crate::cli::Failure;
+use crate::cli::base::Failure;
 use fredholm::report::pyramid::{Stone, draw};
 use fredholm::report::typeset::Caption;
 use fredholm::report::{exr, table};
