@@ -152,4 +152,3 @@ pub fn fraction(s: &str) -> Result<f64, String> {
 pub fn probability(s: &str) -> Result<f64, String> {
     s.parse().ok().filter(|p| *p > 0.0 && *p < 1.0).ok_or(format!("`{s}` is not between 0 and 1"))
 }
-

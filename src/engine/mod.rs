@@ -14,6 +14,7 @@ pub mod batches;
 pub mod by_matrix;
 pub mod by_rays;
 pub mod discretisation;
+mod estimator;
 pub mod guided;
 pub mod known;
 mod options;

@@ -56,6 +56,9 @@ struct Judged {
     rare_paths: Option<String>,
 }
 
+/// Suspects with their places, by size and K.
+type Groups<'a> = BTreeMap<([usize; 2], usize), Vec<(usize, &'a Suspect)>>;
+
 /// Suspects of one size and one K share a reference and the pictures of the candidates.
 fn judge(
     args: &Diagnose,
@@ -64,7 +67,7 @@ fn judge(
     source: &Source,
     progress: Progress<'_>,
 ) -> Result<Judged, Failure> {
-    let mut groups: BTreeMap<([usize; 2], usize), Vec<(usize, &Suspect)>> = BTreeMap::new();
+    let mut groups: Groups<'_> = BTreeMap::new();
     for (i, s) in suspects.iter().enumerate() {
         groups.entry((s.file.pictures.size, last_term(args, &s.file))).or_default().push((i, s));
     }

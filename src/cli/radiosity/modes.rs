@@ -110,11 +110,7 @@ fn people(lab: &Laboratory, spectra: &[Spectrum], bands: &[Band], channel: Chann
         ));
     }
     for s in spectra {
-        blocks.push(format!(
-            "{}: leading modes, and |⟨u, TᵏE⟩|/‖TE‖ at two bounces\n{}",
-            s.channel,
-            modes::table(s)
-        ));
+        blocks.push(format!("{}: leading modes, and |⟨u, TᵏE⟩|/‖TE‖ at two bounces\n{}", s.channel, modes::table(s)));
     }
     let s = &spectra[channel as usize];
     blocks.push(format!("{}: ‖Tᵏ⁺¹E‖/‖TᵏE‖ in two norms\n{}", s.channel, modes::ratio_table(s)));

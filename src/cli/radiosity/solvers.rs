@@ -31,7 +31,10 @@ pub fn run(args: &Radiosity, name: Solvers) -> Result<Ending, Failure> {
             let Some(lab) = Laboratory::new(&args.run, "solvers")? else { return Ok(Ending::Interrupted) };
             let (study, radiosity) = (Study::new(args, &lab, name), &lab.matrix.radiosity);
             let operator = radiosity.operator(study.channel as usize);
-            study.run(&System::new(&operator, radiosity.emission(study.channel as usize)).map_err(|_| MatrixError::Singular)?)
+            study.run(
+                &System::new(&operator, radiosity.emission(study.channel as usize))
+                    .map_err(|_| MatrixError::Singular)?,
+            )
         }
         Factors::Rays(per_row) => {
             let lab = Laboratory::sampled(&args.run, "solvers", per_row)?;

@@ -22,8 +22,7 @@ pub fn people(run: &Run, summary: &summary::Summary, folder: &Path, verbose: boo
         head += &format!("; technique {}", s.technique);
         head += if s.points == Points::Sobol { "; Sobol points" } else { "" };
     }
-    let used =
-        [(!run.terms.is_empty(), "terms", &s.roulette), (run.path.is_some(), "path tracer", &s.path_roulette)];
+    let used = [(!run.terms.is_empty(), "terms", &s.roulette), (run.path.is_some(), "path tracer", &s.path_roulette)];
     let roulette: Vec<_> = used.iter().filter(|r| r.0).map(|(_, who, r)| format!("{who} {r}")).collect();
     if !roulette.is_empty() {
         head += &format!("\nroulette: {} (q ends a path, survivors weigh 1/(1−q))", roulette.join(", "));

@@ -131,8 +131,7 @@ fn cases(args: &Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
                 for (p, points) in &points {
                     let words = [(e, true), (t, techniques.len() > 1), (r, schedules.len() > 1), (p, !p.is_empty())];
                     let words: Vec<&str> = words.iter().filter(|w| w.1).map(|w| w.0.as_str()).collect();
-                    let mut settings =
-                        Settings { spp, points: *points, technique: *technique, ..args.settings(spp) };
+                    let mut settings = Settings { spp, points: *points, technique: *technique, ..args.settings(spp) };
                     if let Some(given) = schedule.as_ref().and_then(Schedule::given) {
                         (settings.roulette, settings.path_roulette) = (given.clone(), given.clone());
                     }
@@ -194,4 +193,3 @@ fn people(session: &Session, falls: &[Fall], record: &Summary, reference: Option
         broken.map(|s| format!("warning: {}: {} samples were not finite", s.label, s.cost.non_finite)).collect();
     paragraphs(&[head, fall::table(falls), broken.join("\n"), session.written(&record.files)])
 }
-

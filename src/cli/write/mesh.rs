@@ -1,6 +1,6 @@
 //! `--export`: what another program needs to check the matrix, or to use it.
 
-use super::Files;
+use super::files::Files;
 use crate::cli::base::Failure;
 use clap::ValueEnum;
 use fredholm::engine::by_matrix::Discrete;

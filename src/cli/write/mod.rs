@@ -1,5 +1,6 @@
 //! What a run leaves behind: `terms.exr`, pictures, plots, `summary.json`, `index.html`.
 
+mod files;
 mod mesh;
 mod page;
 mod pictures;
@@ -7,6 +8,7 @@ mod plots;
 mod strategies;
 
 use super::base::Failure;
+use files::{Files, Pixels};
 use fredholm::engine::by_matrix::Discrete;
 use fredholm::engine::radius::radius_limit;
 use fredholm::report::summary::{self, Summary};
@@ -19,9 +21,7 @@ use glam::DVec3;
 pub use mesh::Export;
 use pictures::terms_sheet;
 pub use pictures::z_values;
-use std::path::{Path, PathBuf};
-
-type Pixels = Vec<[f32; 3]>;
+use std::path::Path;
 
 /// Writes the contact sheet of the terms so far after every pass, so that there is something to look at.
 pub fn preview(folder: &Path, caption: Caption) -> impl Fn(&TermFilm) + Sync + Send + use<> {
@@ -40,12 +40,7 @@ pub fn preview(folder: &Path, caption: Caption) -> impl Fn(&TermFilm) + Sync + S
 }
 
 /// Writes everything into a folder and returns the record of it, complete; `record` tells what all records tell, by now.
-pub fn all(
-    run: &Run,
-    folder: &Path,
-    export: Option<Export>,
-    record: impl Fn() -> Summary,
-) -> Result<Summary, Failure> {
+pub fn all(run: &Run, folder: &Path, export: Option<Export>, record: impl Fn() -> Summary) -> Result<Summary, Failure> {
     let mut out = Files { folder: folder.to_path_buf(), names: vec![], record: record() };
     let Summary { command, seed, scene, .. } = record();
     let caption = Caption { command, seed, scene };
@@ -67,35 +62,6 @@ pub fn all(
     let summary = Summary { pixel_errors: trust, files, ..summarise(run, record()) };
     page::write_page(run, &out, &summary)?;
     Ok(summary)
-}
-
-struct Files {
-    folder: PathBuf,
-    names: Vec<String>,
-    record: Summary,
-}
-
-impl Files {
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.join(name)
-    }
-    fn add(&mut self, name: &str) -> PathBuf {
-        self.names.push(name.to_string());
-        self.path(name)
-    }
-    fn has(&self, name: &str) -> bool {
-        self.names.iter().any(|n| n == name)
-    }
-    /// What an EXR says of how it was made; nothing that differs between two equal runs.
-    fn attributes(&self, run: &Run) -> [(&'static str, String); 5] {
-        [
-            ("fredholm.command", self.record.command.clone()),
-            ("fredholm.seed", run.settings.seed.to_string()),
-            ("fredholm.spp", run.spp().to_string()),
-            ("fredholm.scene_hash", self.record.scene_hash.clone()),
-            ("fredholm.version", env!("CARGO_PKG_VERSION").to_string()),
-        ]
-    }
 }
 
 /// The record of a run.

@@ -1,6 +1,6 @@
 //! The page that shows a run.
 
-use super::Files;
+use super::files::Files;
 use crate::cli::base::Failure;
 use fredholm::report::html::{self, Page, Plate};
 use fredholm::report::summary;

@@ -1,6 +1,6 @@
 //! The figures of a run: how the terms decay, and how the noise falls.
 
-use super::Files;
+use super::files::Files;
 use crate::cli::base::Failure;
 use fredholm::engine::by_rays::{Estimator, Sampled};
 use fredholm::report::decay::{self, Decay, RateLine, independent_ratios};
