@@ -1,6 +1,6 @@
 //! `fredholm chapter [N]`: runs a chapter's own program, compiled in.
 
-use super::{Ending, Failure};
+use super::base::{Ending, Failure, print, usage};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -26,21 +26,16 @@ pub struct Chapter {
 pub fn run(args: &Chapter) -> Result<Ending, Failure> {
     let Some(number) = args.number else {
         let lines: Vec<String> = CHAPTERS.iter().map(|(n, title, _)| format!("{n:>2}  {title}")).collect();
-        super::print(&lines.join("\n"))?;
+        print(&lines.join("\n"))?;
         return Ok(Ending::Ok);
     };
     let Some((_, _, run)) = CHAPTERS.iter().find(|c| c.0 == number) else {
-        return Err(Failure::Usage(format!(
-            "error: there is no chapter {number}\nhelp: `fredholm chapter` lists those there are"
-        )));
+        return Err(usage(&format!("there is no chapter {number}"), "`fredholm chapter` lists those there are"));
     };
     let out = args.out.clone().unwrap_or_else(|| format!("fredholm-out/chapter-{number:02}").into());
     match run(&out) {
         Ok(true) => Ok(Ending::Ok),
         Ok(false) => Ok(Ending::Failed),
-        Err(e) => {
-            let text = e.to_string();
-            Err(Failure::Input(if text.starts_with("error: ") { text } else { format!("error: {text}") }))
-        }
+        Err(e) => Err(Failure::input(&e.to_string())),
     }
 }

@@ -1,14 +1,18 @@
 //! `fredholm compare A B`: two results, verdict per term, z map.
 
-use super::args::{fraction, probability};
-use super::{Ending, Failure, notes, output, write};
+use super::base::{Ending, Failure, paragraphs};
+use super::options::{Manner, fraction, probability};
+use super::session::Session;
+use super::{notes, write};
 use clap::Args;
-use fredholm::report::{
-    image::{exr, typeset::Caption, zmap},
-    text::{summary, table},
-};
-use fredholm::stats::{Criterion, compare, discretisation};
-use fredholm::terms::{Series, World};
+use fredholm::report::image::exr;
+use fredholm::report::image::typeset::Caption;
+use fredholm::report::image::zmap;
+use fredholm::report::text::summary::{self, Summary};
+use fredholm::report::text::table;
+use fredholm::stats::{Comparison, Criterion, Outcome, compare, discretisation};
+use fredholm::terms::{Functional, Series, World};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `compare`.
@@ -47,86 +51,85 @@ pub fn run(args: &Compare) -> Result<Ending, Failure> {
             a.1.width, a.1.height, b.1.width, b.1.height
         )));
     }
-    let criterion =
-        Criterion { of_term: args.of_term, of_total: args.of_total, alpha: args.alpha, ..Criterion::default() };
     let Some((x, y)) = pair(&a.1, &b.1) else {
         return Err(Failure::Input("error: one of the results holds no world\nhelp: render it again".into()));
     };
     // terms that one of them does not see in full are not compared
     let gap = x.gap(y);
-    let cut;
-    let x = match &gap {
-        Some((from, _)) => {
-            cut = x.before(*from);
-            &cut
-        }
-        None => x,
-    };
-    // what the mesh may matter, where one side is a matrix and the other is not
-    let allowance = match (x.world, y.world) {
-        (World::Radiosity, World::Radiosity) => vec![],
-        (World::Radiosity, _) => coarse(&a.1).map_or(vec![], |c| discretisation(x, c)),
-        (_, World::Radiosity) => coarse(&b.1).map_or(vec![], |c| discretisation(y, c)),
-        _ => vec![],
-    };
-    let comparison = compare(x, y, &criterion, &allowance);
+    let whole = gap.as_ref().map_or(Cow::Borrowed(x), |(from, _)| Cow::Owned(x.before(*from)));
+    let comparison = compare(&whole, y, &criterion(args), &allowance((&a.1, &whole), (&b.1, y)));
     let verdicts = summary::verdicts("", &comparison);
 
-    let command = output::canonical_command();
-    let folder = output::folder(args.out.as_deref(), "compare", &command, args.force)?;
-    let map = z_map((&a, x.world), (&b, y.world), &folder, &command)?;
-    let record = summary::Summary {
-        command: command.clone(),
-        scene: format!("{} | {}", a.1.scene, b.1.scene),
-        scene_hash: a.1.scene_hash.clone(),
-        width: a.1.width,
-        height: a.1.height,
-        verdicts: verdicts.clone(),
-        files: map.iter().map(|_| "z.png".to_string()).chain(["summary.json".to_string()]).collect(),
-        ..summary::Summary::default()
-    };
-    let old = output::left_by_the_last_run(&folder);
-    summary::write(&folder.join("summary.json"), &record)?;
-    output::remove_stale(&folder, &old, &record.files);
-
-    if args.json {
-        super::print(&serde_json::to_string_pretty(&comparison)?)?;
-    } else {
-        let line = |name: char, path: &Path, world: &Series, s: &summary::Summary| {
-            let (path, world) = (path.display(), &world.label);
-            format!("{name}  {path}: {world}\n   scene {} ({}), seed {}, {} spp", s.scene, s.scene_hash, s.seed, s.spp)
+    let manner = Manner { out: args.out.clone(), force: args.force, json: args.json, ..Manner::default() };
+    let mut session = Session::new(manner, 0)?;
+    session.about(&format!("{} | {}", a.1.scene, b.1.scene), &a.1.scene_hash);
+    session.sized([a.1.width, a.1.height].map(|side| side as u32));
+    session.make_folder("compare")?;
+    let map = z_map((&a, x.world), (&b, y.world), &session)?;
+    let files = map.iter().map(|_| "z.png".to_string()).chain(["summary.json".to_string()]).collect();
+    session.sign(&Summary { verdicts: verdicts.clone(), files, ..session.record() })?;
+    session.show(&comparison, || {
+        let head = format!("{}\n{}", line('A', &args.a, &whole, &a.1), line('B', &args.b, y, &b.1));
+        let head = if a.1.command == b.1.command {
+            head + "\nwarning: both were made by the same command with the same seed: equal bits prove nothing"
+        } else {
+            head
         };
-        let mut head = format!("{}\n{}", line('A', &args.a, x, &a.1), line('B', &args.b, y, &b.1));
-        if a.1.command == b.1.command {
-            head += "\nwarning: both were made by the same command with the same seed: equal bits prove nothing";
-        }
-        let mut foot = notes::judgement(&comparison);
-        if let Some((from, why)) = &gap {
-            foot += &format!("\nT{from} and everything longer: not supported, {why}");
-        }
-        for doubt in notes::doubts([x, y].into_iter()) {
-            foot += &format!("\nwarning: {doubt}");
-        }
-        if let Some((two, three)) = map {
-            foot += "\nz map: ";
-            foot += &if two.is_finite() {
-                let (two, three) = (100.0 * two, 100.0 * three);
-                format!("{two:.1} % of the pixels beyond 2 (4.6 % if equal and normal), {three:.2} % beyond 3 (0.27 %)")
-            } else {
-                "no pixel has a known error".into()
-            };
-            foot += &format!("\n       {}", folder.join("z.png").display());
-        }
-        super::print(&super::paragraphs(&[head, table::verdicts(&verdicts), foot]))?;
-    }
-    Ok(if comparison.outcome == fredholm::stats::Outcome::Agrees && gap.is_none() {
-        Ending::Ok
-    } else {
-        Ending::Failed
-    })
+        let foot = foot(&comparison, [&whole, y], gap.as_ref(), map, &session.folder);
+        paragraphs(&[head, table::verdicts(&verdicts), foot])
+    })?;
+    let agrees = comparison.outcome == Outcome::Agrees && gap.is_none();
+    Ok(if agrees { Ending::Ok } else { Ending::Failed })
 }
 
-type Result2 = (PathBuf, summary::Summary);
+fn criterion(args: &Compare) -> Criterion {
+    Criterion { of_term: args.of_term, of_total: args.of_total, alpha: args.alpha, ..Criterion::default() }
+}
+
+/// What the mesh may matter, where one side is a matrix and the other is not.
+fn allowance((a, x): (&Summary, &Series), (b, y): (&Summary, &Series)) -> Vec<Functional> {
+    match (x.world, y.world) {
+        (World::Radiosity, World::Radiosity) => vec![],
+        (World::Radiosity, _) => coarse(a).map_or(vec![], |c| discretisation(x, c)),
+        (_, World::Radiosity) => coarse(b).map_or(vec![], |c| discretisation(y, c)),
+        _ => vec![],
+    }
+}
+
+fn line(name: char, path: &Path, world: &Series, s: &Summary) -> String {
+    let (path, world) = (path.display(), &world.label);
+    format!("{name}  {path}: {world}\n   scene {} ({}), seed {}, {} spp", s.scene, s.scene_hash, s.seed, s.spp)
+}
+
+/// The judgement, what was not compared, doubts, and what the z map shows.
+fn foot(
+    comparison: &Comparison,
+    results: [&Series; 2],
+    gap: Option<&(usize, String)>,
+    map: Option<(f64, f64)>,
+    folder: &Path,
+) -> String {
+    let mut foot = notes::judgement(comparison);
+    if let Some((from, why)) = gap {
+        foot += &format!("\nT{from} and everything longer: not supported, {why}");
+    }
+    for doubt in notes::doubts(results.into_iter()) {
+        foot += &format!("\nwarning: {doubt}");
+    }
+    if let Some((two, three)) = map {
+        foot += "\nz map: ";
+        foot += &if two.is_finite() {
+            let (two, three) = (100.0 * two, 100.0 * three);
+            format!("{two:.1} % of the pixels beyond 2 (4.6 % if equal and normal), {three:.2} % beyond 3 (0.27 %)")
+        } else {
+            "no pixel has a known error".into()
+        };
+        foot += &format!("\n       {}", folder.join("z.png").display());
+    }
+    foot
+}
+
+type Result2 = (PathBuf, Summary);
 
 fn read(path: &Path) -> Result<Result2, Failure> {
     let (folder, file) = if path.is_dir() {
@@ -138,15 +141,15 @@ fn read(path: &Path) -> Result<Result2, Failure> {
 }
 
 /// The same world on both sides if there is one, terms before path before radiosity; else the best of each.
-fn pair<'a>(a: &'a summary::Summary, b: &'a summary::Summary) -> Option<(&'a Series, &'a Series)> {
-    let of = |s: &'a summary::Summary, w: World| s.series.iter().find(|s| s.world == w);
+fn pair<'a>(a: &'a Summary, b: &'a Summary) -> Option<(&'a Series, &'a Series)> {
+    let of = |s: &'a Summary, w: World| s.series.iter().find(|s| s.world == w);
     let order = [World::Terms, World::Path, World::Radiosity];
     let same = order.iter().find_map(|&w| Some((of(a, w)?, of(b, w)?)));
     same.or_else(|| Some((order.iter().find_map(|&w| of(a, w))?, order.iter().find_map(|&w| of(b, w))?)))
 }
 
 /// The coarse mesh is written after the fine one.
-fn coarse(s: &summary::Summary) -> Option<&Series> {
+fn coarse(s: &Summary) -> Option<&Series> {
     s.series.iter().filter(|s| s.world == World::Radiosity).nth(1)
 }
 
@@ -154,8 +157,7 @@ fn coarse(s: &summary::Summary) -> Option<&Series> {
 fn z_map(
     (a, x): (&Result2, World),
     (b, y): (&Result2, World),
-    folder: &Path,
-    command: &str,
+    session: &Session,
 ) -> Result<Option<(f64, f64)>, Failure> {
     let open = |r: &Result2| {
         let file = r.0.join("terms.exr");
@@ -173,8 +175,8 @@ fn z_map(
     };
     let (Some((m, s)), Some((n, t))) = (whole(&image_a, x), whole(&image_b, y)) else { return Ok(None) };
     let z = write::z_values((&m, &s), (&n, &t));
-    let caption = Caption { command: command.to_string(), seed: a.1.seed, scene: a.1.scene.clone() };
+    let caption = Caption { command: session.command().into(), seed: a.1.seed, scene: a.1.scene.clone() };
     let map = zmap::draw("z of the whole image: A − B", image_a.width, image_a.height, &z, &caption)?;
-    map.picture.write(&folder.join("z.png"))?;
+    map.picture.write(&session.folder.join("z.png"))?;
     Ok(Some((map.beyond_2, map.beyond_3)))
 }

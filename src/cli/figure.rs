@@ -1,18 +1,18 @@
 //! `fredholm figure ID`: a registry of figures, each a recipe or a command that leaves data, pictures and a caption.
 
-use super::progress::{Bar, stop_flag};
-use super::{Ending, Failure, args, output, preflight, solve};
+use super::base::{Ending, Failure, names, paragraphs, print, usage};
+use super::options::{Changes, Manner, size};
+use super::progress::stop_flag;
+use super::session::Session;
+use super::{preflight, sweep};
 use clap::{Args, Parser};
 use fredholm::engine::Settings;
-use fredholm::engine::known::resort::with_last_resort;
-use fredholm::estimator::Roulette;
-use fredholm::report::{figures::stages as report, image::typeset::Caption, text::summary, write_atomically};
-use fredholm::scene::Scene;
-use fredholm::scene::load::{self, Options};
-use fredholm::study::stages::{KAJIYA, NOISE, Recipe, reference_seed, render_stages};
+use fredholm::report::figures::stages as report;
+use fredholm::report::text::summary::Summary;
+use fredholm::report::write_atomically;
+use fredholm::study::stages::{Grown, KAJIYA, NOISE, Recipe, reference_seed, render_stages};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use std::time::Instant;
 
 /// Examples and what is written.
 pub const EXAMPLES: &str = "Examples:
@@ -44,7 +44,7 @@ pub struct Figure {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
     /// Image size in pixels [default: the figure's]
-    #[arg(long, value_name = "WxH", value_parser = args::size)]
+    #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// Replace what another run left in the output folder
     #[arg(long)]
@@ -144,20 +144,16 @@ pub fn run(args: &Figure) -> Result<Ending, Failure> {
     if args.list {
         let widest = FIGURES.iter().map(|f| f.id().len()).max().unwrap_or(0);
         let lines: Vec<String> = FIGURES.iter().map(|f| format!("{:widest$}  {}", f.id(), f.title())).collect();
-        return super::print(&lines.join("\n")).map(|()| Ending::Ok);
+        return print(&lines.join("\n")).map(|()| Ending::Ok);
     }
     if args.id.is_none() && !args.all {
-        let help = "`fredholm figure --list` names them, --all makes them all";
-        return Err(Failure::Usage(format!("error: which figure?\nhelp: {help}")));
+        return Err(usage("which figure?", "`fredholm figure --list` names them, --all makes them all"));
     }
     let chosen: Vec<&Kind> = FIGURES.iter().filter(|f| args.all || args.id.as_deref() == Some(f.id())).collect();
     if chosen.is_empty() {
         let ids: Vec<_> = FIGURES.iter().map(Kind::id).collect();
-        return Err(Failure::Usage(format!(
-            "error: no figure is called `{}`\nhelp: figures are {}",
-            args.id.as_deref().unwrap_or_default(),
-            ids.join(", ")
-        )));
+        let what = format!("no figure is called `{}`", args.id.as_deref().unwrap_or_default());
+        return Err(usage(&what, &format!("figures are {}", ids.join(", "))));
     }
     let mut ending = Ending::Ok;
     for figure in chosen {
@@ -188,86 +184,60 @@ fn command(args: &Figure, id: &str, words: &[&str], folder: Option<PathBuf>) -> 
     line.extend(args.force.then(|| "--force".into()));
     line.extend(args.quiet.then(|| "--quiet".into()));
     // the words stand in this file, so that a mistake in them is one of the program; the tests make every figure
-    let wrong =
-        |e: clap::Error| Failure::Usage(format!("error: this is a defect of the program: {e}\nhelp: please report it"));
+    let wrong = |e: clap::Error| usage(&format!("this is a defect of the program: {e}"), "please report it");
     match Words::try_parse_from(line).map_err(wrong)? {
-        Words::Sweep(sweep) => super::sweep::run(&sweep),
+        Words::Sweep(args) => sweep::run(&args),
     }
 }
 
 /// The commands that make figures.
 #[derive(Debug, Parser)]
-#[command(no_binary_name = true, mut_subcommand("sweep", super::sweep_spp::several_values))]
+#[command(no_binary_name = true)]
 enum Words {
     /// A sweep.
-    Sweep(args::Sweep),
+    Sweep(sweep::Sweep),
 }
 
 /// One image as it grows.
 fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Ending, Failure> {
-    let (started, command) = (Instant::now(), output::canonical_command());
-    let [w, h] = args.size.unwrap_or(recipe.size);
-    let loaded =
-        load::scene(recipe.scene, &Options { set: vec![format!("camera.size=[{w},{h}]")], ..Options::default() })?;
-    let (description, scene) = (&loaded.description, with_last_resort(Scene::new(&loaded.description)));
-    let max_bounces = 8;
-    let end = Roulette::Albedo { from: 2 };
-    let settings = Settings {
-        spp: recipe.reference_spp,
-        seed: args.seed,
-        max_bounces,
-        roulette: end.clone().after(max_bounces),
-        path_roulette: end,
-        ..Settings::default()
+    let manner =
+        Manner { out: folder.map(Path::to_path_buf), force: args.force, quiet: args.quiet, ..Manner::default() };
+    let mut session = Session::new(manner, args.seed)?;
+    let as_it_is = Changes { set: vec![], emit: vec![], lambertian: false };
+    let opened = session.open(recipe.scene, &as_it_is, Some(args.size.unwrap_or(recipe.size)))?;
+    let settings = Settings { spp: recipe.reference_spp, seed: args.seed, ..Settings::default() };
+    preflight::fits_in_memory(&settings, opened.description.camera.size)?;
+    session.make_folder(recipe.id)?;
+    let Some(grown) = render_stages(&opened.scene, recipe, &settings, session.progress()) else {
+        return Ok(session.nothing_to_save(""));
     };
-    preflight::fits_in_memory(&settings, description.camera.size)?;
-    let folder = output::folder(folder, recipe.id, &command, args.force)?;
-    let bar = Bar::plain(args.quiet);
-    let progress = bar.progress();
-    let grown = render_stages(&scene, recipe, &settings, progress);
-    bar.finish();
-    let Some(grown) = grown else {
-        super::note("nothing to save yet");
-        let _ = std::fs::remove_dir(&folder); // only if it is empty
-        return Ok(Ending::Interrupted);
-    };
-
-    let caption = Caption { command: command.clone(), seed: args.seed, scene: description.name.clone() };
-    let size = [w as usize, h as usize];
     let (png, csv) = (format!("{}.png", recipe.id), format!("{}.csv", recipe.id));
-    report::sheet(recipe.title, size, &grown, &caption)?.picture.write(&folder.join(&png))?;
-    write_atomically(&folder.join(&csv), report::csv(&grown).as_bytes())?;
-    let record = summary::Summary {
-        command: command.clone(),
-        scene: description.name.clone(),
-        scene_hash: solve::scene_hash(&loaded.canonical),
-        seed: args.seed,
+    let record = Summary {
         spp: grown.stages.last().map_or(0, |s| s.paths).into(),
-        max_bounces,
-        threads: rayon::current_num_threads(),
-        seconds: started.elapsed().as_secs_f64(),
-        width: size[0],
-        height: size[1],
+        max_bounces: settings.max_bounces,
         path: grown.stages.last().map(|s| s.mean),
-        files: vec![csv, png, "summary.json".into()],
-        ..summary::Summary::default()
+        files: names([&csv, &png, "summary.json"]),
+        ..session.record()
     };
-    let old = output::left_by_the_last_run(&folder);
-    summary::write(&folder.join("summary.json"), &record)?;
-    output::remove_stale(&folder, &old, &record.files);
+    let size = [record.width, record.height];
+    report::sheet(recipe.title, size, &grown, &session.caption())?.picture.write(&session.folder.join(&png))?;
+    write_atomically(&session.folder.join(&csv), report::csv(&grown).as_bytes())?;
+    session.sign(&record)?;
+    session.show(&record, || people(&session, recipe, &grown, &record))?;
+    Ok(session.ending(false))
+}
+
+fn people(session: &Session, recipe: &Recipe, grown: &Grown, record: &Summary) -> String {
+    let Summary { command, scene, seed, width, height, .. } = record;
     let head = format!(
-        "{command}\n{}\nscene {}, seed {}, {w}×{h} pixels, path tracer, one render\n\
+        "{command}\n{}\nscene {scene}, seed {seed}, {width}×{height} pixels, path tracer, one render\n\
          reference: {}, {} spp, seed {}; its variance is subtracted",
         recipe.title,
-        description.name,
-        args.seed,
         grown.reference.label,
         recipe.reference_spp,
-        reference_seed(args.seed)
+        reference_seed(*seed)
     );
     let foot = "mean: what the samples say; mean shown: with everything above white cut off, as the screen does.\n\
                 The reference loses lamps and bright light, too; what an image loses beyond that is noise";
-    let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
-    super::print(&super::paragraphs(&[head, format!("{}{foot}", report::table(&grown)), files]))?;
-    Ok(if progress.stopped() { Ending::Interrupted } else { Ending::Ok })
+    paragraphs(&[head, format!("{}{foot}", report::table(grown)), session.written(&record.files)])
 }

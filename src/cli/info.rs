@@ -1,13 +1,16 @@
 //! `fredholm info [SCENE]`: what a scene holds, and what is known about ‖T‖ before anything is rendered.
 
-use super::{Ending, Failure};
+use super::base::{Ending, Failure, print};
+use super::options::{Changes, Manner};
+use super::session::Session;
+use super::{notes, open};
 use clap::Args;
 use fredholm::engine::by_matrix;
 use fredholm::engine::known::coplanar;
 use fredholm::report::text::table;
 use fredholm::scene::coplanar::{Kind, Relation};
 use fredholm::scene::description::{Description, Geometry, LightDescription, Sides, Sky};
-use fredholm::scene::{Scene, SurfaceSensor, builtin, load};
+use fredholm::scene::{Scene, SurfaceSensor, builtin};
 use serde_json::json;
 
 /// Arguments of `info`.
@@ -17,7 +20,7 @@ pub struct Info {
     pub scene: Option<String>,
     /// How the scene is changed.
     #[command(flatten)]
-    pub changes: super::open::Changes,
+    pub changes: Changes,
     /// Print JSON instead of text
     #[arg(long)]
     pub json: bool,
@@ -27,21 +30,14 @@ pub struct Info {
 pub fn run(args: &Info) -> Result<Ending, Failure> {
     let Some(name) = &args.scene else {
         let lines: Vec<String> = builtin::ALL.iter().map(|s| format!("{:15} {}", s.name, s.summary)).collect();
-        super::print(&lines.join("\n"))?;
+        print(&lines.join("\n"))?;
         return Ok(Ending::Ok);
     };
-    let loaded = load::scene(name, &args.changes.options(None))?;
-    for warning in &loaded.warnings {
-        super::note(&format!("warning: {warning}"));
-    }
-    let d = &loaded.description;
-    let scene = Scene::new(d);
-    super::open::coplanar(&scene);
-    if args.json {
-        super::print(&serde_json::to_string_pretty(&machine(d, &scene))?)?;
-    } else {
-        super::print(&people(d, &scene))?;
-    }
+    let session = Session::new(Manner { json: args.json, ..Manner::default() }, 0)?;
+    let (d, _) = open::description(name, &args.changes, None)?;
+    let scene = Scene::new(&d);
+    open::coplanar(&scene);
+    session.show(&machine(&d, &scene), || people(&d, &scene))?;
     Ok(Ending::Ok)
 }
 
@@ -93,8 +89,20 @@ fn people(d: &Description, scene: &Scene) -> String {
         );
     }
     d.lights.iter().for_each(|l| out += &format!("  {}\n", light(l)));
+    out += &operator(d, scene);
+    out += &overlaps(d, scene);
+    if let Some(e) = &d.expect {
+        let terms: Vec<String> = e.terms.iter().map(|&t| table::significant(t, 5)).collect();
+        out += &format!("\nexpected image means, k = 0 to {}\n", terms.len().saturating_sub(1));
+        out += &format!("  {}\n  source: {}\n", terms.join(", "), e.source);
+    }
+    out
+}
+
+/// What is known about T before anything is rendered.
+fn operator(d: &Description, scene: &Scene) -> String {
     let rho = scene.max_albedo();
-    out += &format!("\noperator\n  surfaces that reflect or emit: {:.4} m²\n", SurfaceSensor::new(scene).area);
+    let mut out = format!("\noperator\n  surfaces that reflect or emit: {:.4} m²\n", SurfaceSensor::new(scene).area);
     out += &format!(
         "  ‖T‖ ≤ max albedo = ({:.4}, {:.4}, {:.4}), in every Lp norm of the throughput measure\n",
         rho.x, rho.y, rho.z
@@ -109,7 +117,7 @@ fn people(d: &Description, scene: &Scene) -> String {
         out += "  T is not closed: a ray that leaves the scene meets the sky, and the light it brings is E\n";
     }
     if let Some(matrix) = by_matrix::coarse(d, scene)
-        && let Some(what) = super::notes::unlit(&matrix.unlit, d)
+        && let Some(what) = notes::unlit(&matrix.unlit, d)
     {
         let radius = matrix.spectral.each_ref().map(|s| format!("{:.3}", s.radius)).join(", ");
         out += &format!(
@@ -129,12 +137,6 @@ fn people(d: &Description, scene: &Scene) -> String {
         );
     } else {
         out += "  no guaranteed bound: a surface reflects everything\n";
-    }
-    out += &overlaps(d, scene);
-    if let Some(e) = &d.expect {
-        let terms: Vec<String> = e.terms.iter().map(|&t| table::significant(t, 5)).collect();
-        out += &format!("\nexpected image means, k = 0 to {}\n", terms.len().saturating_sub(1));
-        out += &format!("  {}\n  source: {}\n", terms.join(", "), e.source);
     }
     out
 }

@@ -1,6 +1,6 @@
 //! The output folder: the same command replaces its own output, another run's is never overwritten without `--force`.
 
-use super::Failure;
+use super::base::Failure;
 use fredholm::report::text::summary;
 use std::path::{Path, PathBuf};
 

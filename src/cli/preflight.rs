@@ -1,16 +1,17 @@
 //! What is refused before a run starts, because it could only end badly.
 
-use super::Failure;
-use super::args::{FactorsName, Run, WorldName};
+use super::base::{Failure, note};
 use fredholm::engine::Settings;
 use fredholm::engine::by_matrix::MatrixError;
 use fredholm::engine::by_rays::Estimator;
-use fredholm::engine::discretisation::Factors;
+use fredholm::engine::discretisation::{Factors, Form};
 use fredholm::engine::known::length::{Length, length};
 use fredholm::engine::known::trap::trapped;
 use fredholm::engine::known::unsampled::unsampled;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::scene::{Description, Scene, bsdf::Sampling};
+use fredholm::study::roulette::Schedule;
+use fredholm::terms::World;
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 /// The sums of all terms, pixels and replicates are held at once: better refused now than killed later.
@@ -26,13 +27,13 @@ pub fn can_be_guided(
     scene: &Scene,
     estimators: &[Estimator],
     settings: &Settings,
-    worlds: &[WorldName],
+    worlds: &[World],
 ) -> Result<(), Failure> {
     let wrong = |what: &str, help: &str| Err(Failure::Usage(format!("error: {what}\nhelp: {help}")));
     if estimators.iter().any(|e| matches!(e, Estimator::Light | Estimator::Bidirectional)) {
         return wrong("a guide steers walks from the eye only", "use --estimator prefix, single or branching");
     }
-    if !worlds.iter().any(|w| matches!(w, WorldName::Terms | WorldName::Path)) {
+    if !worlds.iter().any(|w| matches!(w, World::Terms | World::Path)) {
         return wrong("--guide is for rays, and none are asked for", "leave --guide out, or use `fredholm series`");
     }
     if settings.sampling == Sampling::Uniform {
@@ -66,9 +67,9 @@ pub fn tree_can_be_walked(estimator: Estimator, settings: &Settings, [w, h]: [u3
 
 /// A matrix holds Lambertian surfaces of one colour that are lit by surfaces. Not asked for by name it is left out, with a
 /// word, where the scene has others.
-pub fn suits_a_matrix(description: &Description, worlds: &mut Vec<WorldName>, asked: bool) -> Result<(), Failure> {
+pub fn suits_a_matrix(description: &Description, worlds: &mut Vec<World>, asked: bool) -> Result<(), Failure> {
     let Err(why) = description.radiosity_suits() else { return Ok(()) };
-    if !worlds.contains(&WorldName::Radiosity) {
+    if !worlds.contains(&World::Radiosity) {
         return Ok(());
     }
     if asked {
@@ -79,8 +80,8 @@ pub fn suits_a_matrix(description: &Description, worlds: &mut Vec<WorldName>, as
         };
         return Err(Failure::Usage(format!("error: no radiosity matrix can hold this scene: {why}\nhelp: {help}")));
     }
-    worlds.retain(|w| *w != WorldName::Radiosity);
-    super::note(&format!("note: no radiosity: {why}"));
+    worlds.retain(|w| *w != World::Radiosity);
+    note(&format!("note: no radiosity: {why}"));
     Ok(())
 }
 
@@ -89,10 +90,10 @@ pub fn light_is_seen(
     scene: &Scene,
     estimators: &[Estimator],
     settings: &Settings,
-    worlds: &[WorldName],
+    worlds: &[World],
 ) -> Result<(), Failure> {
     let walks: Vec<Option<Estimator>> =
-        estimators.iter().map(|&e| Some(e)).chain(worlds.contains(&WorldName::Path).then_some(None)).collect();
+        estimators.iter().map(|&e| Some(e)).chain(worlds.contains(&World::Path).then_some(None)).collect();
     let from_eye = |e: &Option<Estimator>| !matches!(e, Some(Estimator::Light | Estimator::Bidirectional));
     if settings.technique == Technique::Scatter && scene.lights.all_delta() && walks.iter().any(from_eye) {
         return Err(Failure::Usage(
@@ -106,7 +107,7 @@ pub fn light_is_seen(
             let who = walk.map_or("the path tracer".into(), |e| e.to_string());
             let who = if walk == Some(Estimator::Light) { who } else { format!("{who}, {}", settings.technique) };
             let (from, what) = (missing.from, missing.what);
-            super::note(&format!("note: not supported by {who}, from k = {from} on: {what}"));
+            note(&format!("note: not supported by {who}, from k = {from} on: {what}"));
         }
     }
     Ok(())
@@ -117,18 +118,13 @@ const POSSIBLE: usize = 20_000;
 
 /// A side of a primitive is at least one patch, and the matrix is dense. Where the radiosity was not asked for by name it is
 /// left out of scenes with many primitives; asked for by name it is refused beyond what any machine holds.
-pub fn fits_in_a_matrix(
-    scene: &Scene,
-    factors: Factors,
-    worlds: &mut Vec<WorldName>,
-    asked: bool,
-) -> Result<(), Failure> {
+pub fn fits_in_a_matrix(scene: &Scene, factors: Factors, worlds: &mut Vec<World>, asked: bool) -> Result<(), Failure> {
     const COMFORTABLE: usize = 4000;
     if let Factors::Rays(_) = factors {
         return Ok(());
     }
     let sides = reflecting(scene);
-    if !worlds.contains(&WorldName::Radiosity) || sides <= if asked { POSSIBLE } else { COMFORTABLE } {
+    if !worlds.contains(&World::Radiosity) || sides <= if asked { POSSIBLE } else { COMFORTABLE } {
         return Ok(());
     }
     if asked {
@@ -137,8 +133,8 @@ pub fn fits_in_a_matrix(
              help: store rays instead: --factors rays; or leave the radiosity world out: --worlds terms,path"
         )));
     }
-    worlds.retain(|w| *w != WorldName::Radiosity);
-    super::note(&format!(
+    worlds.retain(|w| *w != World::Radiosity);
+    note(&format!(
         "note: no radiosity: {sides} sides are many for a dense matrix (--worlds terms,path,radiosity insists)"
     ));
     Ok(())
@@ -152,25 +148,67 @@ const DENSE: u32 = 10_000;
 const RAYS: u32 = 256;
 
 /// Rays of a row, where rays are stored.
-pub fn rays(run: &Run) -> u32 {
-    run.rays.unwrap_or(RAYS)
+pub fn rays(asked: Option<u32>) -> u32 {
+    asked.unwrap_or(RAYS)
 }
 
 /// How form factors are held.
-pub fn factors(run: &Run, patches: u32) -> Result<Factors, Failure> {
-    let dense = run.factors.map_or(patches <= DENSE, |f| f != FactorsName::Rays);
+pub fn factors(form: Option<Form>, per_row: Option<u32>, patches: u32) -> Result<Factors, Failure> {
+    let dense = form.map_or(patches <= DENSE, |f| f != Form::Rays);
     if dense && patches > MOST_DENSE {
         return Err(Failure::Usage(format!(
             "error: {patches} patches make a matrix of {patches}², more than the {MOST_DENSE}² it may have\n\
              help: use --factors rays"
         )));
     }
-    if dense && run.rays.is_some() && run.factors != Some(FactorsName::Both) {
+    if dense && per_row.is_some() && form != Some(Form::Both) {
         return Err(Failure::Usage(
             "error: --rays is for stored rays, and this is a matrix\nhelp: add --factors rays or --factors both".into(),
         ));
     }
-    Ok(if dense { Factors::Dense } else { Factors::Rays(rays(run)) })
+    Ok(if dense { Factors::Dense } else { Factors::Rays(rays(per_row)) })
+}
+
+/// A dense matrix that was asked for by name can be had.
+pub fn has_a_matrix(description: &Description, scene: &Scene, factors: Factors) -> Result<(), Failure> {
+    let mut worlds = vec![World::Radiosity];
+    suits_a_matrix(description, &mut worlds, true)?;
+    fits_in_a_matrix(scene, factors, &mut worlds, true)
+}
+
+/// What a study of one way of sampling asks: it sees light, its trees can be walked, its film fits, and light gets out.
+pub fn can_be_sampled(scene: &Scene, estimator: Option<Estimator>, settings: &Settings) -> Result<(), Failure> {
+    let size = scene.camera.size;
+    let world = [if estimator.is_some() { World::Terms } else { World::Path }];
+    let estimators: Vec<Estimator> = estimator.into_iter().collect();
+    estimators.iter().try_for_each(|&e| tree_can_be_walked(e, settings, size))?;
+    fits_in_memory(settings, size)?;
+    light_is_seen(scene, &estimators, settings, &world)?;
+    light_is_lost(scene, settings, &world)
+}
+
+/// A schedule where nothing else will do: the study keeps all samples of its terms, or compares them, and has none to find.
+pub fn fixed(asked: Option<&Schedule>) -> Result<Option<Roulette>, Failure> {
+    match asked {
+        Some(Schedule::Optimal) => Err(Failure::Usage(
+            "error: --roulette optimal has no part in this\nhelp: `fredholm roulette SCENE --optimise` finds it; give its table here".into(),
+        )),
+        asked => {
+            asked.map_or(Ok(()), |schedule| somebody_expects(schedule, false))?;
+            Ok(asked.and_then(Schedule::given))
+        }
+    }
+}
+
+/// A schedule that goes by what is expected needs a guide.
+pub fn somebody_expects(schedule: &Schedule, guided: bool) -> Result<(), Failure> {
+    match schedule {
+        Schedule::ByExpectation(end) if !guided => Err(Failure::Usage(format!(
+            "error: --roulette {end} goes by what a guide expects, and there is none\n\
+             help: add --guide radiosity (series, render), or choose albedo"
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// Sides that reflect or emit: each is one patch at least.
@@ -206,21 +244,21 @@ fn available() -> Option<u64> {
 
 /// Refuses a scene in which light never gets out, if anything longer than K is asked for: `L = E + T L` has no solution, and paths
 /// that only absorption ends would never end. Says what long paths cost.
-pub fn light_is_lost(scene: &Scene, settings: &Settings, worlds: &[WorldName]) -> Result<(), Failure> {
+pub fn light_is_lost(scene: &Scene, settings: &Settings, worlds: &[World]) -> Result<(), Failure> {
     let has = |world| worlds.contains(&world);
     let walked = [
-        (has(WorldName::Terms) && settings.roulette.ends(), &settings.roulette),
-        (has(WorldName::Path) && settings.path_roulette.ends(), &settings.path_roulette),
+        (has(World::Terms) && settings.roulette.ends(), &settings.roulette),
+        (has(World::Path) && settings.path_roulette.ends(), &settings.path_roulette),
     ];
     let walked: Vec<&Roulette> = walked.into_iter().filter(|w| w.0).map(|w| w.1).collect();
-    if !has(WorldName::Radiosity) && walked.is_empty() {
+    if !has(World::Radiosity) && walked.is_empty() {
         return Ok(());
     }
     if trapped(scene).is_some() {
         return Err(MatrixError::Singular.into());
     }
     if let Some((vertex, q)) = scene.last_resort().filter(|_| walked.iter().any(|r| r.fixed(usize::MAX).is_none())) {
-        super::note(&format!(
+        note(&format!(
             "note: an albedo is 1, or only known to be at most 1: from vertex {vertex} on paths end with q ≥ {q}\n\
              (second moments of light lose more than {:.2} at a vertex, so that the variance stays finite)",
             4.0 * q
@@ -242,7 +280,7 @@ pub fn light_is_lost(scene: &Scene, settings: &Settings, worlds: &[WorldName]) -
                     paths * each
                 )
             };
-            super::note(&format!("note: paths are long, {} rays each in the mean{time}", rays.round()));
+            note(&format!("note: paths are long, {} rays each in the mean{time}", rays.round()));
         }
     }
     Ok(())

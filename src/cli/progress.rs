@@ -1,5 +1,6 @@
 //! Progress with an ETA on stderr, and Ctrl-C.
 
+use super::base::note;
 use fredholm::progress::{Listener, Progress};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
@@ -18,7 +19,7 @@ pub fn stop_flag() -> &'static AtomicBool {
             if set.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
-            super::note("\ninterrupted: saving what exists (again: stop at once)");
+            note("\ninterrupted: saving what exists (again: stop at once)");
         });
         flag
     })
@@ -100,7 +101,7 @@ impl Listener for Bar {
         let tenth = 10 * done / all;
         if elapsed > 2.0 && tenth < 10 && self.tenths.fetch_max(tenth, Ordering::Relaxed) < tenth {
             let eta = elapsed * (*all as f64 / done as f64 - 1.0);
-            super::note(&format!("{what}: {} %, ETA {eta:.0} s", 10 * tenth));
+            note(&format!("{what}: {} %, ETA {eta:.0} s", 10 * tenth));
         }
     }
 

@@ -1,25 +1,27 @@
 //! `fredholm roulette [SCENE]`: schedules predicted from the cross moments of one recording, verified by rendering them, and
 //! the best one found.
 
-use super::progress::Bar;
-use super::{Ending, Failure, args, output, preflight, solve, sweep};
+use super::base::{Ending, Failure, names, paragraphs, usage};
+use super::open::Opened;
+use super::options::{Shared, among, size, values};
+use super::preflight;
+use super::session::Session;
 use fredholm::engine::Settings;
 use fredholm::engine::by_matrix;
-use fredholm::engine::known::resort::with_last_resort;
+use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::{self, Technique};
+use fredholm::progress::Progress;
 use fredholm::report::figures::roulette::{self as rows, Row};
-use fredholm::report::image::typeset::Caption;
-use fredholm::report::{
-    text::{summary, table},
-    write_atomically,
-};
+use fredholm::report::text::summary::{self, Summary};
+use fredholm::report::text::table;
+use fredholm::report::write_atomically;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::load;
 use fredholm::scene::{Description, Scene, Selection};
 use fredholm::stats::Noise;
-use fredholm::study::roulette::{self, Radii};
+use fredholm::study::roulette::{self, Radii, Schedule};
+use fredholm::terms::World;
 use fredholm::terms::cross_moments::{Recorded, Value};
-use std::time::Instant;
 
 /// Shown below the help.
 pub const EXAMPLES: &str = "Examples:
@@ -64,23 +66,23 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
     /// Image size in pixels [default: the scene's, made smaller to at most 64 pixels a side]
-    #[arg(long, value_name = "WxH", value_parser = args::size)]
+    #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// K: schedules are predicted up to this vertex
     #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u16).range(1..=64))]
     pub max_bounces: u16,
-    /// How light is found: scatter, connect, mis, mis-power
-    #[arg(long, default_value = "mis", value_parser = args::technique, value_name = "NAME")]
+    /// How light is found.
+    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help = among("How light is found", Technique::ALL))]
     pub technique: Technique,
-    /// How a light is selected: uniform, power
-    #[arg(long, default_value = "uniform", value_parser = args::selection, value_name = "NAME")]
+    /// How a light is selected.
+    #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", help = among("How a light is selected", Selection::ALL))]
     pub lights: Selection,
-    /// How directions are drawn: uniform, cosine, bsdf
-    #[arg(long, default_value = "bsdf", value_parser = args::sampling, value_name = "NAME")]
+    /// How directions are drawn.
+    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help = among("How directions are drawn", Sampling::ALL))]
     pub sampling: Sampling,
     /// Scene, output, threads.
     #[command(flatten)]
-    pub shared: crate::cli::open::Shared,
+    pub shared: Shared,
 }
 
 /// A schedule by the name it was typed with; `None` is to be found.
@@ -88,11 +90,10 @@ type Asked = (String, Option<estimator::Roulette>);
 
 /// Predicts, verifies, optimises.
 pub fn run(args: &Args) -> Result<Ending, Failure> {
-    let started = Instant::now();
     let asked = schedules(args)?;
-    super::open::threads(args.shared.threads)?;
-    let command = output::canonical_command();
-    let (description, scene, hash) = scene(args)?;
+    let mut session = Session::new(&args.shared, args.seed)?;
+    let opened = scene(args, &mut session)?;
+    let (description, scene) = (opened.description, opened.scene.select_lights(args.lights));
     let settings = Settings {
         spp: args.spp,
         seed: args.seed,
@@ -101,105 +102,82 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
         sampling: args.sampling,
         ..Settings::default()
     };
-    preflight::light_is_seen(&scene, &[fredholm::engine::by_rays::Estimator::Prefix], &settings, &[])?;
-    preflight::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
-    let name = format!("{}-roulette", description.name);
-    let folder = output::folder(args.shared.out.as_deref(), &name, &command, args.shared.force)?;
-    let bar = Bar::plain(args.shared.quiet);
-    let progress = bar.progress();
+    preflight::light_is_seen(&scene, &[Estimator::Prefix], &settings, &[])?;
+    preflight::light_is_lost(&scene, &settings, &[World::Terms])?;
+    session.make_folder(&format!("{}-roulette", description.name))?;
 
     // the recording, and what follows from it
-    let Some(recorded) = roulette::pilot(&scene, &settings, args.spp, progress) else {
-        bar.finish();
-        super::note("nothing to save yet");
-        let _ = std::fs::remove_dir(&folder); // only if it is empty
-        return Ok(Ending::Interrupted);
+    let Some(recorded) = roulette::pilot(&scene, &settings, args.spp, session.progress()) else {
+        return Ok(session.nothing_to_save(""));
     };
     let best = roulette::best(&recorded, &scene);
     let beyond = roulette::beyond(&scene);
-    let mut schedules: Vec<estimator::Roulette> = vec![];
-    let mut all: Vec<Row> = vec![];
-    for (name, given) in asked {
-        let Some(schedule) = given.or(best.as_ref().map(|b| b.roulette.clone())) else { continue };
-        let (row, schedule) = predict(name, schedule, &recorded, settings.max_bounces, beyond);
-        all.push(row);
-        schedules.push(schedule);
-    }
+    let given = |(name, given): Asked| Some((name, given.or(best.as_ref().map(|b| b.roulette.clone()))?));
+    let predicted = asked.into_iter().filter_map(given);
+    let predicted = predicted.map(|(name, s)| predict(name, s, &recorded, settings.max_bounces, beyond));
+    let (mut all, schedules): (Vec<Row>, Vec<estimator::Roulette>) = predicted.unzip();
+    measure(args, (&scene, &settings), &mut all, &schedules, session.progress());
 
-    // rendered
+    let mut record = Summary {
+        spp: args.spp.into(),
+        max_bounces: settings.max_bounces,
+        cross_moments: Some(summary::cross_moments(&recorded, beyond)),
+        files: names(["roulette.csv", "roulette.png", "roulette.svg", "summary.json"]),
+        ..session.record()
+    };
+    record.bounds.max_albedo = scene.max_albedo().as_dvec3();
+    write_atomically(&session.folder.join("roulette.csv"), rows::csv(&all).as_bytes())?;
+    let title = format!("Roulette schedules of {}: predicted from paths without roulette", record.scene);
+    rows::draw(&all, &title, &session.caption())?.write(&session.folder, "roulette")?;
+    session.sign(&record)?;
+    let doubts = doubts(&all, &description, &scene);
+    let warnings = warnings(&doubts, &recorded);
+    session.warn(&warnings);
+    session.show(&record, || {
+        let found = if args.optimise { gains(&all, best.as_ref()) } else { String::new() };
+        let warned = warnings.iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n");
+        let head = head(args, &record, &recorded, beyond);
+        paragraphs(&[head, rows::table(&all), found, warned, session.written(&record.files)])
+    })?;
+    // a variance that cannot be measured contradicts nothing
+    let told = all.iter().filter(|r| doubts.iter().all(|d| d.0 != r.name));
+    let contradicted = told.filter_map(Row::z).any(|z| z.abs() > critical(all.len(), recorded.replicates()));
+    Ok(session.ending(contradicted))
+}
+
+/// Renders what is to be rendered.
+fn measure(
+    args: &Args,
+    (scene, settings): (&Scene, &Settings),
+    all: &mut [Row],
+    schedules: &[estimator::Roulette],
+    progress: Progress<'_>,
+) {
     if args.verify || args.optimise {
-        for (row, schedule) in all.iter_mut().zip(&schedules) {
+        for (row, schedule) in all.iter_mut().zip(schedules) {
             let rival = ["optimal", "lecture", "albedo"].contains(&row.name.as_str());
             if args.verify || rival {
-                let measured = roulette::measure(&scene, &settings, schedule, args.spp, progress);
+                let measured = roulette::measure(scene, settings, schedule, args.spp, progress);
                 row.measured = measured.map(|m| Noise::measured(&m));
             }
         }
     }
     if args.optimise && !progress.stopped() {
         let spp = (args.spp / 4).max(1);
-        let seconds = roulette::seconds_per_path(&scene, &settings, &schedules, spp);
+        let seconds = roulette::seconds_per_path(scene, settings, schedules, spp);
         all.iter_mut().zip(seconds).for_each(|(row, s)| row.seconds = Some(s));
     }
-    bar.finish();
-    let stopped = progress.stopped();
+}
 
-    // written and printed
-    let mut record = summary::Summary {
-        command,
-        scene: description.name.clone(),
-        scene_hash: hash,
-        seed: args.seed,
-        spp: args.spp.into(),
-        max_bounces: settings.max_bounces,
-        threads: rayon::current_num_threads(),
-        width: description.camera.size[0] as usize,
-        height: description.camera.size[1] as usize,
-        cross_moments: Some(summary::cross_moments(&recorded, beyond)),
-        ..summary::Summary::default()
-    };
-    record.bounds.max_albedo = scene.max_albedo().as_dvec3();
-    record.files = ["roulette.csv", "roulette.png", "roulette.svg", "summary.json"].map(String::from).into();
-    record.seconds = started.elapsed().as_secs_f64();
-    let caption = Caption { command: record.command.clone(), seed: record.seed, scene: record.scene.clone() };
-    write_atomically(&folder.join("roulette.csv"), rows::csv(&all).as_bytes())?;
-    let title = format!("Roulette schedules of {}: predicted from paths without roulette", record.scene);
-    rows::draw(&all, &title, &caption)?.write(&folder, "roulette")?;
-    let old = output::left_by_the_last_run(&folder);
-    summary::write(&folder.join("summary.json"), &record)?;
-    output::remove_stale(&folder, &old, &record.files);
-
-    let doubts = doubts(&all, &description, &scene);
-    let warnings = warnings(&doubts, &recorded);
-    if args.shared.json {
-        warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-        super::print(&serde_json::to_string_pretty(&record)?)?;
-    } else {
-        let [w, h] = description.camera.size;
-        let head = format!(
-            "{}\nseed {}, {} spp, {w}×{h} pixels, technique {}; {} paths recorded in {:.1} s\n\
-             from vertex K = {} on every predicted schedule goes on with q = {beyond:.2}",
-            record.command,
-            args.seed,
-            args.spp,
-            args.technique,
-            table::count(recorded.paths),
-            recorded.seconds,
-            settings.max_bounces
-        );
-        let found = if args.optimise { gains(&all, best.as_ref()) } else { String::new() };
-        let warned = warnings.iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n");
-        let files = format!("written to {}: {}", folder.display(), record.files.join(", "));
-        super::print(&super::paragraphs(&[head, rows::table(&all), found, warned, files]))?;
-    }
-    // a variance that cannot be measured contradicts nothing
-    let told = all.iter().filter(|r| doubts.iter().all(|d| d.0 != r.name));
-    let contradicted = told.filter_map(Row::z).any(|z| z.abs() > critical(all.len(), recorded.replicates()));
-    Ok(match (stopped, contradicted) {
-        (true, _) => Ending::Interrupted,
-        (_, true) => Ending::Failed,
-        _ => Ending::Ok,
-    })
+fn head(args: &Args, record: &Summary, recorded: &Recorded, beyond: f64) -> String {
+    let Summary { command, seed, spp, width, height, max_bounces, .. } = record;
+    format!(
+        "{command}\nseed {seed}, {spp} spp, {width}×{height} pixels, technique {}; {} paths recorded in {:.1} s\n\
+         from vertex K = {max_bounces} on every predicted schedule goes on with q = {beyond:.2}",
+        args.technique,
+        table::count(recorded.paths),
+        recorded.seconds
+    )
 }
 
 /// |z| beyond which a prediction is contradicted: family level 10⁻³ over the schedules.
@@ -210,10 +188,10 @@ fn critical(schedules: usize, replicates: u64) -> f64 {
 fn schedules(args: &Args) -> Result<Vec<Asked>, Failure> {
     let list = args.schedules.as_deref().unwrap_or(USUAL);
     let mut all: Vec<Asked> = vec![];
-    for name in sweep::values(list) {
-        let schedule = args::schedule(&name)
-            .map_err(|why| Failure::Usage(format!("error: {why}\nhelp: for example --schedules {USUAL}")))?;
-        all.push((name, solve::given(Some(&schedule))));
+    for name in values(list) {
+        let schedule: Schedule =
+            name.parse().map_err(|why: String| usage(&why, &format!("for example --schedules {USUAL}")))?;
+        all.push((name, schedule.given()));
     }
     if args.optimise {
         for rival in ["lecture", "albedo", "optimal"] {
@@ -225,17 +203,18 @@ fn schedules(args: &Args) -> Result<Vec<Asked>, Failure> {
     Ok(all)
 }
 
-fn scene(args: &Args) -> Result<(Description, Scene, String), Failure> {
+/// The scene, in a small picture unless a size was asked for.
+fn scene(args: &Args, session: &mut Session) -> Result<Opened, Failure> {
     const SIDE: u32 = 64;
-    let load = |size: Option<[u32; 2]>| load::scene(&args.scene, &args.shared.changes.options(size));
-    let mut loaded = load(args.size)?;
-    let [w, h] = loaded.description.camera.size;
-    if args.size.is_none() && w.max(h) > SIDE {
-        loaded = load(Some([w, h].map(|side| (side * SIDE / w.max(h)).max(1))))?;
-    }
-    loaded.warnings.iter().for_each(|w| super::note(&format!("warning: {w}")));
-    let scene = with_last_resort(Scene::new(&loaded.description)).select_lights(args.lights);
-    Ok((loaded.description, scene, solve::scene_hash(&loaded.canonical)))
+    let size = match args.size {
+        Some(size) => Some(size),
+        None => {
+            let as_it_is = load::scene(&args.scene, &args.shared.changes.options(None))?;
+            let [w, h] = as_it_is.description.camera.size;
+            (w.max(h) > SIDE).then(|| [w, h].map(|side| (side * SIDE / w.max(h)).max(1)))
+        }
+    };
+    session.open(&args.scene, &args.shared.changes, size)
 }
 
 /// A row with its prediction, and the schedule as it is rendered: as a table up to vertex K where there is one.

@@ -1,6 +1,7 @@
 //! The continuous world: terms and path tracer, from rays to series and images.
 
 use crate::engine::Settings;
+pub use crate::engine::estimator::Estimator;
 use crate::engine::known::coplanar::undecided;
 use crate::engine::known::doubts::doubts;
 use crate::engine::known::growth::{self, Growth};
@@ -18,38 +19,7 @@ use crate::terms::image::events_of_pixels;
 use crate::terms::norms::{SquaredNorm, squared_norm};
 use crate::terms::variance::{Snapshot, snapshot};
 use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, Variance, World};
-use std::fmt;
 use std::time::{Duration, Instant};
-
-/// Which estimator of the terms.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Estimator {
-    /// Each term from paths of its own.
-    Single,
-    /// All terms from the prefixes of one path.
-    Prefix,
-    /// All terms from one particle, walked from the light.
-    Light,
-    /// All terms from walks from both ends.
-    Bidirectional,
-    /// A tree of paths.
-    Branching {
-        /// Children of every vertex.
-        children: u32,
-    },
-}
-
-impl fmt::Display for Estimator {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Single => f.write_str("single"),
-            Self::Prefix => f.write_str("prefix"),
-            Self::Light => f.write_str("light"),
-            Self::Bidirectional => f.write_str("bidirectional"),
-            Self::Branching { children } => write!(f, "branching {children}"),
-        }
-    }
-}
 
 /// What rays gave: means with errors, images, and how the errors fell.
 #[derive(Clone, Debug)]

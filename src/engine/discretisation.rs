@@ -7,11 +7,14 @@
 //! | solve | LU | Neumann series |
 //! | error beside that of the mesh | visibility samples, not stated | the bar of the two halves, stated |
 
+use crate::math::names::named;
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
 use crate::operator::rays::{RayChecks, Rays};
 use crate::solver::Radiosity;
 use glam::DVec3;
+use std::fmt;
+use std::str::FromStr;
 
 /// Which form to use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,6 +24,39 @@ pub enum Factors {
     Dense,
     /// So many rays a row.
     Rays(u32),
+}
+
+/// Which form is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// A matrix of deterministic form factors.
+    Dense,
+    /// Rows of stored rays, with an error bar.
+    Rays,
+    /// The matrix, and how far rays on the same patches are from it.
+    Both,
+}
+
+impl Form {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Dense, Self::Rays, Self::Both];
+}
+
+impl fmt::Display for Form {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Dense => "dense",
+            Self::Rays => "rays",
+            Self::Both => "both",
+        })
+    }
+}
+
+impl FromStr for Form {
+    type Err = String;
+    fn from_str(name: &str) -> Result<Self, String> {
+        named(&Self::ALL, name)
+    }
 }
 
 /// T_h with its mesh.

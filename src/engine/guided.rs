@@ -8,12 +8,42 @@ use crate::engine::known::growth::{self, FromEye, Growth};
 use crate::estimator::{Branching, Plan, Prefix, Roulette, SingleTerm};
 use crate::guide::tracked::{Track, Tracked, TrackedSensor};
 use crate::guide::{self, ByExpectation, Guide, GuidedTransport, Recipe};
-use crate::math::Key;
+use crate::math::{Key, names::named};
 use crate::operator::SceneTransport;
 use crate::progress::Progress;
 use crate::scene::{Description, Scene, SceneError, Vertex};
 use crate::terms::World;
+use std::fmt;
+use std::str::FromStr;
 use std::time::{Duration, Instant};
+
+/// What tells rays where to look.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Guiding {
+    /// The surface alone.
+    #[default]
+    Bsdf,
+    /// The matrix over patches.
+    Radiosity,
+}
+
+impl Guiding {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Bsdf, Self::Radiosity];
+}
+
+impl fmt::Display for Guiding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if *self == Self::Bsdf { "bsdf" } else { "radiosity" })
+    }
+}
+
+impl FromStr for Guiding {
+    type Err = String;
+    fn from_str(name: &str) -> Result<Self, String> {
+        named(&Self::ALL, name)
+    }
+}
 
 /// Patches of a guide unless told otherwise.
 pub const PATCHES: usize = 4000;

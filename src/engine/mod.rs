@@ -14,8 +14,10 @@ pub mod batches;
 pub mod by_matrix;
 pub mod by_rays;
 pub mod discretisation;
+mod estimator;
 pub mod guided;
 pub mod known;
+mod options;
 pub mod radius;
 mod settings;
 

@@ -12,6 +12,6 @@ pub fn named<T: Copy + Display>(all: &[T], name: &str) -> Result<T, String> {
 }
 
 /// All names, with commas.
-pub fn list<T: Display>(all: &[T]) -> String {
-    all.iter().map(T::to_string).collect::<Vec<_>>().join(", ")
+pub fn list(all: impl IntoIterator<Item: Display>) -> String {
+    all.into_iter().map(|value| value.to_string()).collect::<Vec<_>>().join(", ")
 }

@@ -44,6 +44,18 @@ impl std::fmt::Display for Points {
     }
 }
 
+impl Points {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Independent, Self::Sobol];
+}
+
+impl std::str::FromStr for Points {
+    type Err = String;
+    fn from_str(name: &str) -> Result<Self, String> {
+        super::names::named(&Self::ALL, name)
+    }
+}
+
 /// A whole run's stream: equal seeds and names give equal numbers, anything else gives unrelated ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Key {

@@ -22,7 +22,7 @@ use super::{Chebyshev, ConjugateGradients, Gmres, Iteration, Jacobi, PartialSums
 use crate::operator::algebra::Expression;
 use crate::operator::matrix::{Extremes, PatchOperator, Transposed, Weight, extremes};
 use crate::operator::rays::RayOperator;
-pub use history::{History, Point, Solver};
+pub use history::{History, Point, Solver, Solvers};
 use std::sync::OnceLock;
 use std::time::Instant;
 

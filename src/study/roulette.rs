@@ -24,6 +24,7 @@ use crate::engine::known::resort::two_digits;
 use crate::estimator::record::record;
 use crate::estimator::render::{Amount, render};
 use crate::estimator::{Plan, Prefix, Roulette, Vertices};
+use crate::guide::ByExpectation;
 use crate::math::Key;
 use crate::operator::SceneTransport;
 use crate::progress::Progress;
@@ -33,6 +34,8 @@ use crate::stats::optimal::{optimal_reach, schedule};
 use crate::stats::schedule::{Noise, Part, Separable, gain};
 use crate::terms::Variance;
 use crate::terms::cross_moments::{Recorded, Value};
+use std::fmt;
+use std::str::FromStr;
 use std::time::Instant;
 
 /// Paths of a pilot: enough for a schedule that is as good as the best to a percent or two.
@@ -148,6 +151,54 @@ pub fn optimal(scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Op
     let [w, h] = scene.camera.size.map(u64::from);
     let spp = (PILOT / (w * h)).clamp(8, 1 << 12) as u32;
     best(&pilot(scene, &settings, spp, progress)?, scene)
+}
+
+/// A schedule as it is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Schedule {
+    /// This one.
+    Given(Roulette),
+    /// By what a guide says is still to come.
+    ByExpectation(ByExpectation),
+    /// The one with the most efficiency, which only the scene can tell.
+    Optimal,
+}
+
+impl Schedule {
+    /// The schedule, of walks without a guide; none if it is yet to be found.
+    pub fn given(&self) -> Option<Roulette> {
+        match self {
+            Self::Given(roulette) => Some(roulette.clone()),
+            Self::ByExpectation(end) => Some(end.plain()),
+            Self::Optimal => None,
+        }
+    }
+}
+
+impl fmt::Display for Schedule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Given(roulette) => roulette.fmt(f),
+            Self::ByExpectation(end) => end.fmt(f),
+            Self::Optimal => f.write_str("optimal"),
+        }
+    }
+}
+
+/// `optimal`, or as [`ByExpectation`], or as [`Roulette`].
+impl FromStr for Schedule {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "optimal" {
+            return Ok(Self::Optimal);
+        }
+        if let Ok(end) = text.parse() {
+            return Ok(Self::ByExpectation(end));
+        }
+        let more =
+            |why: String| if why.starts_with("unknown") { why + "; contribution[@V] or window[@V]" } else { why };
+        text.parse().map(Self::Given).map_err(more)
+    }
 }
 
 /// q from some vertex on, where a schedule settles on one.

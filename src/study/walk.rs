@@ -16,6 +16,7 @@ use crate::engine::Settings;
 use crate::engine::by_matrix::Matrix;
 use crate::engine::by_rays::{self, Estimator, Passes, Sampled};
 use crate::estimator::{Absorption, PathTracer, Plan, Roulette};
+use crate::math::names::list;
 use crate::operator::MatrixWalk;
 use crate::operator::matrix_walk::Rows;
 use crate::progress::{Clock, Progress};
@@ -24,6 +25,7 @@ use crate::terms::functional::exact_functionals;
 use crate::terms::{Cost, Estimate, Series, Variance, World};
 use glam::DVec3;
 use std::fmt;
+use std::str::FromStr;
 
 /// What walks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +45,51 @@ impl fmt::Display for Walker {
             Self::Path => f.write_str("path tracer"),
             Self::Absorption => f.write_str("absorption"),
         }
+    }
+}
+
+/// What is found out on the matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Study {
+    /// A walk beside its truth.
+    Walk(Walker),
+    /// Absorption led by guides, up to the solution itself: [`zero_variance`](crate::study::zero_variance).
+    ZeroVariance,
+}
+
+impl Study {
+    /// All of them.
+    pub fn all() -> Vec<Self> {
+        let terms = Estimator::ALL.map(Walker::Terms).into_iter();
+        let walks = terms.chain([Walker::Path, Walker::Absorption]).map(Self::Walk);
+        walks.chain([Self::ZeroVariance]).collect()
+    }
+
+    /// Its name, however many children a tree has.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Walk(Walker::Terms(estimator)) => estimator.name(),
+            Self::Walk(Walker::Path) => "path",
+            Self::Walk(Walker::Absorption) => "absorption",
+            Self::ZeroVariance => "zero-variance",
+        }
+    }
+
+    /// The same with so many children of every vertex, if it is a tree.
+    #[must_use]
+    pub fn with_children(self, children: u32) -> Self {
+        match self {
+            Self::Walk(Walker::Terms(estimator)) => Self::Walk(Walker::Terms(estimator.with_children(children))),
+            other => other,
+        }
+    }
+}
+
+impl FromStr for Study {
+    type Err = String;
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::all().into_iter().find(|s| s.name() == name);
+        found.ok_or_else(|| format!("`{name}` is none of {}", list(Self::all().into_iter().map(Self::name))))
     }
 }
 

@@ -25,4 +25,4 @@ pub mod variance;
 pub use cross_moments::{CrossMoments, Recorded};
 pub use film::{Shape, TermFilm};
 pub use image::TermImage;
-pub use series::{Cost, Doubt, Estimate, Events, Functional, Series, UnsampledPaths, Variance, World};
+pub use series::{Channel, Cost, Doubt, Estimate, Events, Functional, Series, UnsampledPaths, Variance, World};

@@ -113,6 +113,40 @@ impl std::str::FromStr for World {
     }
 }
 
+/// A colour channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channel {
+    /// Number 0.
+    Red,
+    /// Number 1.
+    Green,
+    /// Number 2.
+    Blue,
+}
+
+impl Channel {
+    /// All of them, by number.
+    pub const ALL: [Self; 3] = [Self::Red, Self::Green, Self::Blue];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        ["red", "green", "blue"][self as usize]
+    }
+}
+
+impl std::fmt::Display for Channel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for Channel {
+    type Err = String;
+    fn from_str(name: &str) -> Result<Self, String> {
+        named(&Self::ALL, name)
+    }
+}
+
 /// Work done for a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cost {

@@ -1,13 +1,13 @@
 //! The two sides of `check bias`: what is asked for by name, and what is refused.
 
-use super::super::args::{self, EstimatorName};
-use super::super::{Failure, preflight, solve};
-use super::bias::Bias;
-use super::usage;
-use crate::cli::open::Opened;
+use super::bias_args::Bias;
+use crate::cli::base::{Failure, usage};
+use crate::cli::preflight;
 use fredholm::engine::Settings;
 use fredholm::engine::batches::Side;
+use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::{Roulette, Technique};
+use fredholm::math::names::list;
 use fredholm::report::text::summary;
 use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
@@ -44,14 +44,14 @@ pub(super) fn side(
     let estimator = match name {
         "path" => None,
         name => {
-            let known = <EstimatorName as clap::ValueEnum>::from_str(name, false);
             let unknown = |_| {
+                let names = list(Estimator::ALL.map(Estimator::name));
                 usage(
                     &format!("`{name}` is no estimator, and no folder of a finished run"),
-                    "name one of prefix, single, branching, light, bidirectional, path, or a folder with a summary.json",
+                    &format!("name one of {names}, path, or a folder with a summary.json"),
                 )
             };
-            Some(solve::estimator(known.map_err(unknown)?, args.branching))
+            Some(name.parse::<Estimator>().map_err(unknown)?.with_children(args.branching))
         }
     };
     Ok(Side { estimator, settings })
@@ -102,21 +102,10 @@ impl Against {
 }
 
 /// Refuses what could only end badly.
-pub(super) fn check_sides(loaded: &Opened, first: &Side, against: &Against) -> Result<(), Failure> {
-    let size = loaded.description.camera.size;
-    let rendered = match against {
-        Against::Rendered(side) => Some(side),
-        Against::Finished(_) => None,
-    };
-    for side in [Some(first), rendered].into_iter().flatten() {
-        let worlds = [if side.estimator.is_some() { args::WorldName::Terms } else { args::WorldName::Path }];
-        let estimators: Vec<_> = side.estimator.into_iter().collect();
-        for &e in &estimators {
-            preflight::tree_can_be_walked(e, &side.settings, size)?;
-        }
-        preflight::light_is_seen(&loaded.scene, &estimators, &side.settings, &worlds)?;
-        preflight::light_is_lost(&loaded.scene, &side.settings, &worlds)?;
-        preflight::fits_in_memory(&side.settings, size)?;
+pub(super) fn check_sides(scene: &Scene, first: &Side, against: &Against) -> Result<(), Failure> {
+    preflight::can_be_sampled(scene, first.estimator, &first.settings)?;
+    match against {
+        Against::Rendered(side) => preflight::can_be_sampled(scene, side.estimator, &side.settings),
+        Against::Finished(_) => Ok(()),
     }
-    Ok(())
 }

@@ -1,8 +1,11 @@
 //! What a suspect is held against: terms rendered here, or those of an existing run.
 
-use super::super::{Failure, args, solve};
-use super::Diagnose;
-use clap::Parser;
+use super::args::Diagnose;
+use super::suspects::size_mismatch;
+use crate::cli::base::{Failure, note, usage};
+use crate::cli::solve::RunArgs;
+use crate::cli::{notes, open, preflight};
+use clap::{Parser, Subcommand};
 use fredholm::diagnosis::candidates::own_seed;
 use fredholm::diagnosis::picture::{Code, Layer, Pictures, Slot, shrink_factor};
 use fredholm::diagnosis::{Region, WIDEST, regions};
@@ -10,9 +13,11 @@ use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Estimator};
 use fredholm::engine::known::resort::with_last_resort;
 use fredholm::progress::Progress;
-use fredholm::report::{image::exr, text::summary};
+use fredholm::report::image::exr;
+use fredholm::report::text::summary;
 use fredholm::scene::load;
 use fredholm::scene::{Description, Scene};
+use fredholm::terms::World;
 use std::path::Path;
 
 /// Where the reference comes from.
@@ -48,17 +53,13 @@ pub fn source(args: &Diagnose) -> Result<Source, Failure> {
     let path = Path::new(&args.against);
     if path.is_dir() || path.file_name().is_some_and(|n| n == "summary.json") {
         if let Some(flag) = args.shared.changes.first() {
-            let what = format!("error: {flag} changes a scene, and {} is a finished run", args.against);
-            return Err(Failure::Usage(format!("{what}\nhelp: give the scene itself to --against")));
+            let what = format!("{flag} changes a scene, and {} is a finished run", args.against);
+            return Err(usage(&what, "give the scene itself to --against"));
         }
         return finished(path);
     }
-    let loaded = load::scene(&args.against, &args.shared.changes.options(None))?;
-    for warning in &loaded.warnings {
-        super::super::note(&format!("warning: {warning}"));
-    }
-    let hash = solve::scene_hash(&loaded.canonical);
-    Ok(Source { name: loaded.description.name.clone(), hash, description: Some(loaded.description), run: None })
+    let (description, hash) = open::description(&args.against, &args.shared.changes, None)?;
+    Ok(Source { name: description.name.clone(), hash, description: Some(description), run: None })
 }
 
 /// A run of this program: its terms, and the scene that its command names.
@@ -87,7 +88,7 @@ fn finished(path: &Path) -> Result<Source, Failure> {
     let pictures = Pictures { size: [image.width, image.height], layers, code: Code::Float };
     let description = scene_of(&record.command);
     if description.is_none() {
-        super::super::note("note: the scene of that run cannot be loaded again; no candidates are simulated");
+        note("note: the scene of that run cannot be loaded again; no candidates are simulated");
     }
     let label = format!("{}: {}, {} spp", path.display(), record.command, record.spp);
     Ok(Source {
@@ -98,15 +99,30 @@ fn finished(path: &Path) -> Result<Source, Failure> {
     })
 }
 
+/// The commands that render a scene.
+#[derive(Parser)]
+struct Rendered {
+    #[command(subcommand)]
+    command: Option<Renders>,
+    #[command(flatten)]
+    tour: RunArgs,
+}
+
+#[derive(Subcommand)]
+enum Renders {
+    Tour(RunArgs),
+    Series(RunArgs),
+    Render(RunArgs),
+}
+
 /// The scene that a command of this program renders.
 fn scene_of(command: &str) -> Option<Description> {
-    let cli = args::Cli::try_parse_from(shlex::split(command)?).ok()?;
-    let run = match &cli.command {
-        None => &cli.tour,
-        Some(args::Command::Tour(run) | args::Command::Series(run) | args::Command::Render(run)) => run,
-        Some(_) => return None,
+    let Rendered { command, tour } = Rendered::try_parse_from(shlex::split(command)?).ok()?;
+    let args = match command {
+        None => tour,
+        Some(Renders::Tour(args) | Renders::Series(args) | Renders::Render(args)) => args,
     };
-    Some(load::scene(&run.scene, &run.shared.changes.options(None)).ok()?.description)
+    Some(load::scene(&args.scene, &args.shared.changes.options(None)).ok()?.description)
 }
 
 impl Source {
@@ -120,7 +136,7 @@ impl Source {
             )));
         }
         match &self.run {
-            Some((_, pictures, _)) if pictures.size != size => Err(super::size_mismatch(name, size, pictures.size)),
+            Some((_, pictures, _)) if pictures.size != size => Err(size_mismatch(name, size, pictures.size)),
             // a picture with a caption, a crop: the camera of the scene makes no such picture
             None => match self.description.as_ref().map(|d| d.camera.size.map(|s| s as usize)) {
                 Some([w, h]) if size[0] * h != size[1] * w => Err(Failure::Input(format!(
@@ -161,14 +177,14 @@ impl Source {
         let usual = Settings::default();
         let roulette = usual.path_roulette.clone().after(max_bounces);
         let settings = Settings { spp, seed: own_seed(args.seed), max_bounces, roulette, ..usual };
-        super::super::preflight::fits_in_memory(&settings, small)?;
-        super::super::preflight::light_is_lost(&scene, &settings, &[args::WorldName::Terms])?;
+        preflight::fits_in_memory(&settings, small)?;
+        preflight::light_is_lost(&scene, &settings, &[World::Terms])?;
         let result = by_rays::terms(&scene, Estimator::Prefix, &settings, progress);
         let missing = result.series.unsampled.iter().map(|u| format!("from k = {} on: {}", u.from, u.what));
         for missing in missing {
-            super::super::note(&format!("note: not supported by the reference, {missing}"));
+            note(&format!("note: not supported by the reference, {missing}"));
         }
-        let rare_paths = super::super::notes::doubts(std::iter::once(&result.series)).into_iter().next();
+        let rare_paths = notes::doubts(std::iter::once(&result.series)).into_iter().next();
         let label = format!(
             "{}, {}, k ≤ {max_bounces}, {spp} spp at {}×{}",
             self.name, result.series.label, small[0], small[1]

@@ -1,109 +1,33 @@
 //! `fredholm diagnose RENDER… --against SCENE|RUN`: what is wrong with somebody else's pictures.
 
 mod against;
+mod args;
+mod found;
 mod read;
+mod suspects;
 mod text;
 
-use super::progress::Bar;
-use super::{Ending, Failure, output};
-use against::Right;
-use clap::Args;
+use super::base::{Ending, Failure, usage};
+use super::session::Session;
+use against::{Right, Source};
+pub use args::Diagnose;
+use found::Diagnosed;
 use fredholm::diagnosis::candidates::Members;
-use fredholm::diagnosis::picture::{Code, Pictures, Slot};
-use fredholm::diagnosis::{self, Case, Diagnosis, Effort, Verdict, evidence};
+use fredholm::diagnosis::picture::{Code, Pictures};
+use fredholm::diagnosis::{self, Case, Effort, Verdict, evidence};
 use fredholm::engine::known::coplanar;
 use fredholm::progress::Progress;
-use fredholm::report::{figures::diagnosis as figure, image::typeset::Caption, text::summary};
-use read::{File, Grouping};
+use fredholm::report::figures::diagnosis as figure;
+use fredholm::report::text::summary::Summary;
+use fredholm::report::write_atomically;
+use read::File;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
-/// Arguments of `diagnose`.
-#[derive(Clone, Debug, Args)]
-pub struct Diagnose {
-    /// Pictures of one scene: EXR with layers, EXR, PNG, JPEG or HDR
-    ///
-    /// Files named T00.exr, T01.exr, … are taken for the terms of one render, files named r_16.exr,
-    /// r_64.exr, … for one render at growing samples per pixel, all others each for itself (--as).
-    #[arg(required = true, value_name = "RENDER", verbatim_doc_comment)]
-    pub renders: Vec<PathBuf>,
-    /// What they should show: a built-in scene, .toml, .obj, or the output folder of a run
-    #[arg(long, value_name = "SCENE|DIR")]
-    pub against: String,
-    /// How several files belong together: auto, separate, bounces, spp
-    #[arg(long = "as", value_enum, default_value = "auto", value_name = "HOW", hide_possible_values = true)]
-    pub grouping: Grouping,
-    /// The same render of the scene made so many times larger: --scale 10=FILE
-    #[arg(long, value_name = "S=FILE", value_parser = scale)]
-    pub scale: Option<(f64, PathBuf)>,
-    /// Divide the pictures by this first; 0: exposure unknown [default: 1; 0 for 8-bit pictures]
-    #[arg(long, value_name = "G", value_parser = gain)]
-    pub gain: Option<f64>,
-    /// K of the reference where the file has no terms [default: as the file says, or 8]
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=64))]
-    pub max_bounces: Option<u16>,
-    /// Samples per pixel of the reference [default: 8 million paths in all]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
-    pub spp: Option<u32>,
-    /// Paths that all candidates together may take in one stage
-    #[arg(long, default_value_t = Effort::default().paths, value_name = "N")]
-    pub paths: u64,
-    /// Chance that a correct renderer is called wrong
-    #[arg(long, default_value_t = 1e-3, value_name = "P", value_parser = super::args::probability)]
-    pub alpha: f64,
-    /// Seed of the reference and of the candidates
-    #[arg(long, default_value_t = 0, value_name = "N")]
-    pub seed: u64,
-    /// Scene, output, threads.
-    #[command(flatten)]
-    pub shared: crate::cli::open::Shared,
-    /// Also the candidates that were struck off
-    #[arg(short, long)]
-    pub verbose: bool,
-}
-
-fn scale(s: &str) -> Result<(f64, PathBuf), String> {
-    let wrong = || format!("`{s}` is not SCALE=FILE, such as 10=large.exr");
-    let (factor, file) = s.split_once('=').ok_or_else(wrong)?;
-    let factor = factor.parse().ok().filter(|f: &f64| *f > 0.0 && f.is_finite()).ok_or_else(wrong)?;
-    Ok((factor, file.into()))
-}
-
-fn gain(s: &str) -> Result<f64, String> {
-    s.parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite()).ok_or(format!("`{s}` is not a number from 0 on"))
-}
-
-/// One suspect: a file, or several that belong together.
-struct Suspect {
-    name: String,
-    file: File,
-    by_samples: Vec<(u32, Pictures)>,
-}
-
-/// Suspects with their places, by size and K.
-type Groups<'a> = BTreeMap<([usize; 2], usize), Vec<(usize, &'a Suspect)>>;
-
-/// What came out for one suspect.
-pub struct Diagnosed {
-    /// File, or files.
-    pub name: String,
-    /// Its pictures hold terms.
-    pub terms: bool,
-    /// Exposure unknown.
-    pub any_gain: bool,
-    /// Layers that were not understood.
-    pub ignored: Vec<String>,
-    /// Samples per pixel as the file tells them.
-    pub told: Option<f64>,
-    /// Factor by which pictures were averaged down.
-    pub factor: usize,
-    /// The rest.
-    pub diagnosis: Diagnosis,
-}
+use std::path::Path;
+use suspects::{Suspect, size_mismatch, suspects};
 
 /// Diagnoses every suspect.
 pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
-    super::open::threads(args.shared.threads)?;
+    let mut session = Session::new(&args.shared, args.seed)?;
     let (suspects, how) = suspects(args)?;
     let scaled = args.scale.as_ref().map(|(s, file)| Ok::<_, Failure>((*s, read::file(file)?))).transpose()?;
     let source = against::source(args)?;
@@ -115,13 +39,36 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     {
         return Err(size_mismatch("--scale", large.pictures.size, first.file.pictures.size));
     }
-    let command = output::canonical_command();
-    let folder = output::folder(args.shared.out.as_deref(), "diagnose", &command, args.shared.force)?;
-    let bar = Bar::plain(args.shared.quiet);
-    let progress = bar.progress();
+    session.about(&source.name, &source.hash);
+    session.make_folder("diagnose")?;
+    let judged = judge(args, &suspects, scaled.as_ref(), &source, session.progress())?;
+    session.clear();
+    let Judged { found, label, rare_paths } = judged;
+    let page = text::Text { args, how, label: &label, rare_paths: rare_paths.as_deref(), folder: &session.folder };
+    let files = write(&session, &found)?;
+    session.show(&text::json(&found), || page.people(&found, &files))?;
+    Ok(session.ending(found.iter().any(|f| f.diagnosis.verdict == Verdict::Wrong)))
+}
 
-    // suspects of one size and one K share a reference and the pictures of the candidates
-    let mut groups: Groups = BTreeMap::new();
+/// All suspects, and what they were held against.
+struct Judged {
+    found: Vec<Diagnosed>,
+    label: String,
+    rare_paths: Option<String>,
+}
+
+/// Suspects with their places, by size and K.
+type Groups<'a> = BTreeMap<([usize; 2], usize), Vec<(usize, &'a Suspect)>>;
+
+/// Suspects of one size and one K share a reference and the pictures of the candidates.
+fn judge(
+    args: &Diagnose,
+    suspects: &[Suspect],
+    scaled: Option<&(f64, File)>,
+    source: &Source,
+    progress: Progress<'_>,
+) -> Result<Judged, Failure> {
+    let mut groups: Groups<'_> = BTreeMap::new();
     for (i, s) in suspects.iter().enumerate() {
         groups.entry((s.file.pictures.size, last_term(args, &s.file))).or_default().push((i, s));
     }
@@ -132,9 +79,8 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
         rare_paths = rare_paths.or(right.rare_paths.clone());
         label.clone_from(&right.label);
         if scaled.is_some() && right.scene.as_ref().is_some_and(|s| s.lights.any_delta()) {
-            return Err(Failure::Usage(
-                "error: the light of a point or a direction changes with the scale of the scene\nhelp: leave --scale out".into(),
-            ));
+            let what = "the light of a point or a direction changes with the scale of the scene";
+            return Err(usage(what, "leave --scale out"));
         }
         if let Some(why) = right.scene.as_ref().and_then(coplanar::undecided) {
             return Err(Failure::Input(format!(
@@ -146,35 +92,11 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
             if progress.stopped() {
                 break;
             }
-            found.insert(
-                *i,
-                one(args, suspect, scaled.as_ref(), &right, candidates.as_ref(), progress.named(&suspect.name)),
-            );
+            let progress = progress.named(&suspect.name);
+            found.insert(*i, one(args, suspect, scaled, &right, candidates.as_ref(), progress));
         }
     }
-    bar.finish();
-    let stopped = progress.stopped();
-    let found: Vec<Diagnosed> = found.into_values().collect();
-    let page =
-        text::Text { args, how, label: &label, rare_paths: rare_paths.as_deref(), command: &command, folder: &folder };
-    let files = write(&page, &found, &source)?;
-    if args.shared.json {
-        super::print(&serde_json::to_string_pretty(&text::json(&found))?)?;
-    } else {
-        super::print(&page.people(&found, &files))?;
-    }
-    let wrong = found.iter().any(|f| f.diagnosis.verdict == Verdict::Wrong);
-    Ok(match (stopped, wrong) {
-        (true, _) => Ending::Interrupted,
-        (_, true) => Ending::Failed,
-        _ => Ending::Ok,
-    })
-}
-
-fn size_mismatch(name: &str, [a, b]: [usize; 2], [w, h]: [usize; 2]) -> Failure {
-    Failure::Input(format!(
-        "error: the pictures have different sizes, {a}×{b} and {w}×{h}\n  --> {name}\nhelp: give pictures of one size and one camera"
-    ))
+    Ok(Judged { found: found.into_values().collect(), label, rare_paths })
 }
 
 /// K of the reference: that of the suspect.
@@ -182,45 +104,6 @@ fn last_term(args: &Diagnose, file: &File) -> usize {
     let told = || file.attribute("max_bounces").and_then(|k| k.parse().ok());
     let asked = args.max_bounces.map(usize::from);
     file.pictures.last_term().or(asked).or_else(told).unwrap_or(8)
-}
-
-/// The files, put together.
-fn suspects(args: &Diagnose) -> Result<(Vec<Suspect>, Grouping), Failure> {
-    let (how, numbers) = read::grouping(args.grouping, &args.renders)?;
-    let files = args.renders.iter().map(|p| read::file(p)).collect::<Result<Vec<File>, Failure>>()?;
-    let shown = |p: &Path| p.display().to_string();
-    if how != Grouping::Separate
-        && let Some((i, file)) = files.iter().enumerate().find(|(_, f)| f.pictures.size != files[0].pictures.size)
-    {
-        return Err(size_mismatch(&shown(&args.renders[i]), file.pictures.size, files[0].pictures.size));
-    }
-    let all = match how {
-        Grouping::Bounces => {
-            let mut layers = vec![];
-            let mut first: Option<File> = None;
-            for (mut file, k) in files.into_iter().zip(numbers) {
-                let mut layer = file.pictures.layers.swap_remove(0);
-                layer.slot = Slot::Term(k as usize);
-                layers.push(layer);
-                first.get_or_insert(file);
-            }
-            let mut file = first.ok_or_else(|| Failure::Usage("error: no file\nhelp: name one".into()))?;
-            file.pictures.layers = layers;
-            vec![Suspect { name: format!("{} …", shown(&args.renders[0])), file, by_samples: vec![] }]
-        }
-        Grouping::Spp => {
-            let mut by: Vec<(u32, File)> = numbers.into_iter().zip(files).collect();
-            by.sort_by_key(|b| b.0);
-            let by_samples = by.iter().map(|(n, f)| (*n, f.pictures.clone())).collect();
-            let (most, file) = by.pop().ok_or_else(|| Failure::Usage("error: no file\nhelp: name one".into()))?;
-            vec![Suspect { name: format!("{} … {most} spp", shown(&args.renders[0])), file, by_samples }]
-        }
-        _ => {
-            let one = |(p, file): (&PathBuf, File)| Suspect { name: shown(p), file, by_samples: vec![] };
-            args.renders.iter().zip(files).map(one).collect()
-        }
-    };
-    Ok((all, how))
 }
 
 /// One suspect, brought to the size of the reference.
@@ -278,8 +161,8 @@ fn shrink_mask(mask: &[bool], width: usize, factor: usize) -> Vec<bool> {
 }
 
 /// Writes the figures, `diagnosis.json` and `summary.json`; the names of the files.
-fn write(page: &text::Text, found: &[Diagnosed], source: &against::Source) -> Result<Vec<String>, Failure> {
-    let caption = Caption { command: page.command.to_owned(), seed: page.args.seed, scene: source.name.clone() };
+fn write(session: &Session, found: &[Diagnosed]) -> Result<Vec<String>, Failure> {
+    let caption = session.caption();
     let mut files = vec!["summary.json".to_owned(), "diagnosis.json".to_owned()];
     let mut used = std::collections::BTreeSet::new();
     for (i, f) in found.iter().enumerate() {
@@ -292,22 +175,12 @@ fn write(page: &text::Text, found: &[Diagnosed], source: &against::Source) -> Re
             format!("diagnosis-{name}")
         };
         let title = format!("{}: {}", text::short(&f.name), text::headline(&f.diagnosis));
-        figure::draw(&f.diagnosis, &title, &caption)?.write(page.folder, &stem)?;
+        figure::draw(&f.diagnosis, &title, &caption)?.write(&session.folder, &stem)?;
         files.extend([format!("{stem}.png"), format!("{stem}.svg")]);
     }
     files.sort();
     let json = serde_json::to_string_pretty(&text::json(found))? + "\n";
-    fredholm::report::write_atomically(&page.folder.join("diagnosis.json"), json.as_bytes())?;
-    let old = output::left_by_the_last_run(page.folder);
-    let record = summary::Summary {
-        command: page.command.to_owned(),
-        scene: source.name.clone(),
-        scene_hash: source.hash.clone(),
-        seed: page.args.seed,
-        files: files.clone(),
-        ..summary::Summary::default()
-    };
-    summary::write(&page.folder.join("summary.json"), &record)?;
-    output::remove_stale(page.folder, &old, &files);
+    write_atomically(&session.folder.join("diagnosis.json"), json.as_bytes())?;
+    session.sign(&Summary { files: files.clone(), ..session.record() })?;
     Ok(files)
 }

@@ -7,7 +7,8 @@
 //! | `tail` | everything longer |
 //! | the same with `_se`, `_stderr`, `_err` or `_var` | its error |
 
-use super::super::Failure;
+use super::args::Grouping;
+use crate::cli::base::Failure;
 use fredholm::diagnosis::picture::{Code, Layer, Pictures, Slot, is_half};
 use fredholm::report::image::exr;
 use std::collections::BTreeMap;
@@ -164,19 +165,6 @@ fn meaning(name: &str) -> Option<(Slot, Part)> {
         }
     };
     Some((slot, part))
-}
-
-/// How several files belong together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Grouping {
-    /// By their names
-    Auto,
-    /// Each by itself
-    Separate,
-    /// Numbered terms of one render
-    Bounces,
-    /// One render at growing samples per pixel
-    Spp,
 }
 
 /// The common beginning of the names and the number each ends in.

@@ -1,7 +1,8 @@
 //! The page of a diagnosis: verdict, evidence, suspects; and the table of many.
 
-use super::read::Grouping;
-use super::{Diagnose, Diagnosed};
+use super::args::{Diagnose, Grouping};
+use super::found::Diagnosed;
+use crate::cli::base::paragraphs;
 use fredholm::diagnosis::{Basis, Diagnosis, Slot, Suspicion, Verdict};
 use fredholm::report::text::table::significant;
 use fredholm::zoo;
@@ -13,7 +14,6 @@ pub struct Text<'a> {
     pub how: Grouping,
     pub label: &'a str,
     pub rare_paths: Option<&'a str>,
-    pub command: &'a str,
     pub folder: &'a Path,
 }
 
@@ -87,7 +87,7 @@ impl Text<'_> {
             self.folder.display(),
             files.len()
         ));
-        super::super::paragraphs(&blocks)
+        paragraphs(&blocks)
     }
 
     fn one(&self, f: &Diagnosed) -> String {
@@ -125,7 +125,7 @@ impl Text<'_> {
         if self.args.verbose && !d.candidates.is_empty() {
             blocks.push(candidates(d));
         }
-        super::super::paragraphs(&blocks)
+        paragraphs(&blocks)
     }
 }
 

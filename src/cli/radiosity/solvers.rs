@@ -5,16 +5,18 @@
 //! | solved | (I − T) L = E | (I − T) u = D, u = L − E, D the direct light by pairs of points |
 //! | reference | LU | GMRES to rounding |
 
-use super::super::progress::Bar;
-use super::super::{Ending, Failure, args::FactorsName, paragraphs, preflight, print};
-use super::{Laboratory, NAMES, Radiosity, SolverName};
+use super::args::Radiosity;
+use super::laboratory::Laboratory;
+use crate::cli::base::{Ending, Failure, paragraphs, usage};
+use crate::cli::preflight;
 use fredholm::engine::by_matrix::MatrixError;
-use fredholm::engine::discretisation::{Factors, Stored};
+use fredholm::engine::discretisation::{Factors, Form, Stored};
 use fredholm::operator::matrix::Transposed;
 use fredholm::report::figures::solvers::{self, Extrapolated};
 use fredholm::report::write_atomically;
 use fredholm::solver::Neumann;
-use fredholm::solver::comparison::{History, Limits, Reference, Solver, System};
+use fredholm::solver::comparison::{History, Limits, Reference, Solver, Solvers, System};
+use fredholm::terms::Channel;
 use serde_json::{Value, json};
 
 /// Good enough, and too many.
@@ -22,39 +24,42 @@ const ERROR: f64 = 1e-12;
 const APPLICATIONS: f64 = 2000.0;
 
 /// Solves, writes and prints.
-pub fn run(args: &Radiosity, name: SolverName) -> Result<Ending, Failure> {
+pub fn run(args: &Radiosity, name: Solvers) -> Result<Ending, Failure> {
     let factors = factors(args, name)?;
     match factors {
         Factors::Dense => {
             let Some(lab) = Laboratory::new(&args.run, "solvers")? else { return Ok(Ending::Interrupted) };
             let (study, radiosity) = (Study::new(args, &lab, name), &lab.matrix.radiosity);
-            let operator = radiosity.operator(study.channel);
-            study.run(&System::new(&operator, radiosity.emission(study.channel)).map_err(|_| MatrixError::Singular)?)
+            let operator = radiosity.operator(study.channel as usize);
+            study.run(
+                &System::new(&operator, radiosity.emission(study.channel as usize))
+                    .map_err(|_| MatrixError::Singular)?,
+            )
         }
         Factors::Rays(per_row) => {
             let lab = Laboratory::sampled(&args.run, "solvers", per_row)?;
             let Some(lab) = lab else { return Ok(Ending::Interrupted) };
             let (study, Stored { patches, rays }) = (Study::new(args, &lab, name), &lab.matrix.radiosity);
-            let operator = rays.operator(patches.iter().map(|p| p.reflectance[study.channel]).collect());
-            let direct = (0..rays.n).map(|i| rays.direct(i)[study.channel]).collect();
+            let operator = rays.operator(patches.iter().map(|p| p.reflectance[study.channel as usize]).collect());
+            let direct = (0..rays.n).map(|i| rays.direct(i)[study.channel as usize]).collect();
             study.run(&System::sampled(&operator, direct).map_err(|_| MatrixError::Unsettled { residual: 1e-8 })?)
         }
     }
 }
 
 /// How form factors are held, if the solver can do with it.
-fn factors(args: &Radiosity, name: SolverName) -> Result<Factors, Failure> {
-    let wrong = |what: &str, help: &str| Err(Failure::Usage(format!("error: {what}\nhelp: {help}")));
-    if args.run.factors == Some(FactorsName::Both) {
+fn factors(args: &Radiosity, name: Solvers) -> Result<Factors, Failure> {
+    let wrong = |what: &str, help: &str| Err(usage(what, help));
+    if args.run.factors == Some(Form::Both) {
         return wrong("solvers work on one matrix at a time", "use --factors dense or --factors rays");
     }
-    let factors = preflight::factors(&args.run, args.run.patches.unwrap_or(600))?;
+    let factors = preflight::factors(args.run.factors, args.run.rays, args.run.patches.unwrap_or(600))?;
     match (factors, name) {
-        (Factors::Rays(_), SolverName::Cg) => wrong(
+        (Factors::Rays(_), Solvers::One(Solver::ConjugateGradients)) => wrong(
             "conjugate gradients need a self-adjoint T, and that of stored rays is so only within its noise",
             "use --solver gmres or chebyshev, or --factors dense",
         ),
-        (Factors::Rays(_), SolverName::Lu) => {
+        (Factors::Rays(_), Solvers::One(Solver::Lu)) => {
             wrong("stored rays are no matrix that LU could take apart", "use --solver gmres, or --factors dense")
         }
         _ => Ok(factors),
@@ -65,24 +70,24 @@ fn factors(args: &Radiosity, name: SolverName) -> Result<Factors, Failure> {
 struct Study<'a, R> {
     args: &'a Radiosity,
     lab: &'a Laboratory<R>,
-    channel: usize,
-    name: SolverName,
+    channel: Channel,
+    name: Solvers,
 }
 
 impl<'a, R> Study<'a, R> {
-    fn new(args: &'a Radiosity, lab: &'a Laboratory<R>, name: SolverName) -> Self {
+    fn new(args: &'a Radiosity, lab: &'a Laboratory<R>, name: Solvers) -> Self {
         Self { args, lab, channel: lab.channel(args.channel), name }
     }
 
     fn run<T: Transposed>(&self, system: &System<'_, T>) -> Result<Ending, Failure> {
-        let Self { args, lab, .. } = self;
-        let bar = Bar::plain(args.run.shared.quiet);
-        let progress = bar.progress();
+        let lab = self.lab;
+        let session = &lab.session;
+        let progress = session.progress();
         let stopped = || progress.stopped();
         let limits = Limits { error: ERROR, applications: APPLICATIONS, stopped: &stopped };
         let possible = system.solvers();
         // the direct solution is the reference, and always there
-        let wanted = |s: &Solver| self.name.solver().is_none_or(|one| one == *s) || *s == Solver::Lu;
+        let wanted = |s: &Solver| self.name.include(*s) || *s == Solver::Lu;
         let solvers: Vec<Solver> = possible.into_iter().filter(wanted).collect();
         progress.begin(&format!("solvers, {} patches", lab.patches), solvers.len() as u64);
         let mut histories: Vec<History> = vec![];
@@ -93,30 +98,28 @@ impl<'a, R> Study<'a, R> {
                 histories.push(history);
             }
         }
-        bar.finish();
+        session.clear();
         let files = self.write(&histories)?;
-        let series = extrapolations(system, lab.matrix.spectral[self.channel].radius);
+        let series = extrapolations(system, lab.matrix.spectral[self.channel as usize].radius);
         let record = self.record(system, &histories, &series);
-        write_atomically(&lab.folder.join("solvers.json"), serde_json::to_string_pretty(&record)?.as_bytes())?;
-        if args.run.shared.json {
-            print(&serde_json::to_string_pretty(&record)?)?;
-        } else {
+        write_atomically(&session.folder.join("solvers.json"), serde_json::to_string_pretty(&record)?.as_bytes())?;
+        session.show(&record, || {
             let extrapolated = format!(
                 "the series itself, Σ Aᵢ xᵢ/A of the first terms: error ×noise gain,\n\
                  the latter if the terms had independent errors of equal relative size\n{}",
                 solvers::extrapolations(&series)
             );
-            let written = format!("written to {}:\n{}", lab.folder.display(), files.join(", "));
+            let written = format!("written to {}:\n{}", session.folder.display(), files.join(", "));
             let head = self.head(system, informed(&histories));
-            print(&paragraphs(&[head, solvers::table(&histories), extrapolated, written]))?;
-        }
-        Ok(if stopped() { Ending::Interrupted } else { Ending::Ok })
+            paragraphs(&[head, solvers::table(&histories), extrapolated, written])
+        })?;
+        Ok(session.ending(false))
     }
 
     /// What is solved, and what the table counts.
     fn head<T: Transposed>(&self, system: &System<'_, T>, informed: bool) -> String {
-        let (command, patches, channel) = (&self.lab.opened.command, self.lab.patches, NAMES[self.channel]);
-        let radius = self.lab.matrix.spectral[self.channel].radius;
+        let (command, patches, channel) = (self.lab.session.command(), self.lab.patches, self.channel);
+        let radius = self.lab.matrix.spectral[self.channel as usize].radius;
         let mut head = format!("{command}\n{patches} patches{}, {channel} channel: r(T) = {radius:.5}", self.held());
         if let Reference::Gmres { applications } = system.reference {
             head += &format!(
@@ -170,7 +173,7 @@ impl<'a, R> Study<'a, R> {
             }
         };
         json!({
-            "command": lab.opened.command,
+            "command": lab.session.command(),
             "scene": lab.opened.description.name,
             "scene_hash": lab.opened.hash.clone(),
             "seed": args.run.seed,
@@ -178,8 +181,8 @@ impl<'a, R> Study<'a, R> {
             "patches": lab.patches,
             "rays": lab.matrix.sampling.map(|s| s.per_row),
             "unknown": self.unknown(),
-            "channel": NAMES[self.channel],
-            "spectral_radius": lab.matrix.spectral[self.channel].radius,
+            "channel": self.channel.name(),
+            "spectral_radius": lab.matrix.spectral[self.channel as usize].radius,
             "eigenvalues": informed(histories).then(|| {
                 let ends = system.ends();
                 json!({
@@ -196,19 +199,19 @@ impl<'a, R> Study<'a, R> {
     fn write(&self, histories: &[History]) -> Result<Vec<String>, Failure> {
         let Self { args, lab, channel, .. } = self;
         let equation = if self.dense() { "(I − T) L = E" } else { "(I − T) u = D" };
-        let (scene, channel_name) = (&lab.opened.description.name, NAMES[*channel]);
+        let (scene, channel_name) = (&lab.opened.description.name, channel.name());
         let title = format!("Solvers of {equation}: {scene}, {} patches{}, {channel_name}", lab.patches, self.held());
         let mut files = vec!["solvers.json".to_string(), "summary.json".into()];
         if histories.iter().any(|h| h.points.len() > 1) {
-            let radius = lab.matrix.spectral[*channel].radius;
-            solvers::draw(histories, radius, &title, &lab.caption(&args.run))?.write(&lab.folder, "solvers")?;
+            let radius = lab.matrix.spectral[*channel as usize].radius;
+            solvers::draw(histories, radius, &title, &lab.session.caption())?.write(&lab.session.folder, "solvers")?;
             files.extend(["solvers.png", "solvers.svg"].map(String::from));
         }
         if let Some(name) = &args.history {
-            write_atomically(&lab.folder.join(name), solvers::csv(histories).as_bytes())?;
+            write_atomically(&lab.session.folder.join(name), solvers::csv(histories).as_bytes())?;
             files.push(name.clone());
         }
-        lab.sign(&args.run, &files)?;
+        lab.sign(&files)?;
         Ok(files)
     }
 }

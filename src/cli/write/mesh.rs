@@ -1,10 +1,12 @@
 //! `--export`: what another program needs to check the matrix, or to use it.
 
-use super::Files;
-use crate::cli::Failure;
+use super::files::Files;
+use crate::cli::base::Failure;
 use clap::ValueEnum;
 use fredholm::engine::by_matrix::Discrete;
-use fredholm::report::{figures::patches as mesh, text::summary, write_atomically};
+use fredholm::report::figures::patches as mesh;
+use fredholm::report::text::summary;
+use fredholm::report::write_atomically;
 
 /// What is written for other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -1,17 +1,18 @@
 //! What a run leaves behind: `terms.exr`, pictures, plots, `summary.json`, `index.html`.
 
+mod files;
 mod mesh;
 mod page;
 mod pictures;
 mod plots;
 mod strategies;
 
-use super::Failure;
+use super::base::Failure;
+use files::{Files, Pixels};
 use fredholm::engine::by_matrix::Discrete;
 use fredholm::engine::radius::radius_limit;
 use fredholm::report::image::typeset::Caption;
-use fredholm::report::text::summary;
-use fredholm::scene::Description;
+use fredholm::report::text::summary::{self, Summary};
 use fredholm::stats::Limit;
 use fredholm::study::roulette;
 use fredholm::study::run::Run;
@@ -20,13 +21,11 @@ use glam::DVec3;
 pub use mesh::Export;
 use pictures::terms_sheet;
 pub use pictures::z_values;
-use std::path::{Path, PathBuf};
-
-type Pixels = Vec<[f32; 3]>;
+use std::path::Path;
 
 /// Writes the contact sheet of the terms so far after every pass, so that there is something to look at.
-pub fn preview(folder: &Path, d: &Description, command: &str, seed: u64) -> impl Fn(&TermFilm) + Sync + Send + use<> {
-    let (folder, caption) = (folder.to_path_buf(), Caption { command: command.into(), seed, scene: d.name.clone() });
+pub fn preview(folder: &Path, caption: Caption) -> impl Fn(&TermFilm) + Sync + Send + use<> {
+    let folder = folder.to_path_buf();
     move |film: &TermFilm| {
         let slots = film.shape.slots;
         // only the films of the terms; and only while waiting for the first picture matters
@@ -41,15 +40,10 @@ pub fn preview(folder: &Path, d: &Description, command: &str, seed: u64) -> impl
 }
 
 /// Writes everything into a folder and returns the record of it, complete; `record` tells what all records tell, by now.
-pub fn all(
-    run: &Run,
-    folder: &Path,
-    export: Option<Export>,
-    record: impl Fn() -> summary::Summary,
-) -> Result<summary::Summary, Failure> {
+pub fn all(run: &Run, folder: &Path, export: Option<Export>, record: impl Fn() -> Summary) -> Result<Summary, Failure> {
     let mut out = Files { folder: folder.to_path_buf(), names: vec![], record: record() };
-    let caption =
-        Caption { command: out.record.command.clone(), seed: out.record.seed, scene: out.record.scene.clone() };
+    let Summary { command, seed, scene, .. } = record();
+    let caption = Caption { command, seed, scene };
     let size = run.description.camera.size;
     let trust = pictures::pixel_errors(run);
     pictures::write_exr(run, &trust, &mut out, size)?;
@@ -65,48 +59,19 @@ pub fn all(
     out.names.push("index.html".into());
     out.names.push("summary.json".into());
     let files = out.names.clone();
-    let summary = summary::Summary { pixel_errors: trust, files, ..summarise(run, record()) };
+    let summary = Summary { pixel_errors: trust, files, ..summarise(run, record()) };
     page::write_page(run, &out, &summary)?;
     Ok(summary)
 }
 
-struct Files {
-    folder: PathBuf,
-    names: Vec<String>,
-    record: summary::Summary,
-}
-
-impl Files {
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.join(name)
-    }
-    fn add(&mut self, name: &str) -> PathBuf {
-        self.names.push(name.to_string());
-        self.path(name)
-    }
-    fn has(&self, name: &str) -> bool {
-        self.names.iter().any(|n| n == name)
-    }
-    /// What an EXR says of how it was made; nothing that differs between two equal runs.
-    fn attributes(&self, run: &Run) -> [(&'static str, String); 5] {
-        [
-            ("fredholm.command", self.record.command.clone()),
-            ("fredholm.seed", run.settings.seed.to_string()),
-            ("fredholm.spp", run.spp().to_string()),
-            ("fredholm.scene_hash", self.record.scene_hash.clone()),
-            ("fredholm.version", env!("CARGO_PKG_VERSION").to_string()),
-        ]
-    }
-}
-
 /// The record of a run.
-fn summarise(run: &Run, record: summary::Summary) -> summary::Summary {
+fn summarise(run: &Run, record: Summary) -> Summary {
     let first = run.terms.first();
     let image = first.map(|t| t.series.image());
     let last = first.and_then(|t| t.snapshots.last());
     let variance: Vec<DVec3> = last.map_or(vec![], |s| s.slots.iter().map(|v| v.channels * f64::from(s.spp)).collect());
     let fit = run.observed_rate().and_then(Result::ok);
-    summary::Summary {
+    Summary {
         spp: u64::from(run.spp()),
         max_bounces: run.settings.max_bounces,
         terms: image.map_or(vec![], |f| summary::terms(&f.terms, &variance, first.map_or(&[], |t| &t.rays))),

@@ -1,7 +1,7 @@
 //! The page that shows a run.
 
-use super::Files;
-use crate::cli::Failure;
+use super::files::Files;
+use crate::cli::base::Failure;
 use fredholm::report::page::html::{self, Page, Plate};
 use fredholm::report::text::summary;
 use fredholm::study::run::Run;

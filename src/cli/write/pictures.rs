@@ -1,7 +1,7 @@
 //! The images of a run: every one as floats in one EXR, and what a reader looks at as PNG.
 
-use super::{Files, Pixels};
-use crate::cli::Failure;
+use super::files::{Files, Pixels};
+use crate::cli::base::Failure;
 use fredholm::engine::by_rays::Sampled;
 use fredholm::report::image::contact_sheet::{self, Cell, Sheet, direct_and_indirect, single};
 use fredholm::report::image::exr;

@@ -1,7 +1,7 @@
 //! The figures of a run: how the terms decay, and how the noise falls.
 
-use super::Files;
-use crate::cli::Failure;
+use super::files::Files;
+use crate::cli::base::Failure;
 use fredholm::engine::by_rays::{Estimator, Sampled};
 use fredholm::report::figures::decay::{self, Decay, RateLine, independent_ratios};
 use fredholm::report::figures::variance::{self, Falling, Variance};

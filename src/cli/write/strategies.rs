@@ -1,6 +1,6 @@
 //! `--strategies`: the pyramid of the bidirectional estimator, as pictures and layers.
 
-use crate::cli::Failure;
+use crate::cli::base::Failure;
 use fredholm::report::figures::pyramid::{Stone, draw};
 use fredholm::report::image::exr;
 use fredholm::report::image::typeset::Caption;

@@ -24,7 +24,7 @@
 //! right to an order of magnitude, which is what is asked of it.
 
 use crate::engine::Settings;
-use crate::engine::by_rays::Estimator;
+use crate::engine::estimator::Estimator;
 use crate::estimator::Technique;
 use crate::math::{Key, Purpose, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};

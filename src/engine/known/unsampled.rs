@@ -13,7 +13,7 @@
 //!
 //! The reflection of a point in a mirror, E S L, is seen by nobody. A coat of smooth plastic is S, too.
 
-use crate::engine::by_rays::Estimator;
+use crate::engine::estimator::Estimator;
 use crate::estimator::Technique;
 use crate::scene::Scene;
 use crate::terms::UnsampledPaths;

@@ -1,5 +1,9 @@
 //! The solvers by name, and what each did step by step.
 
+use crate::math::names::named;
+use std::fmt;
+use std::str::FromStr;
+
 /// A way to solve (I − T) L = E.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solver {
@@ -55,6 +59,67 @@ impl Solver {
             Self::Gmres => "GMRES",
             Self::Lu => "LU",
         }
+    }
+}
+
+impl fmt::Display for Solver {
+    /// As it is typed.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Neumann => "neumann",
+            Self::Jacobi => "jacobi",
+            Self::GaussSeidel => "gauss-seidel",
+            Self::Sor => "sor",
+            Self::Southwell => "southwell",
+            Self::Chebyshev => "chebyshev",
+            Self::ConjugateGradients => "cg",
+            Self::Gmres => "gmres",
+            Self::Lu => "lu",
+        })
+    }
+}
+
+impl FromStr for Solver {
+    type Err = String;
+    fn from_str(name: &str) -> Result<Self, String> {
+        named(&Self::ALL, name)
+    }
+}
+
+/// Which solvers are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solvers {
+    /// Every one.
+    All,
+    /// This one, beside the direct solution.
+    One(Solver),
+}
+
+impl Solvers {
+    /// All choices.
+    pub fn choices() -> Vec<Self> {
+        std::iter::once(Self::All).chain(Solver::ALL.map(Self::One)).collect()
+    }
+
+    /// Whether this solver is one of them.
+    pub fn include(self, solver: Solver) -> bool {
+        self == Self::All || self == Self::One(solver)
+    }
+}
+
+impl fmt::Display for Solvers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All => f.write_str("all"),
+            Self::One(solver) => solver.fmt(f),
+        }
+    }
+}
+
+impl FromStr for Solvers {
+    type Err = String;
+    fn from_str(name: &str) -> Result<Self, String> {
+        named(&Self::choices(), name)
     }
 }
 

@@ -8,7 +8,7 @@
 //! A point whose [evidence](crate::stats::evidence) will not carry a verdict is not judged by itself. It still counts in the mean over
 //! points, which rests on the events of all.
 
-use super::{Balance, aggregate, evidence};
+use super::balance::{Balance, aggregate, evidence};
 use crate::stats::{Evidence, Measured, Outcome, Uniformity, critical, holm, two_sided_p, uniformity};
 use crate::terms::Estimate;
 use glam::DVec3;

@@ -1,48 +1,17 @@
-//! What follows from a run: verdicts, rates, bounds and orders.
+//! What follows from a run: rates, bounds and orders.
 //!
 //! | | place |
 //! |---|---|
-//! | one world held against another | [`Verdict`] |
 //! | observed rate of ‖T^k E‖₁, fitted | [`Run::observed_rate`] |
 //! | guaranteed: ‖T‖₁ ≤ max albedo, and what it says of the tail | [`Run::guaranteed_rate`], [`Run::tail_bound`] |
 //! | order of convergence in h | [`Run::order`] |
 
 use super::Run;
 use crate::engine::by_rays::{Estimator, Sampled};
-use crate::stats::{Comparison, Criterion, NoRate, Outcome, Rate, TermMeans, compare, discretisation, observed_rate};
+use crate::stats::{NoRate, Outcome, Rate, TermMeans, observed_rate};
+use crate::terms::Series;
 use crate::terms::functional::Replicates;
-use crate::terms::{Functional, Series};
 use glam::DVec3;
-
-/// One result held against another.
-#[derive(Clone, Debug)]
-pub struct Verdict {
-    /// Which of them: `terms − path`.
-    pub name: &'static str,
-    /// Every part of both, compared.
-    pub comparison: Comparison,
-}
-
-/// The first estimator of the terms against everything else.
-pub(super) fn verdicts(run: &Run) -> Vec<Verdict> {
-    let criterion = Criterion::default();
-    let judge = |name, a: &Series, b: &Series, allowance: &[Functional]| {
-        // terms that one of them does not see in full are not compared
-        let comparison = match a.gap(b) {
-            None => compare(a, b, &criterion, allowance),
-            Some((from, _)) => compare(&a.before(from), b, &criterion, allowance),
-        };
-        Verdict { name, comparison }
-    };
-    let Some(terms) = run.terms.first().map(|t| &t.series) else { return vec![] };
-    let other = run.terms.get(1).map(|other| judge("single − prefix", terms, &other.series, &[]));
-    let path = run.path.as_ref().map(|path| judge("terms − path", terms, &path.series, &[]));
-    let matrix = run.radiosity.as_ref().map(|r| {
-        let (fine, coarse) = (&r.fine.series, &r.coarse.series);
-        judge("terms − radiosity", terms, fine, &discretisation(fine, coarse))
-    });
-    other.into_iter().chain(path).chain(matrix).collect()
-}
 
 impl Run {
     /// Every result: the terms, the path tracer, the matrix through the camera.

@@ -9,9 +9,11 @@
 //! | what to do | [`Asked`], [`Settings`] |
 //! | the work, in that order | [`Run::solve`] |
 //! | what was found | the fields of [`Run`] |
-//! | what follows from it: verdicts, rates, bounds, orders | [`facts`] |
+//! | one world held against another | [`Verdict`] |
+//! | what follows from it: rates, bounds, orders | [`facts`] |
 
 pub mod facts;
+mod verdicts;
 
 use crate::engine::Settings;
 use crate::engine::by_matrix::{self, Discrete, MatrixError};
@@ -26,7 +28,7 @@ use crate::study::strategies::{self, Strategy};
 use crate::study::surface;
 use crate::terms::functional::Replicates;
 use crate::terms::{Recorded, Series, Variance, World};
-pub use facts::Verdict;
+pub use verdicts::Verdict;
 
 /// What a run is asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -250,7 +252,7 @@ impl Run {
             let terms = self.terms.iter_mut().filter(|_| alike);
             self.path.iter_mut().chain(terms).for_each(|s| s.distrust(Variance::Infinite));
         }
-        self.verdicts = facts::verdicts(self);
+        self.verdicts = verdicts::verdicts(&self.terms, self.path.as_ref(), self.radiosity.as_ref());
     }
 
     /// Whether the variance of the path tracer is finite can be known from the matrix; a coarse one will do. Where there is

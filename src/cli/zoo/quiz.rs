@@ -1,8 +1,9 @@
 //! `fredholm zoo --quiz`: a table of r_k without a name; predict, then reveal.
 
-use super::progress::Bar;
-use super::zoo::{Zoo, brief, introduction, settings, whole};
-use super::{Ending, Failure, paragraphs, print};
+use super::args::Zoo;
+use super::words::{brief, introduction, whole};
+use crate::cli::base::{Ending, Failure, note, paragraphs, print};
+use crate::cli::session::Session;
 use fredholm::engine::by_rays;
 use fredholm::math::{Key, Purpose, Rng};
 use fredholm::scene::Scene;
@@ -16,8 +17,8 @@ const CHOICES: usize = 4;
 /// Asks as many rounds as were wanted; answers are lines of stdin, and where it ends the rest is revealed.
 pub fn run(args: &Zoo) -> Result<Ending, Failure> {
     let mut lines = std::io::stdin().lock().lines();
-    let (settings, bar) = (settings(args, 64), Bar::plain(args.quiet));
-    let progress = bar.progress();
+    let (settings, session) = (args.settings(64), Session::new(args, args.seed)?);
+    let progress = session.progress();
     let order = shuffled(args.seed, 0, zoo::all());
     let (mut right, mut answered, mut asked) = (0, 0, 0);
     print("Which mistake was made? rₖ = Tₖ of the suspect / Tₖ of the right renderer. Answer with a number.")?;
@@ -25,8 +26,8 @@ pub fn run(args: &Zoo) -> Result<Ending, Failure> {
         let scene = Scene::new(&bug.exposed_by.load(args.size)?);
         let truth = by_rays::terms(&scene, by_rays::Estimator::Prefix, &settings, progress);
         let suspect = zoo::render(bug, &scene, &settings, progress);
-        bar.finish();
-        if progress.stopped() {
+        session.clear();
+        if session.stopped() {
             return Ok(Ending::Interrupted);
         }
         let (a, b) = (suspect.series.image(), truth.series.image());
@@ -64,7 +65,7 @@ fn answer(lines: &mut impl Iterator<Item = std::io::Result<String>>) -> Result<O
     for line in lines.by_ref() {
         match line?.trim().parse() {
             Ok(n) if (1..=CHOICES).contains(&n) => return Ok(Some(n)),
-            _ => super::note(&format!("a number from 1 to {CHOICES}, please")),
+            _ => note(&format!("a number from 1 to {CHOICES}, please")),
         }
     }
     Ok(None)

@@ -1,75 +1,24 @@
 //! What everything that renders takes.
 
-use super::parse::{duration, grading, points, sampling, schedule, selection, size, technique};
-use crate::cli::open::Shared;
-use clap::{Args, ValueEnum};
+use crate::cli::options::{Shared, among, duration, grading, one_of, size};
+use clap::Args;
+use fredholm::engine::Settings;
+use fredholm::engine::by_rays::Estimator;
+use fredholm::engine::discretisation::{Factors, Form};
+use fredholm::engine::guided::Guiding;
 use fredholm::estimator::{Roulette, Technique};
-use fredholm::guide::ByExpectation;
 use fredholm::math::Points;
 use fredholm::scene::{Selection, bsdf::Sampling};
+use fredholm::study::roulette::Schedule;
 use fredholm::terms::World;
 use std::time::Duration;
 
-/// Roulette as it is asked for.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Schedule {
-    /// This schedule.
-    Given(Roulette),
-    /// By what a guide says is still to come.
-    ByExpectation(ByExpectation),
-    /// The one with the most efficiency, which only the scene can tell.
-    Optimal,
-}
-
-/// A result as a choice on the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum WorldName {
-    /// Each term by its own estimator
-    Terms,
-    /// The full path tracer
-    Path,
-    /// The matrix over patches
-    Radiosity,
-}
-
-impl WorldName {
-    /// The world of that name.
-    pub fn world(self) -> World {
-        match self {
-            Self::Terms => World::Terms,
-            Self::Path => World::Path,
-            Self::Radiosity => World::Radiosity,
-        }
-    }
-}
-
-/// Estimators of the terms.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum EstimatorName {
-    /// Each term from paths of its own
-    Single,
-    /// All terms from the prefixes of one path
-    Prefix,
-    /// A tree of paths
-    Branching,
-    /// All terms from particles, walked from the light
-    Light,
-    /// All terms from walks from both ends
-    Bidirectional,
-}
-
-/// What decides where rays look.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum GuideName {
-    /// The surface alone
-    Bsdf,
-    /// The matrix over patches
-    Radiosity,
-}
+/// The names of the estimators.
+const ESTIMATORS: [&str; 5] = ["single", "prefix", "branching", "light", "bidirectional"];
 
 /// Arguments of everything that renders.
 #[derive(Clone, Debug, Args)]
-pub struct Run {
+pub struct RunArgs {
     /// Built-in scene, .toml, or .obj
     #[arg(value_name = "SCENE", default_value = "cornell")]
     pub scene: String,
@@ -94,8 +43,8 @@ pub struct Run {
     /// single: each term from paths of its own; prefix: all terms from the prefixes of one path;
     /// branching: a tree, --branching children at every vertex; light: particles from the lights;
     /// bidirectional: walks from both ends, joined in every way. The tour runs the first two.
-    #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
-    pub estimator: Option<EstimatorName>,
+    #[arg(long, value_parser = one_of::<Estimator>(ESTIMATORS), value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
+    pub estimator: Option<Estimator>,
     /// With --estimator bidirectional: every strategy apart
     ///
     /// Writes strategies.png, strategies-alone.png and strategies.exr, and prints a table:
@@ -107,29 +56,14 @@ pub struct Run {
     /// Term k takes N^k rays.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub branching: u32,
-    /// How samples lie in a pixel: independent, sobol
-    ///
-    /// independent: they know nothing of each other; sobol: Owen-scrambled Sobol points,
-    /// one scramble per replicate.
-    #[arg(long, default_value = "independent", value_parser = points, value_name = "NAME", verbatim_doc_comment)]
+    /// How samples lie in a pixel.
+    #[arg(long, default_value_t = Points::Independent, value_name = "NAME", help = among(POINTS.0, Points::ALL),
+        long_help = among(POINTS.0, Points::ALL) + POINTS.1)]
     pub points: Points,
-    /// What tells rays where to look: bsdf, radiosity
-    ///
-    /// bsdf: the surface alone; radiosity: at Lambertian surfaces directions are drawn from what a
-    /// radiosity solution of the scene (--patches, default 4000) expects from them, mixed with
-    /// the cosine, and a connection chooses its lamp by what each sends to the patch (in place
-    /// of --lights uniform). Other surfaces scatter as before. The matrix is only a guide: it takes
-    /// every surface for Lambertian and glass for black; what it gets wrong costs noise, never a
-    /// bias. Goes well with --roulette window.
-    #[arg(
-        long,
-        value_enum,
-        value_name = "NAME",
-        default_value = "bsdf",
-        hide_possible_values = true,
-        verbatim_doc_comment
-    )]
-    pub guide: GuideName,
+    /// What tells rays where to look.
+    #[arg(long, default_value_t = Guiding::Bsdf, value_parser = one_of::<Guiding>(Guiding::ALL), value_name = "NAME",
+        hide_possible_values = true, help = among(GUIDE.0, Guiding::ALL), long_help = among(GUIDE.0, Guiding::ALL) + GUIDE.1)]
+    pub guide: Guiding,
     /// Time for each world of rays, instead of --spp: 30s, 5m
     ///
     /// Passes are added while they are expected to end in time; a guide's preparation counts.
@@ -137,17 +71,15 @@ pub struct Run {
     /// of --spp with the number of samples that was reached.
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with = "spp", verbatim_doc_comment)]
     pub time: Option<Duration>,
-    /// How light is found: scatter, connect, mis, mis-power
-    ///
-    /// scatter: paths must hit it; connect: next-event estimation (and hits after a mirror);
-    /// mis: both, weighed by the balance heuristic; mis-power: by the power heuristic.
-    #[arg(long, default_value = "mis", value_parser = technique, value_name = "NAME", verbatim_doc_comment)]
+    /// How light is found.
+    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help = among(TECHNIQUE.0, Technique::ALL),
+        long_help = among(TECHNIQUE.0, Technique::ALL) + TECHNIQUE.1)]
     pub technique: Technique,
-    /// How a light is selected: uniform, power
-    #[arg(long, default_value = "uniform", value_parser = selection, value_name = "NAME")]
+    /// How a light is selected.
+    #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", help = among("How a light is selected", Selection::ALL))]
     pub lights: Selection,
-    /// How directions are drawn: uniform, cosine, bsdf
-    #[arg(long, default_value = "bsdf", value_parser = sampling, value_name = "NAME")]
+    /// How directions are drawn.
+    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help = among("How directions are drawn", Sampling::ALL))]
     pub sampling: Sampling,
     /// Russian roulette: none, lecture, constant:Q@V, … (all: --help)
     ///
@@ -167,21 +99,12 @@ pub struct Run {
     ///                        into w walks in the mean, at most 8 (prefix and path tracer; others
     ///                        do not split); elsewhere as albedo
     ///   optimal              the table with the most efficiency, found by a pilot of 2^18 paths
-    #[arg(long, value_name = "SCHEDULE", value_parser = schedule, verbatim_doc_comment)]
+    #[arg(long, value_name = "SCHEDULE", verbatim_doc_comment)]
     pub roulette: Option<Schedule>,
-    /// Which worlds to solve, with commas: terms, path, radiosity
-    ///
-    /// terms: each term by its own estimator; path: the full path tracer;
-    /// radiosity: the matrix over patches. [default: all; render and radiosity: their own]
-    #[arg(
-        long,
-        value_enum,
-        value_delimiter = ',',
-        value_name = "WORLD,…",
-        hide_possible_values = true,
-        verbatim_doc_comment
-    )]
-    pub worlds: Vec<WorldName>,
+    /// Which worlds to solve.
+    #[arg(long, value_parser = one_of::<World>(World::ALL), value_delimiter = ',', value_name = "WORLD,…",
+        hide_possible_values = true, help = among(WORLDS.0, World::ALL), long_help = among(WORLDS.0, World::ALL) + WORLDS.1)]
+    pub worlds: Vec<World>,
     /// About how many patches the matrix has [default: 600; tour: 2400]
     ///
     /// Up to 20000 for a dense matrix, 2000000 for stored rays.
@@ -199,8 +122,8 @@ pub struct Run {
     /// dense: a matrix, deterministic; rays: rows of stored rays, with an error bar;
     /// both: the matrix, and how far rays on the same patches are from it.
     /// [default: dense up to 10000 patches, rays beyond]
-    #[arg(long, value_enum, value_name = "HOW", hide_possible_values = true, verbatim_doc_comment)]
-    pub factors: Option<FactorsName>,
+    #[arg(long, value_parser = one_of::<Form>(Form::ALL), value_name = "HOW", hide_possible_values = true, verbatim_doc_comment)]
+    pub factors: Option<Form>,
     /// Rays of every patch, where they are stored [default: 256]
     ///
     /// 2 to 65536; powers of two are best.
@@ -220,13 +143,62 @@ pub struct Run {
     pub verbose: bool,
 }
 
-/// How form factors are held.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum FactorsName {
-    /// A matrix of deterministic form factors
-    Dense,
-    /// Rows of stored rays, with an error bar
-    Rays,
-    /// The matrix, and how far rays on the same patches are from it
-    Both,
+const POINTS: (&str, &str) = (
+    "How samples lie in a pixel",
+    "\n\nindependent: they know nothing of each other; sobol: Owen-scrambled Sobol points,\none scramble per replicate.",
+);
+
+const GUIDE: (&str, &str) = (
+    "What tells rays where to look",
+    "\n\nbsdf: the surface alone; radiosity: at Lambertian surfaces directions are drawn from what a
+radiosity solution of the scene (--patches, default 4000) expects from them, mixed with
+the cosine, and a connection chooses its lamp by what each sends to the patch (in place
+of --lights uniform). Other surfaces scatter as before. The matrix is only a guide: it takes
+every surface for Lambertian and glass for black; what it gets wrong costs noise, never a
+bias. Goes well with --roulette window.",
+);
+
+const TECHNIQUE: (&str, &str) = (
+    "How light is found",
+    "\n\nscatter: paths must hit it; connect: next-event estimation (and hits after a mirror);
+mis: both, weighed by the balance heuristic; mis-power: by the power heuristic.",
+);
+
+const WORLDS: (&str, &str) = (
+    "Which worlds to solve, with commas",
+    "\n\nterms: each term by its own estimator; path: the full path tracer;
+radiosity: the matrix over patches. [default: all; render and radiosity: their own]",
+);
+
+impl RunArgs {
+    /// What is rendered with unless a schedule is given: `fallback`, in the terms only after K.
+    pub fn settings(&self, fallback: Roulette, patches: u32, factors: Factors) -> Settings {
+        let max_bounces = usize::from(self.max_bounces.unwrap_or(8));
+        let asked = self.roulette.as_ref().and_then(Schedule::given);
+        let by_expectation = match self.roulette {
+            Some(Schedule::ByExpectation(end)) => Some(end),
+            _ => None,
+        };
+        Settings {
+            spp: self.spp.unwrap_or(if self.time.is_some() { 1 << 24 } else { 256 }),
+            time: self.time,
+            seed: self.seed,
+            points: self.points,
+            max_bounces,
+            technique: self.technique,
+            sampling: self.sampling,
+            roulette: asked.clone().unwrap_or(fallback.clone().after(max_bounces)),
+            path_roulette: asked.unwrap_or(fallback),
+            by_expectation,
+            patches: patches as usize,
+            factors,
+            read_patches: self.read_patches,
+            grading: self.grading,
+        }
+    }
+
+    /// The estimator of the terms that was asked for.
+    pub fn estimator(&self) -> Option<Estimator> {
+        self.estimator.map(|e| e.with_children(self.branching))
+    }
 }

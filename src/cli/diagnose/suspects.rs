@@ -1,0 +1,60 @@
+//! The suspects: files, put together where they belong together.
+
+use super::args::{Diagnose, Grouping};
+use super::read::{self, File};
+use crate::cli::base::{Failure, usage};
+use fredholm::diagnosis::picture::{Pictures, Slot};
+use std::path::{Path, PathBuf};
+
+/// One suspect: a file, or several that belong together.
+pub struct Suspect {
+    pub name: String,
+    pub file: File,
+    pub by_samples: Vec<(u32, Pictures)>,
+}
+
+/// Pictures that should be of one size, and are not.
+pub fn size_mismatch(name: &str, [a, b]: [usize; 2], [w, h]: [usize; 2]) -> Failure {
+    Failure::Input(format!(
+        "error: the pictures have different sizes, {a}×{b} and {w}×{h}\n  --> {name}\nhelp: give pictures of one size and one camera"
+    ))
+}
+
+/// The files, put together.
+pub fn suspects(args: &Diagnose) -> Result<(Vec<Suspect>, Grouping), Failure> {
+    let (how, numbers) = read::grouping(args.grouping, &args.renders)?;
+    let files = args.renders.iter().map(|p| read::file(p)).collect::<Result<Vec<File>, Failure>>()?;
+    let shown = |p: &Path| p.display().to_string();
+    if how != Grouping::Separate
+        && let Some((i, file)) = files.iter().enumerate().find(|(_, f)| f.pictures.size != files[0].pictures.size)
+    {
+        return Err(size_mismatch(&shown(&args.renders[i]), file.pictures.size, files[0].pictures.size));
+    }
+    let all = match how {
+        Grouping::Bounces => {
+            let mut layers = vec![];
+            let mut first: Option<File> = None;
+            for (mut file, k) in files.into_iter().zip(numbers) {
+                let mut layer = file.pictures.layers.swap_remove(0);
+                layer.slot = Slot::Term(k as usize);
+                layers.push(layer);
+                first.get_or_insert(file);
+            }
+            let mut file = first.ok_or_else(|| usage("no file", "name one"))?;
+            file.pictures.layers = layers;
+            vec![Suspect { name: format!("{} …", shown(&args.renders[0])), file, by_samples: vec![] }]
+        }
+        Grouping::Spp => {
+            let mut by: Vec<(u32, File)> = numbers.into_iter().zip(files).collect();
+            by.sort_by_key(|b| b.0);
+            let by_samples = by.iter().map(|(n, f)| (*n, f.pictures.clone())).collect();
+            let (most, file) = by.pop().ok_or_else(|| usage("no file", "name one"))?;
+            vec![Suspect { name: format!("{} … {most} spp", shown(&args.renders[0])), file, by_samples }]
+        }
+        _ => {
+            let one = |(p, file): (&PathBuf, File)| Suspect { name: shown(p), file, by_samples: vec![] };
+            args.renders.iter().zip(files).map(one).collect()
+        }
+    };
+    Ok((all, how))
+}

@@ -1,0 +1,141 @@
+//! `tour`, `series`, `render`, `radiosity`: load, solve in the worlds asked for, compare, write, print.
+
+mod args;
+mod text;
+
+use super::base::{Ending, Failure, usage};
+use super::open::Opened;
+use super::session::Session;
+use super::write::{self, Export};
+use super::{notes, preflight};
+pub use args::RunArgs;
+use fredholm::engine::by_rays::Estimator;
+use fredholm::engine::discretisation::{Factors, Form};
+use fredholm::engine::guided::{self, Guiding};
+use fredholm::estimator::Roulette;
+use fredholm::study::roulette::Schedule;
+use fredholm::study::run::{Asked, Run};
+use fredholm::terms::World;
+
+/// What a command computes unless told otherwise.
+struct Default {
+    worlds: &'static [World],
+    both_estimators: bool,
+    size: Option<[u32; 2]>,
+    roulette: Roulette,
+    patches: u32,
+    export: Option<Export>,
+}
+
+/// What `series` computes.
+const SERIES: Default = Default {
+    worlds: &World::ALL,
+    both_estimators: false,
+    size: None,
+    roulette: Roulette::Albedo { from: 2 },
+    patches: 600,
+    export: None,
+};
+
+/// The tour: all worlds, both estimators.
+pub fn tour(args: &RunArgs) -> Result<Ending, Failure> {
+    solve(args, &Default { both_estimators: true, size: Some([192, 192]), patches: 2400, ..SERIES })
+}
+
+/// Each T^k E and the sum.
+pub fn series(args: &RunArgs) -> Result<Ending, Failure> {
+    solve(args, &SERIES)
+}
+
+/// The full path tracer, with the lecture's roulette.
+pub fn render(args: &RunArgs) -> Result<Ending, Failure> {
+    solve(args, &Default { worlds: &[World::Path], roulette: Roulette::LECTURE, ..SERIES })
+}
+
+/// The matrix.
+pub fn radiosity(args: &RunArgs, export: Option<Export>) -> Result<Ending, Failure> {
+    solve(args, &Default { worlds: &[World::Radiosity], export, ..SERIES })
+}
+
+fn solve(args: &RunArgs, default: &Default) -> Result<Ending, Failure> {
+    let mut session = Session::new(&args.shared, args.seed)?;
+    let built_in_size = if args.scene == "cornell" { default.size } else { None };
+    let opened = session.open(&args.scene, &args.shared.changes, args.size.or(built_in_size))?;
+    let mut run = plan(args, default, opened)?;
+    session.make_folder(&run.description.name)?;
+    session.preview(write::preview(&session.folder, session.caption()));
+    run.solve(session.progress())?;
+    if run.is_empty() {
+        return Ok(session.nothing_to_save(""));
+    }
+    session.clear();
+    let summary = write::all(&run, &session.folder, default.export, || session.record())?;
+    session.sign(&summary)?;
+    session.warn(&notes::warnings(&run));
+    session.show(&summary, || text::people(&run, &summary, &session.folder, args.verbose))?;
+    Ok(session.ending(run.failed()))
+}
+
+/// What is to be done, refused if it could only end badly.
+fn plan(args: &RunArgs, default: &Default, opened: Opened) -> Result<Run, Failure> {
+    let Opened { description, scene, .. } = opened;
+    let scene = scene.select_lights(args.lights);
+    let patches = args.patches.unwrap_or(default.patches);
+    let factors = preflight::factors(args.factors, args.rays, patches)?;
+    let settings = args.settings(default.roulette.clone(), patches, factors);
+    let mut worlds = if args.worlds.is_empty() { default.worlds.to_vec() } else { args.worlds.clone() };
+    let by_name = !args.worlds.is_empty() || default.worlds.len() == 1;
+    preflight::suits_a_matrix(&description, &mut worlds, by_name)?;
+    preflight::fits_in_a_matrix(&scene, factors, &mut worlds, by_name)?;
+    let estimators = estimators(args, default, &worlds)?;
+    for &estimator in &estimators {
+        preflight::tree_can_be_walked(estimator, &settings, description.camera.size)?;
+    }
+    if args.strategies && estimators != [Estimator::Bidirectional] {
+        return Err(usage("only the bidirectional estimator has strategies", "add --estimator bidirectional"));
+    }
+    if let Some(schedule) = &args.roulette {
+        preflight::somebody_expects(schedule, args.guide == Guiding::Radiosity)?;
+    }
+    if args.guide == Guiding::Radiosity {
+        preflight::can_be_guided(&scene, &estimators, &settings, &worlds)?;
+    }
+    preflight::light_is_seen(&scene, &estimators, &settings, &worlds)?;
+    preflight::fits_in_memory(&settings, description.camera.size)?;
+    if worlds.contains(&World::Radiosity) {
+        preflight::rows_fit_in_memory(&scene, &settings)?;
+    }
+    preflight::light_is_lost(&scene, &settings, &worlds)?;
+    if default.export == Some(Export::Matrix) && factors != Factors::Dense {
+        let help = "use --factors dense (up to 20000 patches), or --export mesh";
+        return Err(usage("stored rays have no matrix to write", help));
+    }
+    let asked = asked(args, worlds, estimators);
+    Ok(Run::new(description, scene, settings, asked))
+}
+
+/// The estimators of the terms, if these are asked for.
+fn estimators(args: &RunArgs, default: &Default, worlds: &[World]) -> Result<Vec<Estimator>, Failure> {
+    match (worlds.contains(&World::Terms), args.estimator()) {
+        (false, Some(_)) => Err(usage(
+            "--estimator is for the terms, which are not asked for",
+            "leave --estimator out, or use `fredholm series`",
+        )),
+        (false, None) => Ok(vec![]),
+        _ if default.both_estimators => Ok(vec![Estimator::Single, Estimator::Prefix]),
+        (_, asked) => Ok(vec![asked.unwrap_or(Estimator::Prefix)]),
+    }
+}
+
+fn asked(args: &RunArgs, worlds: Vec<World>, estimators: Vec<Estimator>) -> Asked {
+    Asked {
+        worlds,
+        estimators,
+        optimal_roulette: args.roulette == Some(Schedule::Optimal),
+        guide: (args.guide == Guiding::Radiosity).then(|| args.patches.map_or(guided::PATCHES, |n| n as usize)),
+        strategies: args.strategies,
+        against_rays: (args.factors == Some(Form::Both)).then(|| preflight::rays(args.rays)),
+        orders: args.orders,
+        ..Asked::default()
+    }
+}

@@ -1,0 +1,196 @@
+//! `--over spp`: one render for every combination of estimator, technique, schedule and points; variance and squared error
+//! against samples per pixel, read off the film as it fills.
+
+use super::args::{Sweep, estimator};
+use super::reference;
+use crate::cli::base::{Ending, Failure, names, paragraphs, usage};
+use crate::cli::options::{number, values};
+use crate::cli::preflight;
+use crate::cli::session::Session;
+use fredholm::engine::Settings;
+use fredholm::engine::by_rays::{self, Estimator};
+use fredholm::estimator::Technique;
+use fredholm::math::Points;
+use fredholm::report::figures::sweep::fall::{self, Fall};
+use fredholm::report::text::summary::Summary;
+use fredholm::report::write_atomically;
+use fredholm::scene::Scene;
+use fredholm::stats::Evidence;
+use fredholm::study::convergence::{Recorder, Reference};
+use fredholm::study::roulette::{self, Schedule};
+use fredholm::terms::Series;
+use std::str::FromStr;
+
+/// Replicates of a film, and the first number of samples that can be looked at.
+const REPLICATES: u32 = 16;
+
+/// One render.
+struct Case {
+    label: String,
+    /// None: the path tracer.
+    estimator: Option<Estimator>,
+    settings: Settings,
+    /// The schedule is yet to be found.
+    optimal: bool,
+}
+
+/// Renders every combination once.
+pub fn run(args: &Sweep) -> Result<Ending, Failure> {
+    let mut session = Session::new(&args.shared, args.seed)?;
+    let at = counts(args)?;
+    let spp = args.spp.or(at.last().copied()).unwrap_or(256);
+    if spp < 3 {
+        return Err(usage(&format!("{spp} samples leave no error of a variance"), "choose at least --spp 32"));
+    }
+    let mut cases = cases(args, spp)?;
+    let opened = session.open(&args.scene, &args.shared.changes, args.size)?;
+    let (description, scene) = (opened.description, opened.scene.select_lights(args.lights));
+    for case in &cases {
+        preflight::can_be_sampled(&scene, case.estimator, &case.settings)?;
+    }
+    let planned = reference::plan(args, &scene, &description, &cases[0].settings)?;
+    session.make_folder(&format!("{}-spp", description.name))?;
+    for case in cases.iter_mut().filter(|c| c.optimal) {
+        if let Some(best) = roulette::optimal(&scene, &case.settings, session.progress()) {
+            (case.settings.roulette, case.settings.path_roulette) = (best.roulette.clone(), best.roulette);
+        }
+    }
+    let reference = planned.map(|planned| planned.have(&scene, session.progress()));
+    let (falls, series) = render(&session, &scene, &cases, reference.as_ref(), &at);
+    if falls.is_empty() {
+        return Ok(session.nothing_to_save(""));
+    }
+    write_atomically(&session.folder.join("sweep.csv"), fall::csv(&falls).as_bytes())?;
+    fall::draw(&falls, "How the noise falls", &session.caption())?.write(&session.folder, "variance")?;
+    let record = Summary {
+        spp: spp.into(),
+        max_bounces: cases[0].settings.max_bounces,
+        series,
+        files: names(["summary.json", "sweep.csv", "variance.png", "variance.svg"]),
+        ..session.record()
+    };
+    session.sign(&record)?;
+    session.show(&record, || people(&session, &falls, &record, reference.as_ref()))?;
+    Ok(session.ending(false))
+}
+
+/// Every case in turn, looked at as its film fills.
+fn render(
+    session: &Session,
+    scene: &Scene,
+    cases: &[Case],
+    reference: Option<&Reference>,
+    at: &[u32],
+) -> (Vec<Fall>, Vec<Series>) {
+    let pixels = scene.camera.size[0] as usize * scene.camera.size[1] as usize;
+    let (mut falls, mut series) = (vec![], vec![]);
+    for case in cases {
+        if session.stopped() {
+            break;
+        }
+        let mut recorder = Recorder::new(reference, at.to_vec());
+        let progress = session.progress().named(&case.label);
+        let look: by_rays::Look<'_> = &mut |film| recorder.look(film);
+        let result = by_rays::watched(scene, case.estimator, &case.settings, progress, Some(look));
+        let tail = !result.series.image().tail.is_none();
+        let stands = recorder.stands();
+        if !stands.is_empty() {
+            falls.push(Fall::new(case.label.clone(), pixels, stands, tail, result.series.variance));
+            series.push(result.series);
+        }
+    }
+    (falls, series)
+}
+
+/// The values of a list, each with its text; where there is none, the usual one without a text.
+fn listed<T>(
+    given: Option<&String>,
+    usual: (&str, T),
+    parse: impl Fn(&str) -> Result<T, String>,
+) -> Result<Vec<(String, T)>, Failure> {
+    let Some(list) = given else { return Ok(vec![(usual.0.into(), usual.1)]) };
+    let one = |text: String| parse(&text).map(|v| (text, v)).map_err(|why| usage(&why, "separate values by commas"));
+    values(list).into_iter().map(one).collect()
+}
+
+/// Every combination of the lists.
+fn cases(args: &Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
+    let by_name = |s: &str| estimator(s, args.branching);
+    let estimators = listed(args.estimators.as_ref(), ("prefix", Some(Estimator::Prefix)), by_name)?;
+    let techniques = listed(args.techniques.as_ref(), ("", Technique::Mis), Technique::from_str)?;
+    let schedules = listed(args.schedules.as_ref(), ("", None), |s| s.parse().map(Some))?;
+    let points = listed(args.spreads.as_ref(), ("", Points::Independent), Points::from_str)?;
+    let mut cases: Vec<Case> = vec![];
+    for (e, estimator) in &estimators {
+        for (t, technique) in &techniques {
+            // a walk from the light has no use for a technique
+            if *estimator == Some(Estimator::Light) && *technique != techniques[0].1 {
+                continue;
+            }
+            for (r, schedule) in &schedules {
+                for (p, points) in &points {
+                    let words = [(e, true), (t, techniques.len() > 1), (r, schedules.len() > 1), (p, !p.is_empty())];
+                    let words: Vec<&str> = words.iter().filter(|w| w.1).map(|w| w.0.as_str()).collect();
+                    let mut settings = Settings { spp, points: *points, technique: *technique, ..args.settings(spp) };
+                    schedule.as_ref().map_or(Ok(()), |s| preflight::somebody_expects(s, false))?;
+                    if let Some(given) = schedule.as_ref().and_then(Schedule::given) {
+                        (settings.roulette, settings.path_roulette) = (given.clone(), given);
+                    }
+                    let optimal = *schedule == Some(Schedule::Optimal);
+                    cases.push(Case { label: words.join(" "), estimator: *estimator, settings, optimal });
+                }
+            }
+        }
+    }
+    for (i, case) in cases.iter().enumerate() {
+        if cases[..i].iter().any(|c| c.label == case.label) {
+            return Err(usage(&format!("`{}` stands twice in the lists", case.label), "name every value once"));
+        }
+    }
+    Ok(cases)
+}
+
+/// The numbers of samples to look at; none: after every doubling.
+fn counts(args: &Sweep) -> Result<Vec<u32>, Failure> {
+    let Some(list) = &args.values else { return Ok(vec![]) };
+    let of =
+        |text: &String| number(text, 1 << 24).map_err(|why| usage(&why, "values of --over spp are such as 16,64,256"));
+    let mut all: Vec<u32> = values(list).iter().map(of).collect::<Result<_, _>>()?;
+    all.sort_unstable();
+    all.dedup();
+    if let Some(n) = all.iter().find(|&&n| n % REPLICATES != 0) {
+        let what = format!("{n} samples are not the same number for each of the {REPLICATES} replicates");
+        return Err(usage(&what, "values of --over spp are multiples of 16, such as 16,64,256"));
+    }
+    if let Some(&n) = all.iter().find(|&&n| args.spp.is_some_and(|spp| n > spp)) {
+        return Err(usage(&format!("{n} samples are more than --spp renders"), "leave --spp out, or raise it"));
+    }
+    Ok(all)
+}
+
+fn people(session: &Session, falls: &[Fall], record: &Summary, reference: Option<&Reference>) -> String {
+    let mut head = format!(
+        "{}\nseed {}, {}×{} pixels, k ≤ {}, {} replicates; V: variance of the mean of n samples",
+        record.command,
+        record.seed,
+        record.width,
+        record.height,
+        record.max_bounces,
+        record.spp.min(REPLICATES.into())
+    );
+    if let Some(r) = reference {
+        head += &format!("\nreference: {}; its variance is subtracted", r.label);
+    }
+    if falls.iter().all(|f| f.stands.len() < 2) {
+        head += "\nnote: one number of samples has no slope; choose at least --spp 32";
+    }
+    for (fall, series) in falls.iter().zip(&record.series) {
+        if let Some(reason) = Evidence::of_variance(series.variance).no_error {
+            head += &format!("\n{}: {reason}; its V(n) of the tail and of all has no meaning", fall.label);
+        }
+    }
+    let broken = record.series.iter().filter(|s| s.cost.non_finite > 0);
+    let broken: Vec<_> =
+        broken.map(|s| format!("warning: {}: {} samples were not finite", s.label, s.cost.non_finite)).collect();
+    paragraphs(&[head, fall::table(falls), broken.join("\n"), session.written(&record.files)])
+}

@@ -1,0 +1,26 @@
+//! `fredholm zoo`: estimators that are wrong on purpose, each beside the right one.
+
+mod args;
+mod everyone;
+mod folder;
+mod one;
+mod quiz;
+mod words;
+
+use super::base::{Ending, Failure, print};
+pub use args::Zoo;
+use fredholm::zoo;
+
+/// Lists, renders, or asks.
+pub fn run(args: &Zoo) -> Result<Ending, Failure> {
+    if args.quiz {
+        return quiz::run(args);
+    }
+    let bug = args.name.as_ref().map(|name| zoo::find(name).ok_or_else(|| words::unknown(name))).transpose()?;
+    match bug {
+        None if args.list => print(&words::list()).map(|()| Ending::Ok),
+        Some(bug) if args.list => print(&words::introduction(bug)).map(|()| Ending::Ok),
+        None => everyone::run(args),
+        Some(bug) => one::run(args, bug),
+    }
+}

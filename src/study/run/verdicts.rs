@@ -1,0 +1,36 @@
+//! One world held against another.
+
+use crate::engine::by_matrix::Discrete;
+use crate::engine::by_rays::Sampled;
+use crate::stats::{Comparison, Criterion, compare, discretisation};
+use crate::terms::{Functional, Series};
+
+/// One result held against another.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// Which of them: `terms − path`.
+    pub name: &'static str,
+    /// Every part of both, compared.
+    pub comparison: Comparison,
+}
+
+/// The first estimator of the terms against everything else.
+pub(super) fn verdicts(terms: &[Sampled], path: Option<&Sampled>, radiosity: Option<&Discrete>) -> Vec<Verdict> {
+    let criterion = Criterion::default();
+    let judge = |name, a: &Series, b: &Series, allowance: &[Functional]| {
+        // terms that one of them does not see in full are not compared
+        let comparison = match a.gap(b) {
+            None => compare(a, b, &criterion, allowance),
+            Some((from, _)) => compare(&a.before(from), b, &criterion, allowance),
+        };
+        Verdict { name, comparison }
+    };
+    let Some(first) = terms.first().map(|t| &t.series) else { return vec![] };
+    let other = terms.get(1).map(|other| judge("single − prefix", first, &other.series, &[]));
+    let path = path.map(|path| judge("terms − path", first, &path.series, &[]));
+    let matrix = radiosity.map(|r| {
+        let (fine, coarse) = (&r.fine.series, &r.coarse.series);
+        judge("terms − radiosity", first, fine, &discretisation(fine, coarse))
+    });
+    other.into_iter().chain(path).chain(matrix).collect()
+}
