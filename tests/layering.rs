@@ -114,12 +114,25 @@ impl<'ast> Visit<'ast> for Source {
         syn::visit::visit_path(self, path);
     }
 
+    /// `pub(super)` is no use of anything.
+    fn visit_visibility(&mut self, _: &'ast syn::Visibility) {}
+
     fn visit_item_mod(&mut self, item: &'ast syn::ItemMod) {
-        if item.content.is_some() {
+        let test = item.attrs.iter().any(|a| a.path().is_ident("cfg") && quote(&a.meta).contains("test"));
+        // a test may look at what is downstream in its folder
+        if item.content.is_some() && !test {
             self.inner.push(item.ident.to_string());
             syn::visit::visit_item_mod(self, item);
             self.inner.pop();
         }
+    }
+}
+
+/// Whether an attribute is `cfg(test)`.
+fn quote(meta: &syn::Meta) -> String {
+    match meta {
+        syn::Meta::List(list) => list.tokens.to_string(),
+        _ => String::new(),
     }
 }
 

@@ -7,6 +7,7 @@ pub mod columns;
 pub mod direction;
 pub mod distribution;
 pub mod names;
+mod pcg;
 pub mod polygon;
 pub mod random;
 pub mod sobol;

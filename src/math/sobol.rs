@@ -22,7 +22,7 @@
 //! functions* (1997); Joe and Kuo, *Constructing Sobol sequences with better two-dimensional projections* (2008);
 //! Burley, *Practical Hash-based Owen Scrambling* (JCGT 9(4), 2020).
 
-use super::random::pcg4d;
+use super::pcg::pcg4d;
 
 /// Points of one scramble, log2: what the tables of the crate hold.
 const LONGEST: u32 = 16;

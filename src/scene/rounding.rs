@@ -23,7 +23,6 @@
 //! Reference: Pharr, Jakob, Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 6.8 *Managing Rounding Error*;
 //! Higham, *Accuracy and Stability of Numerical Algorithms* (2002), ch. 3.
 
-use super::shape::dot;
 use glam::{DVec3, Vec3};
 
 /// Unit roundoff of `f32`.
@@ -71,6 +70,11 @@ pub(crate) fn onto(x: Vec3, n: Vec3, h: f32) -> Vec3 {
 pub(crate) fn across(a: DVec3, points: &[DVec3]) -> f64 {
     let most = points.iter().fold(DVec3::ZERO, |m, p| m.max(p.abs()));
     EPSILON * a.abs().dot(most)
+}
+
+#[inline(always)]
+pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {
+    a.x * b.x + a.y * b.y + a.z * b.z
 }
 
 #[cfg(test)]

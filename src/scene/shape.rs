@@ -15,6 +15,7 @@
 //! its edges, where it would catch rays that have just left its neighbour.
 
 use super::primitive::Primitive;
+pub(crate) use super::rounding::dot;
 use super::rounding::{KEEP, MOST_KEEP, UNSURE, across, onto};
 use glam::{DVec3, Vec3};
 
@@ -27,11 +28,6 @@ pub(crate) struct Hit {
 
 impl Hit {
     pub(crate) const NONE: Self = Self { t: f32::INFINITY, prim: u32::MAX };
-}
-
-#[inline(always)]
-pub(crate) fn dot(a: Vec3, b: Vec3) -> f32 {
-    a.x * b.x + a.y * b.y + a.z * b.z
 }
 
 #[inline(always)]

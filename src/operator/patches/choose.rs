@@ -4,13 +4,13 @@
 //! cells of a region of area A = max(1, round(A/a)),      a such that the patches are as near n as can be
 //! ```
 
-use super::{
-    Chart, Corners, Cover, CoverTest, Finder, Grid, Tree,
-    finder::Descent,
-    polygon::{area_vector, extent},
-    sides_of,
-    tree::{meeting, share},
-};
+use super::cover::{Cover, CoverTest};
+use super::curved::Grid;
+use super::finder::{Descent, Finder};
+use super::grading::{Chart, outline};
+use super::patch::{Corners, sides_of};
+use super::polygon::{area_vector, extent};
+use super::tree::{Tree, meeting, share};
 use crate::scene::{Primitive, description::Sides};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -53,15 +53,6 @@ pub(super) struct Cell {
     pub(super) polygon: Corners,
     pub(super) area: f64,
     pub(super) cover: [Cover; 2],
-}
-
-/// The outline of a flat primitive with straight edges.
-pub(super) fn outline(p: &Primitive) -> Option<Vec<DVec3>> {
-    match *p {
-        Primitive::Triangle(p) => Some(p.to_vec()),
-        Primitive::Parallelogram { origin: o, edge_u: u, edge_v: v } => Some(vec![o, o + u, o + u + v, o + v]),
-        Primitive::Sphere { .. } | Primitive::Disk { .. } => None,
-    }
 }
 
 /// Cuts every flat primitive where others meet it and finds out which pieces are covered. Lengths below `tiny` (and below a

@@ -11,7 +11,10 @@
 //! The rays are a fixed set of 32: 16 over the hemisphere and 16 that graze the surface (slope 10⁻³), because only
 //! these leave the thin gap between a ceiling and a light hung below it.
 
-use super::{BruteForce, Near, SurfacePoint, polygon::at, sides_of};
+use super::brute_force::BruteForce;
+use super::near::Near;
+use super::patch::{SurfacePoint, sides_of};
+use super::polygon::at;
 use crate::scene::coplanar::Overlap;
 use crate::scene::{Primitive, description::Sides};
 use glam::DVec3;

@@ -19,9 +19,8 @@
 //!
 //! Reference: Atkinson, *The Numerical Solution of Integral Equations of the Second Kind* (1997), 4.2.5 and chapter 8.
 
-use super::choose::outline;
+use super::patch::sides_of;
 use super::polygon::{area_vector, extent};
-use super::sides_of;
 use crate::scene::{Primitive, description::Sides};
 use glam::DVec3;
 
@@ -101,6 +100,15 @@ fn rises((primitive, sides): &(Primitive, Sides), x: DVec3, middle: DVec3, norma
     let [low, high] = extent(&polygon, normal).map(|h| h - normal.dot(x));
     let over = sides_of(own).any(|side| if side == 0 { high > tiny } else { low < -tiny });
     on && over && (*sides == Sides::Both || face.dot(middle - x) > tiny)
+}
+
+/// The outline of a flat primitive with straight edges.
+pub(super) fn outline(p: &Primitive) -> Option<Vec<DVec3>> {
+    match *p {
+        Primitive::Triangle(p) => Some(p.to_vec()),
+        Primitive::Parallelogram { origin: o, edge_u: u, edge_v: v } => Some(vec![o, o + u, o + u + v, o + v]),
+        Primitive::Sphere { .. } | Primitive::Disk { .. } => None,
+    }
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@
 //! footprint out of it (after Baum, Mann, Smith and Winget 1991, "Making radiosity usable"); spheres and disks become
 //! facets that keep their true area.
 
+mod body;
 mod brute_force;
 mod choose;
 mod cover;
@@ -33,16 +34,12 @@ use crate::scene::{Description, Primitive, SceneError, description::Sides};
 pub use brute_force::{BruteForce, Hit};
 use choose::Search;
 use cover::{Cover, CoverTest};
-use curved::Grid;
-use finder::Finder;
 use glam::DVec3;
-use grading::Chart;
 pub(crate) use locate::Lookup;
-use near::Near;
+use patch::sides_of;
 pub use patch::{Corners, Patch, SurfacePoint, SurfaceSide};
 pub(crate) use segments::{LANES, Lane, Segments};
 use std::sync::Arc;
-use tree::Tree;
 
 /// All patches of a scene. They are numbered primitive by primitive, front before back.
 #[derive(Clone, Debug)]
@@ -278,13 +275,5 @@ impl std::ops::Deref for Patches {
     type Target = [Patch];
     fn deref(&self) -> &[Patch] {
         &self.list
-    }
-}
-
-/// The reflecting sides: 0 is the front, 1 the back.
-fn sides_of(sides: Sides) -> std::ops::Range<usize> {
-    match sides {
-        Sides::Front => 0..1,
-        Sides::Both => 0..2,
     }
 }

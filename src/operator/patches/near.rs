@@ -7,7 +7,8 @@
 //! The tree is in `f32` with boxes widened by 10⁻⁵ of the scene; what counts as met is decided in `f64` by
 //! [`BruteForce`], so the answers are those of comparing with every primitive.
 
-use super::{BruteForce, Hit, SurfacePoint};
+use super::brute_force::{BruteForce, Hit};
+use super::patch::SurfacePoint;
 use crate::scene::Primitive;
 use glam::DVec3;
 use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2, ray::Ray};

@@ -7,6 +7,7 @@
 //! What all patches of one side of a primitive share is stored once, so that a million patches are 0.2 GB.
 
 use super::polygon::{area_vector, centroid};
+use crate::scene::description::Sides;
 use glam::DVec3;
 use std::ops::Deref;
 use std::sync::Arc;
@@ -122,5 +123,13 @@ impl Patch {
     /// A piece of the inside of a sphere.
     pub fn is_concave(&self) -> bool {
         self.ball.is_some_and(|(center, _)| self.normal.dot(self.centre - center) < 0.0)
+    }
+}
+
+/// The reflecting sides: 0 is the front, 1 the back.
+pub(super) fn sides_of(sides: Sides) -> std::ops::Range<usize> {
+    match sides {
+        Sides::Front => 0..1,
+        Sides::Both => 0..2,
     }
 }

@@ -7,9 +7,9 @@
 //! The plain twin is [`BruteForce`](super::BruteForce), one segment at a time (tested). Loops over lanes are plain Rust
 //! that the compiler vectorises; `pulp` compiles them for several instruction sets and chooses at run time.
 
-use super::brute_force::{Body, Outline, SLACK};
+use super::body::{Body, Outline, SLACK};
+use super::patch::{Patch, SurfacePoint};
 use super::polygon::{area_vector, at};
-use super::{Patch, SurfacePoint};
 use glam::DVec3;
 use pulp::{Arch, Simd};
 

@@ -5,9 +5,9 @@
 //! bisect(cell, c):        ⌊c/2⌋ : ⌈c/2⌉ of the area, recursively, until c = 1
 //! ```
 
-use super::Corners;
 use super::finder::{Finder, LEAF};
 use super::grading::{Chart, Part};
+use super::patch::Corners;
 use super::polygon::{area_vector, clip, equal_area_line, extent};
 use glam::DVec3;
 

@@ -8,90 +8,24 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | l | emitting primitive, chosen ∝ power | [`Lamps`] |
-//! | near | closer to the patch than 1.5 radii of the emitter: there the kernel varies too much for few pairs | [`Lamps::is_near`] |
+//! | l | emitting primitive, chosen ∝ power | [`Lamps`](super::lamps::Lamps) |
+//! | near | closer to the patch than 1.5 radii of the emitter: there the kernel varies too much for few pairs | [`Lamps::is_near`](super::lamps::Lamps::is_near) |
 //!
 //! Either way the estimate is unbiased, so the line between near and far costs no accuracy in the mean.
 
-use super::{Caster, Scratch};
+use super::caster::{Caster, Scratch};
+use super::lamps::Lamp;
+use super::lattice::Lattice;
+use super::origin::Origins;
 use crate::math::Purpose;
-use crate::operator::patches::{Patches, polygon::radius_about};
-use crate::operator::rays::{lattice::Lattice, origin::Origins};
+use crate::operator::patches::polygon::radius_about;
 use crate::scene::segment;
 use glam::DVec3;
 use std::f64::consts::PI;
-use std::ops::Range;
-
-struct Lamp {
-    primitive: u32,
-    /// The patches of its front, the only ones that emit.
-    patches: Range<u32>,
-    emission: DVec3,
-    centre: DVec3,
-    radius: f64,
-    /// Share of the choices that fall on this lamp or an earlier one.
-    cumulative: f64,
-    /// Density of its points, 1/m².
-    density: f64,
-}
-
-/// The emitting primitives.
-pub(super) struct Lamps(Vec<Lamp>);
 
 /// Pairs per half of a row: half as many as rays, and no more than this. Their error is less than a third of that of
 /// the rays.
 const PAIRS: usize = 256;
-
-impl Lamps {
-    pub(super) fn new(patches: &Patches) -> Self {
-        // patches are numbered primitive by primitive, front before back
-        let mut emission = vec![DVec3::ZERO; patches.primitives().len()];
-        let mut own = vec![0..0; emission.len()];
-        for (i, p) in patches.iter().enumerate().filter(|p| p.1.front && p.1.emission != DVec3::ZERO) {
-            emission[p.primitive] = p.emission;
-            let first = if own[p.primitive].is_empty() { i as u32 } else { own[p.primitive].start };
-            own[p.primitive] = first..i as u32 + 1;
-        }
-        let power = |i: usize| patches.primitives()[i].area() * emission[i].element_sum();
-        let whole: f64 = (0..emission.len()).map(power).sum();
-        let mut cumulative = 0.0;
-        let lamps = (0..emission.len()).filter(|i| power(*i) > 0.0).map(|i| {
-            let p = &patches.primitives()[i];
-            let [lo, hi] = p.bounds();
-            cumulative += power(i) / whole;
-            Lamp {
-                primitive: i as u32,
-                patches: own[i].clone(),
-                emission: emission[i],
-                centre: 0.5 * (lo + hi),
-                radius: 0.5 * (hi - lo).length(),
-                cumulative,
-                density: power(i) / whole / p.area(),
-            }
-        });
-        Self(lamps.collect())
-    }
-
-    /// The lamp that the number `u` in [0, 1) chooses, and what is left of `u` as a number in [0, 1).
-    fn choose(&self, u: f64) -> (&Lamp, f64) {
-        let at = self.0.partition_point(|l| l.cumulative <= u).min(self.0.len() - 1);
-        let below = if at == 0 { 0.0 } else { self.0[at - 1].cumulative };
-        let rest = (u - below) / (self.0[at].cumulative - below);
-        (&self.0[at], rest.clamp(0.0, 1.0 - f64::EPSILON))
-    }
-
-    /// The lamp that patch `hit` belongs to.
-    fn find(&self, hit: u32) -> Option<&Lamp> {
-        let at = self.0.partition_point(|l| l.patches.end <= hit);
-        self.0.get(at).filter(|l| l.patches.contains(&hit))
-    }
-}
-
-impl Lamp {
-    fn is_near(&self, centre: DVec3, radius: f64) -> bool {
-        self.centre.distance(centre) < radius + 1.5 * self.radius
-    }
-}
 
 impl Caster<'_> {
     /// T E of patch `i` by both halves of its samples; `row` holds the hits.

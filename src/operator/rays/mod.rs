@@ -23,10 +23,12 @@
 //!
 //! Reference: Pattanaik and Mudur, *Computation of global illumination by Monte Carlo simulation of the particle model of light* (1992).
 
+mod caster;
 mod checks;
 mod direct;
 mod entries;
 mod hit;
+mod lamps;
 mod lattice;
 mod operator;
 mod origin;
@@ -40,20 +42,15 @@ pub use operator::{Coarse, Half, RayOperator};
 pub use solution::{Light, Record, Solved, record};
 
 use super::form_factor::Stopped;
-use super::patches::{Lookup, Patches};
-use crate::math::direction::cosine_hemisphere;
-use crate::math::{Key, Purpose};
+use super::patches::Patches;
+use crate::math::Key;
 use crate::progress::Progress;
-use crate::scene::{Scene, Vertex, VertexWave, error, offset_origin};
-use direct::Lamps;
-use glam::{DVec3, Vec3};
-use lattice::Lattice;
-use origin::Origins;
+use crate::scene::Scene;
+use caster::{Caster, Scratch};
+use glam::DVec3;
+use lamps::Lamps;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-
-/// Of a row being traced: a ray that left the scene, or met a side that takes no part.
-const NOTHING: u32 = u32::MAX;
 
 /// Rows of F as rays.
 #[derive(Clone, Debug, PartialEq)]
@@ -143,76 +140,5 @@ impl Rays {
     /// Bytes the rows take.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.hits) + size_of_val(&*self.direct)
-    }
-}
-
-/// Room for the rays of a row, in whole packets, and for what its pairs carry if nothing is between them.
-struct Scratch {
-    row: Vec<u32>,
-    wave: VertexWave,
-    lookup: Lookup,
-    /// Where rays arrived: their numbers, and what they met.
-    met: Vec<(usize, Vertex)>,
-    unblocked: Vec<DVec3>,
-}
-
-impl Scratch {
-    fn new(n: usize) -> Self {
-        let mut wave = VertexWave::default();
-        wave.resize(n.next_multiple_of(64));
-        let (row, unblocked) = (vec![NOTHING; n], vec![DVec3::ZERO; n]);
-        Self { row, wave, lookup: Lookup::default(), met: Vec::with_capacity(n), unblocked }
-    }
-}
-
-struct Caster<'a> {
-    patches: &'a Patches,
-    scene: &'a Scene,
-    lamps: Lamps,
-    key: Key,
-}
-
-impl Caster<'_> {
-    /// Fills row `i` with hits in the order of the sequence. Returns how many rays met a reflecting surface without a
-    /// patch.
-    fn row(&self, i: usize, scratch: &mut Scratch, row: &mut [u32]) -> u64 {
-        row.fill(NOTHING);
-        let mut origins = Origins::new(self.patches, i);
-        let points = Lattice::new(self.key, i, Purpose::Scatter);
-        let Scratch { wave, lookup, met, .. } = scratch;
-        let rays = &mut wave.rays;
-        for k in 0..row.len() {
-            let (at, [u, v, ..]) = origins.next(|s| points.at(s));
-            let normal = at.normal.as_vec3();
-            rays.o.set(k, offset_origin(at.position.as_vec3(), normal));
-            rays.d.set(k, cosine_hemisphere(normal, [u, v]).0);
-        }
-        met.clear();
-        let meet = |k: usize, v: Vertex| {
-            if self.scene.takes_part(v.side) {
-                met.push((k, v));
-            }
-        };
-        self.scene.trace_wave(rays, row.len(), meet);
-        lookup.clear();
-        met.iter().for_each(|(_, v)| lookup.ask(self.patches, v.side / 2, v.side & 1 == 0, v.p.as_dvec3()));
-        let mut lost = 0;
-        for ((k, v), found) in met.iter().zip(lookup.answers(self.patches)) {
-            row[*k] = found.or_else(|| self.nearby(v)).unwrap_or_else(|| {
-                lost += 1;
-                NOTHING
-            });
-        }
-        lost
-    }
-
-    /// Rounding may put a hit under the foot of whatever stands there: a little back along the ray it is free.
-    fn nearby(&self, v: &Vertex) -> Option<u32> {
-        let offset = error(v.p, Vec3::ONE);
-        let find = |back: f32| {
-            let p = (v.p + back * v.omega).as_dvec3();
-            self.patches.locate((v.side / 2) as usize, v.side & 1 == 0, p).map(|j| j as u32)
-        };
-        find(offset).or_else(|| find(4.0 * offset))
     }
 }

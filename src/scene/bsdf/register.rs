@@ -13,7 +13,7 @@ use glam::Vec3;
 macro_rules! register {
     ($($(#[$about:meta])* $kind:ident: $surface:ty => $side:ty;)+) => {
         /// How a surface scatters, as a scene file says it.
-        #[derive(Clone, Debug, PartialEq)]
+        #[derive(Clone, PartialEq)]
         pub enum BsdfDescription {
             $($(#[$about])* $kind($surface),)+
         }
@@ -23,6 +23,14 @@ macro_rules! register {
                 Self::$kind(surface)
             }
         })+
+
+        /// `Phong { … }`: the name here, and the parameters. Scenes are hashed by this text.
+        impl std::fmt::Debug for BsdfDescription {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                let (name, surface) = match self { $(Self::$kind(s) => (stringify!($kind), format!("{s:?}")),)+ };
+                write!(f, "{name} {}", surface.split_once(' ').map_or("", |(_, parameters)| parameters))
+            }
+        }
 
         impl BsdfDescription {
             /// Its name in a scene file.

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::scene::SceneError;
 use glam::{DVec2, DVec3};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Positions and lengths live in (1e-12, 1e12) metres, so that their squares fit the `f32` of the rays.
 pub(super) const LARGEST_LENGTH: f64 = 1e12;
@@ -260,4 +260,9 @@ impl<'a> Cursor<'a> {
         let [r, g, b] = self.several("3 numbers")?;
         Ok(DVec3::new(r.number()?, g.number()?, b.number()?))
     }
+}
+
+/// A path written in `file`, relative to its folder.
+pub(super) fn beside(file: &Path, path: &str) -> PathBuf {
+    file.parent().unwrap_or(Path::new("")).join(path)
 }

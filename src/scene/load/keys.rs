@@ -8,7 +8,8 @@
 //! | η + ik | `eta`, `k` of a metal | (0, 100], [0, 100] |
 //! | α | `alpha`, width of GGX (Walter, Marschner, Li and Torrance 2007), not squared | [0.001, 1] |
 
-use super::{Cursor, beside, image};
+use super::cursor::{Cursor, beside};
+use super::image;
 use crate::scene::SceneError;
 use crate::scene::bsdf::colour::Colour;
 use crate::scene::bsdf::ggx::{Ggx, Masking};

@@ -15,6 +15,7 @@ mod lights;
 mod materials;
 mod mesh;
 mod mtl;
+mod mtl_material;
 mod mtl_surface;
 mod nearest;
 mod obj;
@@ -25,12 +26,13 @@ mod toml;
 mod tree;
 
 pub use cursor::Cursor;
-pub use mtl_surface::MtlMaterial;
+use cursor::beside;
+pub use mtl_material::MtlMaterial;
 
 use super::{Description, SceneError, builtin, stand_in};
 use glam::DVec3;
 use nearest::suggest;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tree::{Node, Place, Value};
 
 /// What the command line changes in a scene.
@@ -184,9 +186,4 @@ fn bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
     std::fs::read(path).map_err(|e| {
         SceneError::new(format!("cannot read the file: {e}")).file(path).help("check the path and its permissions")
     })
-}
-
-/// A path written in `file`, relative to its folder.
-fn beside(file: &Path, path: &str) -> PathBuf {
-    file.parent().unwrap_or(Path::new("")).join(path)
 }

@@ -12,20 +12,14 @@
 //! `Kd` takes the place of `Kd` where polygons have `vt`. What returns more than it receives is scaled, what is left out is named: both
 //! in a warning.
 
-use super::keys::{LARGEST_EXPONENT, ROUNDING, albedos, times_raster};
-use super::{image, mtl::Entry};
+use super::keys::ROUNDING;
+use super::mtl::Entry;
+use super::mtl_material::{GREY, MtlMaterial};
 use crate::scene::{
     SceneError,
     bsdf::register::KINDS,
     description::{BsdfDescription, Colour, DiffuseSurface},
 };
-use glam::DVec3;
-use std::sync::Arc;
-
-/// Albedo of what has no `Kd`.
-pub(super) const GREY: DVec3 = DVec3::splat(0.5);
-/// A diffuse part this much weaker than the mirror is left out.
-const FAINT: f64 = 0.1;
 
 /// A Lambertian surface without a file to say more.
 pub(super) fn grey() -> BsdfDescription {
@@ -53,125 +47,4 @@ pub(super) fn surface(m: &Entry, placed: bool, warn: &mut dyn FnMut(String)) -> 
         }
     }
     Ok(grey())
-}
-
-/// An MTL material as the kinds of surface see it.
-pub struct MtlMaterial<'a> {
-    pub(in crate::scene) entry: &'a Entry,
-    placed: bool,
-    warn: &'a mut dyn FnMut(String),
-}
-
-impl MtlMaterial<'_> {
-    /// Tells what is left out or changed: `has …`, `is …`.
-    pub fn warn(&mut self, what: String) {
-        (self.warn)(what);
-    }
-
-    /// `illum`, 2 without.
-    pub fn illum(&self) -> u32 {
-        self.entry.illum.unwrap_or(2)
-    }
-
-    /// `Ks`, black without.
-    pub fn specular(&self) -> DVec3 {
-        self.entry.specular.unwrap_or(DVec3::ZERO)
-    }
-
-    fn refracts(&self) -> bool {
-        [4, 6, 7, 9].contains(&self.illum())
-    }
-
-    /// Whether light passes.
-    pub fn is_glass(&self) -> bool {
-        let m = self.entry;
-        let opaque = m.opacity.or(m.transparency.map(|t| 1.0 - t)).is_none_or(|d| d == 1.0);
-        !opaque || self.refracts() && m.ior.is_some_and(|n| n > 1.0)
-    }
-
-    /// Whether it mirrors at all.
-    pub fn mirrors(&self) -> bool {
-        (3..=9).contains(&self.illum()) && self.specular() != DVec3::ZERO
-    }
-
-    /// Whether it mirrors, and hardly anything else.
-    pub fn is_mirror(&self) -> bool {
-        let kd = self.entry.diffuse.unwrap_or(DVec3::ZERO).max_element();
-        !self.is_glass() && self.mirrors() && kd <= FAINT * self.specular().max_element()
-    }
-
-    /// Why `Ks` makes no lobe; nothing where it does, or where there is none.
-    pub fn lost_lobe(&self) -> Option<String> {
-        if self.specular() == DVec3::ZERO {
-            return None;
-        }
-        match self.entry.exponent {
-            _ if self.illum() < 2 => Some(format!("has Ks, which illum {} leaves out", self.illum())),
-            None => Some("has Ks but no Ns, it is diffuse".into()),
-            Some(n) if n > LARGEST_EXPONENT => Some(format!("has Ns {n}, which is too narrow a lobe: it is diffuse")),
-            Some(_) => None,
-        }
-    }
-
-    /// The diffuse part that a mirror loses, by name.
-    pub fn base(&self) -> Option<&'static str> {
-        if self.entry.texture.is_some() {
-            return Some("Kd and map_Kd");
-        }
-        self.entry.diffuse.is_some_and(|kd| kd != DVec3::ZERO).then_some("Kd")
-    }
-
-    /// The colours that clear glass loses, by name.
-    pub fn tints(&self) -> Vec<&'static str> {
-        let m = self.entry;
-        let lost = [("Kd", m.diffuse, DVec3::ZERO), ("Tf", m.filter, DVec3::ONE)];
-        let lost = lost.iter().filter(|(_, c, none)| c.is_some_and(|c| c != *none)).map(|l| l.0);
-        lost.chain(m.texture.is_some().then_some("map_Kd")).collect()
-    }
-
-    /// What to divide by so that no channel returns more than it receives.
-    pub fn excess(&mut self, what: &str, albedo: DVec3) -> f64 {
-        let most = albedo.max_element();
-        if most <= 1.0 + ROUNDING {
-            return 1.0;
-        }
-        self.warn(format!("returns more than it receives, {what} {most}: divided by that"));
-        most
-    }
-
-    /// `Kd`, or `map_Kd` times `Kd`.
-    ///
-    /// # Errors
-    /// If the image cannot be read, or a texel of it is above 1.
-    pub fn colour(&mut self) -> Result<Colour, SceneError> {
-        let m = self.entry;
-        let mut usable = false;
-        if let Some(t) = &m.texture {
-            let shown = t.path.file_name().unwrap_or_default().to_string_lossy();
-            if !self.placed {
-                self.warn(format!("has map_Kd {shown} on polygons without vt, Kd is used"));
-            } else if !t.path.is_file() {
-                self.warn(format!("has map_Kd {shown}, which is missing, Kd is used"));
-            } else if !image::is_image(&t.path) {
-                self.warn(format!("has map_Kd {shown}, which is no EXR, HDR, PNG or JPEG, Kd is used"));
-            } else {
-                usable = true;
-            }
-        }
-        let Some(t) = m.texture.as_ref().filter(|_| usable) else {
-            if m.diffuse.is_none() {
-                self.warn("has no Kd, it is grey 0.5".into());
-            }
-            return Ok(Colour::Uniform(m.diffuse.unwrap_or(GREY)));
-        };
-        if !t.options.is_empty() {
-            self.warn(format!("has map_Kd options {} ignored", t.options));
-        }
-        let factor = m.diffuse.unwrap_or(DVec3::ONE);
-        if factor == DVec3::ZERO {
-            self.warn("has Kd 0, which makes its map_Kd black".into());
-        }
-        let raster = albedos(&t.path).map_err(|e| e.at(&t.mtl, t.line).key(format!("{}.map_Kd", m.name)))?;
-        Ok(Colour::Texture(Arc::new(if factor == DVec3::ONE { raster } else { times_raster(&raster, factor) })))
-    }
 }
