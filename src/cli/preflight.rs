@@ -3,7 +3,7 @@
 use super::base::{Failure, note};
 use fredholm::engine::Settings;
 use fredholm::engine::by_matrix::MatrixError;
-use fredholm::engine::by_rays::Estimator;
+use fredholm::engine::by_rays::{Begins, Estimator};
 use fredholm::engine::discretisation::{Factors, Form};
 use fredholm::engine::known::length::{Length, length};
 use fredholm::engine::known::trap::trapped;
@@ -30,7 +30,7 @@ pub fn can_be_guided(
     worlds: &[World],
 ) -> Result<(), Failure> {
     let wrong = |what: &str, help: &str| Err(Failure::Usage(format!("error: {what}\nhelp: {help}")));
-    if estimators.iter().any(|e| matches!(e, Estimator::Light | Estimator::Bidirectional)) {
+    if estimators.iter().any(|e| e.begins() != Begins::AtEye) {
         return wrong("a guide steers walks from the eye only", "use --estimator prefix, single or branching");
     }
     if !worlds.iter().any(|w| matches!(w, World::Terms | World::Path)) {
@@ -94,7 +94,7 @@ pub fn light_is_seen(
 ) -> Result<(), Failure> {
     let walks: Vec<Option<Estimator>> =
         estimators.iter().map(|&e| Some(e)).chain(worlds.contains(&World::Path).then_some(None)).collect();
-    let from_eye = |e: &Option<Estimator>| !matches!(e, Some(Estimator::Light | Estimator::Bidirectional));
+    let from_eye = |e: &Option<Estimator>| e.is_none_or(|e| e.begins() == Begins::AtEye);
     if settings.technique == Technique::Scatter && scene.lights.all_delta() && walks.iter().any(from_eye) {
         return Err(Failure::Usage(
             "error: no ray ever hits a point or a direction, and nothing else emits light here\n\
@@ -105,7 +105,11 @@ pub fn light_is_seen(
     for walk in walks {
         for missing in unsampled(scene, walk, settings.technique) {
             let who = walk.map_or("the path tracer".into(), |e| e.to_string());
-            let who = if walk == Some(Estimator::Light) { who } else { format!("{who}, {}", settings.technique) };
+            let who = if walk.is_some_and(|e| e.begins() == Begins::AtLight) {
+                who
+            } else {
+                format!("{who}, {}", settings.technique)
+            };
             let (from, what) = (missing.from, missing.what);
             note(&format!("note: not supported by {who}, from k = {from} on: {what}"));
         }

@@ -1,7 +1,7 @@
 //! The continuous world: terms and path tracer, from rays to series and images.
 
 use crate::engine::Settings;
-pub use crate::engine::estimator::Estimator;
+pub use crate::engine::estimator::{Begins, Estimator};
 use crate::engine::known::coplanar::undecided;
 use crate::engine::known::doubts::doubts;
 use crate::engine::known::growth::{self, Growth};
@@ -83,7 +83,8 @@ pub fn watched(
         Some(estimator) => {
             let film = film(&t, camera, estimator, settings.plan(), amount, &mut passes);
             // a walk from the light has no use for a technique
-            let technique = if estimator == Estimator::Light { String::new() } else { format!(", {technique}") };
+            let technique =
+                if estimator.begins() == Begins::AtLight { String::new() } else { format!(", {technique}") };
             passes.finish(&film, World::Terms, format!("{estimator}{technique}{points}"))
         }
         None => {
@@ -108,7 +109,9 @@ pub(crate) fn doubt(t: &SceneTransport<'_>, estimator: Option<Estimator>, settin
         return None;
     }
     match estimator {
-        Some(Estimator::Light) => growth::doubt(&growth::FromLight { t, roulette }, roulette.settled(), settings),
+        Some(e) if e.begins() == Begins::AtLight => {
+            growth::doubt(&growth::FromLight { t, roulette }, roulette.settled(), settings)
+        }
         _ => growth::doubt_from_eye(t, &t.scene.camera, roulette, settings),
     }
 }

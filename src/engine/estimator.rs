@@ -22,7 +22,27 @@ pub enum Estimator {
     },
 }
 
+/// Where the walks of an estimator begin: what it can find, what it finds rarely, and what can be asked of it follow from that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Begins {
+    /// At the eye.
+    AtEye,
+    /// At the lights; techniques and guides have no part in it.
+    AtLight,
+    /// At both.
+    AtBoth,
+}
+
 impl Estimator {
+    /// Where its walks begin.
+    pub fn begins(self) -> Begins {
+        match self {
+            Self::Single | Self::Prefix | Self::Branching { .. } => Begins::AtEye,
+            Self::Light => Begins::AtLight,
+            Self::Bidirectional => Begins::AtBoth,
+        }
+    }
+
     /// All of them; the tree with two children.
     pub const ALL: [Self; 5] =
         [Self::Prefix, Self::Single, Self::Branching { children: 2 }, Self::Light, Self::Bidirectional];

@@ -23,6 +23,8 @@ pub mod bidirectional;
 pub mod branching;
 pub mod densities;
 pub mod equilibrium;
+#[cfg(test)]
+mod example;
 pub mod gather;
 pub mod light_tracer;
 pub mod path_tracer;

@@ -17,6 +17,8 @@ pub mod accelerate;
 mod chebyshev;
 pub mod comparison;
 pub mod direct;
+#[cfg(test)]
+mod example;
 mod iteration;
 mod krylov;
 pub mod neumann;

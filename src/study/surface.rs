@@ -4,7 +4,7 @@
 //! unbiased, and the same number as `Σ A_i (T_h^k E)_i / A` of the matrix. The bounds of ‖T‖₁ ≤ max albedo hold for it.
 
 use crate::engine::Settings;
-use crate::engine::by_rays::{self, Estimator};
+use crate::engine::by_rays::{self, Begins, Estimator};
 use crate::estimator::render::Amount;
 use crate::operator::{SceneTransport, scene_transport::SurfaceStrip};
 use crate::progress::Progress;
@@ -31,10 +31,7 @@ pub fn norms(
     let amount = Amount { spp, replicates: REPLICATES as usize, key };
     progress.begin(&format!("surface norms, {estimator}"), u64::from(spp) * u64::from(STRIP));
     // walks from the light cannot be led to this sensor
-    let estimator = match estimator {
-        Estimator::Light | Estimator::Bidirectional => Estimator::Prefix,
-        other => other,
-    };
+    let estimator = if estimator.begins() == Begins::AtEye { estimator } else { Estimator::Prefix };
     let film = by_rays::film(&t, &strip, estimator, settings.plan(), amount, &mut by_rays::Passes::of(progress));
     image_replicates(&film)
 }

@@ -8,7 +8,7 @@ use crate::cli::options::{number, values};
 use crate::cli::preflight;
 use crate::cli::session::Session;
 use fredholm::engine::Settings;
-use fredholm::engine::by_rays::{self, Estimator};
+use fredholm::engine::by_rays::{self, Begins, Estimator};
 use fredholm::estimator::Technique;
 use fredholm::math::Points;
 use fredholm::report::figures::sweep::fall::{self, Fall};
@@ -124,7 +124,7 @@ fn cases(args: &Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
     for (e, estimator) in &estimators {
         for (t, technique) in &techniques {
             // a walk from the light has no use for a technique
-            if *estimator == Some(Estimator::Light) && *technique != techniques[0].1 {
+            if estimator.is_some_and(|e| e.begins() == Begins::AtLight) && *technique != techniques[0].1 {
                 continue;
             }
             for (r, schedule) in &schedules {

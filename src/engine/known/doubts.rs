@@ -24,7 +24,7 @@
 //! right to an order of magnitude, which is what is asked of it.
 
 use crate::engine::Settings;
-use crate::engine::estimator::Estimator;
+use crate::engine::estimator::{Begins, Estimator};
 use crate::estimator::Technique;
 use crate::math::{Key, Purpose, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};
@@ -42,14 +42,14 @@ pub fn doubts(scene: &Scene, estimator: Option<Estimator>, settings: &Settings) 
     let t = SceneTransport { scene, sampling: settings.sampling };
     let doubt = |what: &str, from: usize, per_path: f64| Doubt { what: what.to_owned(), from, per_path };
     let delta = scene.any_delta_surface();
-    let mut found = match estimator {
-        Some(Estimator::Light) => vec![doubt("what the camera sees", 1, share_in_view(&t))],
-        Some(Estimator::Bidirectional) if delta => {
+    let mut found = match estimator.map_or(Begins::AtEye, Estimator::begins) {
+        Begins::AtLight => vec![doubt("what the camera sees", 1, share_in_view(&t))],
+        Begins::AtBoth if delta => {
             let p = Pilot::walk(&t);
             let what = "lamps through mirrors or glass that the eye sees in mirrors or glass";
             vec![doubt(what, 3, p.starts * p.steps * p.hits(1))]
         }
-        Some(Estimator::Bidirectional) => vec![],
+        Begins::AtBoth => vec![],
         _ if settings.technique == Technique::Scatter => {
             let p = Pilot::walk(&t);
             (1..=DEEPEST).filter(|&k| p.sum[k] > 0.0).map(|k| doubt("lamps", k, p.hits(k))).collect::<Vec<_>>()

@@ -13,7 +13,7 @@
 //!
 //! The reflection of a point in a mirror, E S L, is seen by nobody. A coat of smooth plastic is S, too.
 
-use crate::engine::estimator::Estimator;
+use crate::engine::estimator::{Begins, Estimator};
 use crate::estimator::Technique;
 use crate::scene::Scene;
 use crate::terms::UnsampledPaths;
@@ -21,13 +21,13 @@ use crate::terms::UnsampledPaths;
 /// The kinds of paths that an estimator (`None` for the path tracer) cannot find in a scene; empty if it finds all.
 pub fn unsampled(scene: &Scene, estimator: Option<Estimator>, technique: Technique) -> Vec<UnsampledPaths> {
     let (no_area, delta) = (scene.lights.any_delta(), scene.any_delta_surface());
-    let missing = match estimator {
-        Some(Estimator::Light) => delta.then_some((1, "what the eye sees in mirrors or glass")),
-        Some(Estimator::Bidirectional) => {
+    let missing = match estimator.map_or(Begins::AtEye, Estimator::begins) {
+        Begins::AtLight => delta.then_some((1, "what the eye sees in mirrors or glass")),
+        Begins::AtBoth => {
             (delta && no_area).then_some((3, "light of a point or a direction between mirrors or glass at both ends"))
         }
-        _ if technique == Technique::Scatter => no_area.then_some((1, "light of a point or a direction")),
-        _ => (delta && no_area).then_some((2, "light of a point or a direction through mirrors or glass")),
+        Begins::AtEye if technique == Technique::Scatter => no_area.then_some((1, "light of a point or a direction")),
+        Begins::AtEye => (delta && no_area).then_some((2, "light of a point or a direction through mirrors or glass")),
     };
     missing.map(|(from, what)| UnsampledPaths { what: what.to_owned(), from }).into_iter().collect()
 }

@@ -4,6 +4,8 @@ pub mod decay;
 pub mod diagnosis;
 pub mod drift;
 pub mod equilibrium;
+#[cfg(test)]
+mod example;
 pub mod extrapolation;
 pub mod modes;
 pub mod patches;

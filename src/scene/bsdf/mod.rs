@@ -33,8 +33,12 @@ pub mod colour;
 pub mod conductor;
 pub mod dielectric;
 pub mod diffuse;
+#[cfg(test)]
+mod example;
 pub mod fresnel;
 pub mod ggx;
+#[cfg(test)]
+mod laws;
 pub mod mirror;
 mod model;
 mod odds;
