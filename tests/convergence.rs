@@ -15,7 +15,7 @@ use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::load::{self, Options};
 use fredholm::stats::{Measured, Slope, critical, two_sided_p};
-use fredholm::study::convergence::Part;
+use fredholm::study::convergence::NoiseCurve;
 use fredholm::terms::scatter::Scatter;
 use fredholm::terms::{TermFilm, TermImage, Variance};
 use std::ops::Range;
@@ -28,9 +28,9 @@ fn curves<T: Transport>(
     estimator: &impl TermEstimator<T>,
     amount: Amount,
     slots: &[Range<usize>],
-) -> Vec<Part> {
-    let empty = |_| Part { name: "all".into(), points: vec![], variance: Variance::Finite };
-    let mut parts: Vec<Part> = slots.iter().map(empty).collect();
+) -> Vec<NoiseCurve> {
+    let empty = |_| NoiseCurve { name: "all".into(), points: vec![], variance: Variance::Finite };
+    let mut parts: Vec<NoiseCurve> = slots.iter().map(empty).collect();
     render_in_passes(t, sensor, estimator, amount, Progress::NONE, &mut |film, planned| {
         for (part, slots) in parts.iter_mut().zip(slots) {
             part.points.push((film.least_samples(), Scatter::of(film, slots.clone(), None)));
@@ -41,7 +41,7 @@ fn curves<T: Transport>(
 }
 
 /// How often intervals of 95 % of the slopes miss −1, curve by curve: as they are, and half as long.
-fn missed(trials: u32, curves: &dyn Fn(u32) -> Vec<Part>) -> Vec<[u64; 2]> {
+fn missed(trials: u32, curves: &dyn Fn(u32) -> Vec<NoiseCurve>) -> Vec<[u64; 2]> {
     let slopes: Vec<Vec<Slope>> =
         (0..trials).map(|i| curves(i).iter().map(|part| part.slope().unwrap()).collect()).collect();
     let n = f64::from(trials);

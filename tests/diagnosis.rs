@@ -13,7 +13,7 @@ mod members;
 use common::ledger;
 use fredholm::diagnosis::candidates::{Members, own_seed};
 use fredholm::diagnosis::{
-    Basis, Case, Diagnosis, Effort, Pictures, Region, Simulate, Slot, Verdict, diagnose, evidence, regions,
+    Basis, Case, Conclusion, Diagnosis, Effort, Pictures, Region, Simulate, Slot, diagnose, evidence, regions,
 };
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Estimator};
@@ -118,9 +118,9 @@ fn hand_in(members: &[&'static Bug], terms: bool, errors: bool, more: u32) -> Ve
             let points = d.suspects.iter().any(|s| s.basis == Basis::Points);
             // the mean of same-numbers is right, and so is the sum of what has no blind scene: this data cannot show it
             let right = if bug.name == "same-numbers" || (!terms && bug.blind.is_none()) {
-                d.verdict == Verdict::Correct
+                d.verdict == Conclusion::Correct
             } else {
-                d.verdict == Verdict::Wrong && names.contains(&bug.name) && names.len() <= 3
+                d.verdict == Conclusion::Wrong && names.contains(&bug.name) && names.len() <= 3
             };
             let mut line =
                 format!("{} {:<26} {:<16} {:?}", if right { ' ' } else { '!' }, bug.name, stage.label, names);

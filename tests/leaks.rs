@@ -14,7 +14,7 @@ use common::scenes::{bands, cube_faces, description, quad, room, sphere};
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
-use fredholm::operator::scene_transport::SurfaceStrip;
+use fredholm::operator::SurfaceStrip;
 use fredholm::scene::description::{Description, Geometry};
 use fredholm::scene::{Scene, SurfaceSensor};
 use glam::{DQuat, DVec3};

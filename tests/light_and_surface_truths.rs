@@ -24,7 +24,7 @@ use common::{assert_rate, open};
 use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Bidirectional, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm, Technique};
 use fredholm::math::Key;
-use fredholm::operator::scene_transport::SurfaceStrip;
+use fredholm::operator::SurfaceStrip;
 use fredholm::operator::{SceneTransport, Sensor};
 use fredholm::progress::Progress;
 use fredholm::scene::bsdf::{Bsdf, TransportMode, fresnel::hemispherical};

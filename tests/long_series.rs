@@ -17,7 +17,7 @@ use fredholm::progress::Progress;
 use fredholm::scene::{Scene, bsdf::Sampling};
 use fredholm::stats::evidence::Reason;
 use fredholm::stats::{Criterion, Detector, Outcome, compare};
-use fredholm::study::convergence::{Part, Recorder};
+use fredholm::study::convergence::{NoiseCurve, Recorder};
 use fredholm::study::equilibrium::{self, Origin, judge};
 use fredholm::study::roulette::beyond;
 use fredholm::terms::functional::image_replicates;
@@ -157,7 +157,7 @@ fn infinite_variance_is_said_in_place_of_an_error() {
     );
     let stands = recorder.stands();
     for (variance, known) in [(Variance::Finite, true), (swept.series.variance, false)] {
-        let parts = Part::all(&stands, true, variance);
+        let parts = NoiseCurve::all(&stands, true, variance);
         let all = parts.iter().find(|p| p.name == "all").unwrap();
         assert_eq!(all.slope().is_some(), known, "{variance:?}");
     }

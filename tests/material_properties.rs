@@ -25,7 +25,7 @@ use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Bidirectional, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm, Technique};
 use fredholm::math::direction::Frame;
 use fredholm::math::{Key, Purpose, Rgb, Rng};
-use fredholm::operator::scene_transport::SurfaceStrip;
+use fredholm::operator::SurfaceStrip;
 use fredholm::operator::{Adjoint, Role, SceneTransport, Sensor, Transport};
 use fredholm::progress::Progress;
 use fredholm::scene::bsdf::{Bsdf, Sampling, TransportMode};

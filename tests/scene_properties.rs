@@ -10,7 +10,7 @@ use common::sampling::{Kind, TECHNIQUES, film, plan};
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
-use fredholm::operator::scene_transport::SurfaceStrip;
+use fredholm::operator::SurfaceStrip;
 use fredholm::scene::description::{Description, Geometry};
 use fredholm::scene::{Primitive, Scene, SurfaceSensor};
 use fredholm::stats::critical;

@@ -49,7 +49,7 @@ pub const WIDEST: usize = 96;
 /// How it ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum Conclusion {
     /// Not told apart from the reference.
     Correct,
     /// Told apart.
@@ -75,7 +75,7 @@ pub struct Candidate {
 #[derive(Clone, Debug, Serialize)]
 pub struct Diagnosis {
     /// The result.
-    pub verdict: Verdict,
+    pub verdict: Conclusion,
     /// p-value of *correct*, adjusted.
     pub p: f64,
     /// Where it differs most, in words; empty if it is correct.
@@ -170,7 +170,7 @@ pub fn diagnose(case: &Case, progress: Progress<'_>) -> Diagnosis {
     });
     let visible = grid.iter().map(|r| visible(case, r, fit.gaps.len())).fold(f64::INFINITY, f64::min);
     Diagnosis {
-        verdict: if wrong { Verdict::Wrong } else { Verdict::Correct },
+        verdict: if wrong { Conclusion::Wrong } else { Conclusion::Correct },
         p: fit.p,
         worst: if rejected { worst(&fit, &all) } else { String::new() },
         visible,

@@ -8,7 +8,10 @@ use crate::engine::by_rays;
 use crate::engine::by_rays::Sampled;
 use crate::engine::discretisation::{Difference, Discretisation, Factors, SampledRows, Stored};
 use crate::engine::known::coplanar::undecided;
+pub use crate::engine::matrix_error::MatrixError;
 use crate::engine::radius::{Radius, radii, sampled_noise};
+pub use crate::engine::unlit::Unlit;
+use crate::engine::unlit::unlit;
 use crate::estimator::Gather;
 use crate::operator::SceneTransport;
 use crate::operator::form_factor::{FormFactors, Invariants, VisibilitySampling};
@@ -45,65 +48,8 @@ pub struct Matrix<R = Discretisation> {
     pub unlit: Vec<Unlit>,
 }
 
-/// A side of a primitive that light never reaches in some channels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Unlit {
-    /// Number of the primitive.
-    pub primitive: usize,
-    /// The side of its normal.
-    pub front: bool,
-    /// By channel: light reaches no patch of it, and something emits in that channel.
-    pub channels: [bool; 3],
-}
-
-/// The sides of which no patch is reached, in channels in which something emits.
-fn unlit(patches: &Patches, lit: &[[bool; 3]]) -> Vec<Unlit> {
-    let any: [bool; 3] = [0, 1, 2].map(|c| patches.iter().any(|p| p.emission[c] > 0.0));
-    let mut sides = std::collections::BTreeMap::new();
-    for (p, lit) in patches.iter().zip(lit) {
-        let dark = sides.entry((p.primitive, !p.front)).or_insert(any);
-        (0..3).for_each(|c| dark[c] &= !lit[c]);
-    }
-    let dark = sides.into_iter().filter(|(_, dark)| *dark != [false; 3]);
-    dark.map(|((primitive, back), channels)| Unlit { primitive, front: !back, channels }).collect()
-}
-
 /// From this spectral radius on a channel keeps all its light, as far as form factors can tell.
 const KEEPS_ALL: f64 = 1.0 - 1e-6;
-
-/// Why there is no matrix.
-#[derive(Debug, thiserror::Error)]
-pub enum MatrixError {
-    /// The scene cannot be meshed.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// `I − T_h` is singular: a channel keeps all its light.
-    #[error(
-        "error: a channel keeps all its light, so L = E + T L has no solution\nhelp: lower a reflectance below 1, or look at the first terms alone with --worlds terms,path --roulette none"
-    )]
-    Singular,
-    /// r(T_h) is 1 or more, although every reflectance that light meets is below 1.
-    #[error(
-        "error: the form factors of this mesh are known too poorly: r(T_h) = {radius:.6}, although no reflectance is above {albedo:.6}\nhelp: raise --patches, or leave the radiosity world out: --worlds terms,path"
-    )]
-    Coarse {
-        /// r(T_h).
-        radius: f64,
-        /// The largest reflectance that light meets.
-        albedo: f64,
-    },
-    /// The iteration over stored rays came to no end.
-    #[error(
-        "error: the solution by stored rays has not settled: its residual is {residual:.1e} of the direct light\nhelp: use --factors dense, or leave the radiosity world out: --worlds terms,path"
-    )]
-    Unsettled {
-        /// ‖D − (I − T) u‖ / ‖D‖ of the worst channel.
-        residual: f64,
-    },
-    /// Interrupted.
-    #[error("interrupted")]
-    Stopped,
-}
 
 /// The Neumann series of stored rays ends when what is left is this small against the sum.
 const LEFT: f64 = 1e-7;

@@ -17,8 +17,10 @@ pub mod discretisation;
 mod estimator;
 pub mod guided;
 pub mod known;
+mod matrix_error;
 mod options;
 pub mod radius;
 mod settings;
+mod unlit;
 
 pub use settings::Settings;

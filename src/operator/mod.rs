@@ -21,10 +21,12 @@ pub mod rays;
 mod scene_adjoint;
 mod scene_kernel;
 pub mod scene_transport;
+pub mod surface_strip;
 pub mod transport;
 
 pub use adjoint::{Adjoint, Role};
 pub use kernel::{Factors, Kernel};
 pub use matrix_walk::MatrixWalk;
 pub use scene_transport::SceneTransport;
+pub use surface_strip::SurfaceStrip;
 pub use transport::{Samples, Seen, Sensor, Step, Transport, Wave};

@@ -19,7 +19,7 @@ use super::transport::{self, Samples, Seen, Sensor, Step, Transport, Wave};
 use crate::math::direction::Frame;
 use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::scene::bsdf::{Bsdf, Sampling, TransportMode, diffuse, diffuse::Diffuse};
-use crate::scene::{Camera, Rays, Scene, SurfaceSensor, Vertex, VertexWave, cosine_directions, numbers};
+use crate::scene::{Camera, Rays, Scene, Vertex, VertexWave, cosine_directions, numbers};
 use crate::scene::{connection, offset_origin, segment, solid_angle};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
@@ -380,22 +380,5 @@ impl Sensor<SceneTransport<'_>> for Camera {
             side[i] = state.side;
             alive.push(i as u32);
         });
-    }
-}
-
-/// The surface sensor drawn as a strip of equal pixels, each of them the whole surface: more pixels, more threads.
-pub struct SurfaceStrip {
-    /// What is seen.
-    pub sensor: SurfaceSensor,
-    /// Number of pixels.
-    pub pixels: u32,
-}
-
-impl Sensor<SceneTransport<'_>> for SurfaceStrip {
-    fn size(&self) -> [u32; 2] {
-        [self.pixels, 1]
-    }
-    fn start(&self, t: &SceneTransport, _pixel: u32, rng: &mut Rng) -> Option<Vertex> {
-        Some(self.sensor.vertex(t.scene, rng))
     }
 }

@@ -26,6 +26,7 @@
 
 pub mod decay;
 pub mod detector;
+mod discretisation;
 pub mod evidence;
 pub mod hypothesis;
 mod line;
@@ -41,6 +42,7 @@ pub mod verdict;
 
 pub use decay::{NoRate, Rate, TermMeans, observed_rate, ratio, tail_window};
 pub use detector::{Detector, Finding};
+pub use discretisation::discretisation;
 pub use evidence::{Evidence, half_width_95};
 pub use hypothesis::{Measured, critical, difference, holm, two_sided_p};
 pub use moments::{Moments, estimate};
@@ -51,4 +53,4 @@ pub use schedule::{Noise, Part, Separable};
 pub use sequential::MeanSequence;
 pub use slope::{Slope, falling_slope, variance_slope};
 pub use uniformity::{Uniformity, uniformity};
-pub use verdict::{Comparison, Criterion, Outcome, Verdict, compare, discretisation};
+pub use verdict::{Comparison, Criterion, Outcome, Verdict, compare};

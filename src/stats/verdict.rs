@@ -140,7 +140,7 @@ fn largest_alike(allowance: &[Functional], name: &str, quantity: Quantity) -> DV
 }
 
 /// Compares every quantity that both results have. `allowance` holds, as the means of functionals, an absolute error
-/// that is not noise, such as [`discretisation`]; a functional not named there takes the first one's. Empty: none.
+/// that is not noise, such as [`discretisation`](super::discretisation::discretisation); a functional not named there takes the first one's. Empty: none.
 ///
 /// K may differ: the common terms are compared, but then `tail` and `sum` mean different things and are left out. The
 /// path tracer has no terms: against it only `total` is compared. With nothing in common the outcome is Inconclusive.
@@ -197,23 +197,6 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
         }
     }
     found
-}
-
-/// |fine − coarse| of two meshes of one world, as an allowance: where the error falls at least as fast as h, the finer
-/// mesh is closer to the limit than the two are to each other.
-pub fn discretisation(fine: &Series, coarse: &Series) -> Vec<Functional> {
-    let gap = |a: &Estimate, b: &Estimate| Estimate::exact((a.mean - b.mean).abs());
-    let functional = |f: &Functional| {
-        let c = coarse.functionals.iter().find(|c| c.name == f.name)?;
-        Some(Functional {
-            name: f.name.clone(),
-            terms: f.terms.iter().zip(&c.terms).map(|(a, b)| gap(a, b)).collect(),
-            tail: gap(&f.tail, &c.tail),
-            sum: gap(&f.sum, &c.sum),
-            total: gap(&f.total, &c.total),
-        })
-    };
-    fine.functionals.iter().filter_map(functional).collect()
 }
 
 /// What of a functional is compared.

@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | V, MSE | see [`scatter`](crate::terms::scatter) | [`Stand::parts`] |
 //! | n | samples per pixel at a stand | [`Stand::spp`] |
-//! | b | fitted slope | [`Part::slope`] |
+//! | b | fitted slope | [`NoiseCurve::slope`] |
 //!
 //! Nothing is rendered twice: the film of n samples is a part of the film of 2n. The points of a curve therefore share their
 //! replicates, and the error of a slope comes from curves without one replicate each.
@@ -105,7 +105,7 @@ impl<'a> Recorder<'a> {
 
 /// One term, the tail or the sum of one render, as it falls.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct NoiseCurve {
     /// `0`, `1`, …, `tail`, `all`.
     pub name: String,
     /// n and what the film says there, in rising order.
@@ -114,7 +114,7 @@ pub struct Part {
     pub variance: Variance,
 }
 
-impl Part {
+impl NoiseCurve {
     /// The parts of a render: its slots (a tail only if it is `known`), then the sum. `variance` is that of the tail and of the sum.
     pub fn all(stands: &[Stand], tail_is_known: bool, variance: Variance) -> Vec<Self> {
         let count = stands.first().map_or(0, |s| s.parts.len());

@@ -6,7 +6,7 @@
 use crate::engine::Settings;
 use crate::engine::by_rays::{self, Begins, Estimator};
 use crate::estimator::render::Amount;
-use crate::operator::{SceneTransport, scene_transport::SurfaceStrip};
+use crate::operator::{SceneTransport, SurfaceStrip};
 use crate::progress::Progress;
 use crate::scene::{Scene, SurfaceSensor};
 use crate::terms::functional::{Replicates, image_replicates};

@@ -161,14 +161,14 @@ fn too_few_pixels_are_said_to_be_too_few() {
     };
     // this light comes through few pixels: if that is too few to decide, it is said
     let d = bench.judge(&render(true), None, 1e-6);
-    assert!(d.verdict == Verdict::Wrong || !d.undecided.is_empty(), "{:?}", d.evidence.ratios);
+    assert!(d.verdict == Conclusion::Wrong || !d.undecided.is_empty(), "{:?}", d.evidence.ratios);
     let d = bench.judge(&render(false), None, 1e-6);
-    assert_eq!(d.verdict, Verdict::Correct, "{}", d.worst);
+    assert_eq!(d.verdict, Conclusion::Correct, "{}", d.worst);
     // one firefly, as bright as half of all pixels together, decides nothing, and that is said
     let mut one = render(false).only(|s| s == Slot::Term(1));
     one.layers[0].mean[40] = [10.0; 3];
     let d = bench.judge(&one, None, 1e-6);
-    assert_eq!((d.verdict, d.undecided.as_slice()), (Verdict::Correct, &[Slot::Term(1)][..]), "{}", d.p);
+    assert_eq!((d.verdict, d.undecided.as_slice()), (Conclusion::Correct, &[Slot::Term(1)][..]), "{}", d.p);
 }
 
 /// A lamp of few pixels: it is seen that it is missing, with its term and in the whole image.
@@ -180,11 +180,11 @@ fn a_small_lamp_is_missed() {
     let all = without_errors(Pictures::of(&render, SIZE));
     for part in [all.clone(), all.only(|s| s == Slot::Whole)] {
         let d = bench.judge(&part, None, 1e-6);
-        assert_eq!(d.verdict, Verdict::Wrong, "{:?} {}", d.evidence.ratios, d.p);
+        assert_eq!(d.verdict, Conclusion::Wrong, "{:?} {}", d.evidence.ratios, d.p);
     }
     // black alone does not tell how many samples saw nothing
     let d = bench.judge(&all.only(|s| s == Slot::Term(0)), None, 1e-6);
-    assert_eq!((d.verdict, d.undecided.as_slice()), (Verdict::Correct, &[Slot::Term(0)][..]));
+    assert_eq!((d.verdict, d.undecided.as_slice()), (Conclusion::Correct, &[Slot::Term(0)][..]));
 }
 
 #[test]

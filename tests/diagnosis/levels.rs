@@ -45,7 +45,7 @@ fn right_renderers_are_called_correct() {
         for (name, pictures) in right_renderers(&bench.scene, account.seed()) {
             for suspect in [pictures.clone(), without_errors(pictures)] {
                 let d = bench.judge(&suspect, None, account.spend(1));
-                assert_eq!(d.verdict, Verdict::Correct, "{} by {name}: {} {:?}", stage.label, d.worst, d.suspects);
+                assert_eq!(d.verdict, Conclusion::Correct, "{} by {name}: {} {:?}", stage.label, d.worst, d.suspects);
                 assert!(d.visible < 0.5, "{}: {}", name, d.visible);
             }
         }
@@ -85,9 +85,9 @@ fn a_bias_of_the_size_that_is_promised_is_seen() {
     let render = by_rays::terms(&bench.scene, Estimator::Prefix, &settings(256, account.seed()), Progress::NONE);
     let suspect = Pictures::of(&render, SIZE);
     let d = bench.judge(&suspect, None, alpha);
-    assert_eq!(d.verdict, Verdict::Correct, "{}", d.worst);
+    assert_eq!(d.verdict, Conclusion::Correct, "{}", d.worst);
     // twice the size that is seen with probability 0.99 lies far enough beyond for any run
     let d = bench.judge(&suspect.times(1.0 + 2.0 * d.visible), None, alpha);
-    assert_eq!(d.verdict, Verdict::Wrong);
+    assert_eq!(d.verdict, Conclusion::Wrong);
     assert!(d.suspects.iter().any(|s| s.name == "exposure"), "{:?}", d.suspects);
 }

@@ -52,7 +52,7 @@ fn an_unknown_mistake_has_no_name() {
     }
     let candidates = Members::new(&bench.scene, K, 0, Progress::NONE);
     let d = bench.judge(&suspect, Some(&candidates), 1e-3);
-    assert_eq!(d.verdict, Verdict::Wrong);
+    assert_eq!(d.verdict, Conclusion::Wrong);
     assert!(d.suspects.iter().all(|s| s.basis == Basis::Points), "{:?}", d.suspects);
     assert!(d.candidates.iter().all(|c| c.rejected));
 }
@@ -89,7 +89,7 @@ fn turned_broken_and_repeated_pictures_are_noticed() {
     let right = Pictures::of(&render, SIZE);
     let names = |p: &Pictures| {
         let d = bench.judge(p, None, 1e-6);
-        assert_eq!(d.verdict, Verdict::Wrong);
+        assert_eq!(d.verdict, Conclusion::Wrong);
         d.suspects.iter().map(|s| s.name.clone()).collect::<Vec<_>>()
     };
     let mut turned = without_errors(right.clone());

@@ -14,7 +14,7 @@ pub use args::Diagnose;
 use found::Diagnosed;
 use fredholm::diagnosis::candidates::Members;
 use fredholm::diagnosis::picture::{Code, Pictures};
-use fredholm::diagnosis::{self, Case, Effort, Verdict, evidence};
+use fredholm::diagnosis::{self, Case, Conclusion, Effort, evidence};
 use fredholm::engine::known::coplanar;
 use fredholm::progress::Progress;
 use fredholm::report::figures::diagnosis as figure;
@@ -47,7 +47,7 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     let page = text::Text { args, how, label: &label, rare_paths: rare_paths.as_deref(), folder: &session.folder };
     let files = write(&session, &found)?;
     session.show(&text::json(&found), || page.people(&found, &files))?;
-    Ok(session.ending(found.iter().any(|f| f.diagnosis.verdict == Verdict::Wrong)))
+    Ok(session.ending(found.iter().any(|f| f.diagnosis.verdict == Conclusion::Wrong)))
 }
 
 /// All suspects, and what they were held against.

@@ -3,7 +3,7 @@
 use super::args::{Diagnose, Grouping};
 use super::found::Diagnosed;
 use crate::cli::base::paragraphs;
-use fredholm::diagnosis::{Basis, Diagnosis, Slot, Suspicion, Verdict};
+use fredholm::diagnosis::{Basis, Conclusion, Diagnosis, Slot, Suspicion};
 use fredholm::report::text::table::significant;
 use fredholm::zoo;
 use std::path::Path;
@@ -27,7 +27,7 @@ pub fn short(name: &str) -> String {
 /// The verdict in a few words.
 pub fn headline(d: &Diagnosis) -> String {
     match (d.verdict, d.suspects.as_slice()) {
-        (Verdict::Correct, _) => "correct, as far as this data can tell".into(),
+        (Conclusion::Correct, _) => "correct, as far as this data can tell".into(),
         (_, []) => "wrong, and unlike anything in the zoo".into(),
         (_, list) if list.iter().all(|s| s.basis == Basis::Points) => {
             format!("wrong; the evidence points to {}", names(list))
@@ -73,7 +73,8 @@ impl Text<'_> {
         let head = format!("against {}", self.label);
         let mut blocks: Vec<String> = if let [one] = found { vec![self.one(one)] } else { vec![table(found)] };
         blocks.insert(1.min(blocks.len()), wrapped(&head, "") + if how.is_empty() { "" } else { "\n" } + how);
-        if let (Some(rare_paths), true) = (self.rare_paths, found.iter().any(|f| f.diagnosis.verdict == Verdict::Wrong))
+        if let (Some(rare_paths), true) =
+            (self.rare_paths, found.iter().any(|f| f.diagnosis.verdict == Conclusion::Wrong))
         {
             blocks.push(wrapped(
                 &format!(
@@ -94,7 +95,7 @@ impl Text<'_> {
         let d = &f.diagnosis;
         let mut out = wrapped(&format!("{}: {}", short(&f.name), headline(d)), "") + "\n";
         out += &match d.verdict {
-            Verdict::Correct => wrapped(
+            Conclusion::Correct => wrapped(
                 &format!(
                     "No mean of any region differs by more than its noise (smallest adjusted p = {}). {}",
                     significant(d.p, 2),
@@ -102,8 +103,8 @@ impl Text<'_> {
                 ),
                 "",
             ),
-            Verdict::Wrong if d.worst.is_empty() => String::new(),
-            Verdict::Wrong => {
+            Conclusion::Wrong if d.worst.is_empty() => String::new(),
+            Conclusion::Wrong => {
                 wrapped(&format!("Furthest off: {} (adjusted p = {}).", d.worst, significant(d.p, 2)), "")
             }
         };
@@ -111,7 +112,7 @@ impl Text<'_> {
         if !d.suspects.is_empty() {
             blocks.push(suspects(&d.suspects));
         }
-        if d.verdict == Verdict::Wrong && d.suspects.is_empty() {
+        if d.verdict == Conclusion::Wrong && d.suspects.is_empty() {
             let n = d.candidates.len();
             let best = d.candidates.first();
             let nearest = best.map_or(String::new(), |c| {
@@ -175,7 +176,7 @@ fn evidence(f: &Diagnosed) -> String {
     }
     let mut facts = vec![format!("errors of the suspect: from {}", e.errors)];
     let samples = e.samples / (f.factor * f.factor) as f64;
-    if samples.is_finite() && d.verdict == Verdict::Correct {
+    if samples.is_finite() && d.verdict == Conclusion::Correct {
         let mut line =
             format!("its noise is that of about {} samples per pixel of the reference", significant(samples, 2));
         if let Some(told) = f.told.filter(|told| *told > 2.5 * samples) {
@@ -185,7 +186,7 @@ fn evidence(f: &Diagnosed) -> String {
         }
         facts.push(line);
     }
-    if d.verdict == Verdict::Correct && d.samples.is_none() {
+    if d.verdict == Conclusion::Correct && d.samples.is_none() {
         facts.push(
             "one file cannot show samples that repeat: two with different samples per pixel can (r_16.exr r_64.exr)"
                 .into(),
@@ -284,12 +285,12 @@ fn candidates(d: &Diagnosis) -> String {
 fn brief(d: &Diagnosis) -> String {
     let undecided: Vec<String> = d.undecided.iter().map(ToString::to_string).collect();
     match d.verdict {
-        Verdict::Wrong => headline(d),
-        Verdict::Correct if d.visible.is_infinite() => "nothing can be told: too few pixels carry the noise".into(),
-        Verdict::Correct if undecided.is_empty() => {
+        Conclusion::Wrong => headline(d),
+        Conclusion::Correct if d.visible.is_infinite() => "nothing can be told: too few pixels carry the noise".into(),
+        Conclusion::Correct if undecided.is_empty() => {
             format!("correct, as far as this data can tell: bias < {}", percent(d.visible))
         }
-        Verdict::Correct => {
+        Conclusion::Correct => {
             let open = undecided.join(", ");
             format!("undecided in {open}; elsewhere correct: bias < {}", percent(d.visible))
         }
@@ -307,7 +308,7 @@ fn table(found: &[Diagnosed]) -> String {
         let cut: String = line.chars().take(WIDTH).collect();
         out += &format!("{cut}\n");
     }
-    let wrong = found.iter().filter(|f| f.diagnosis.verdict == Verdict::Wrong).count();
+    let wrong = found.iter().filter(|f| f.diagnosis.verdict == Conclusion::Wrong).count();
     out += &format!("\n{wrong} of {} are wrong", found.len());
     if wrong < found.len() {
         out += "\n";

@@ -8,7 +8,7 @@ use fredholm::report::figures::variance::{self, Falling, Variance};
 use fredholm::report::image::typeset::{Caption, superscript};
 use fredholm::report::plot::{Curve, Look, Point};
 use fredholm::stats::TermMeans;
-use fredholm::study::convergence::Part;
+use fredholm::study::convergence::NoiseCurve;
 use fredholm::study::run::Run;
 use fredholm::terms::{scatter::Scatter, variance::Snapshot};
 use std::path::Path;
@@ -85,7 +85,7 @@ fn write_variance(run: &Run, out: &mut Files, caption: &Caption) -> Result<(), F
     let mut curve = |label: String, s: &Sampled, slot: Option<usize>| {
         let at = |snap: &Snapshot| Some((snap.spp, snap.scatter.get(slot.unwrap_or(snap.scatter.len() - 1))?.clone()));
         let variance = if slot.is_none() { s.series.variance } else { Default::default() };
-        let part = Part { name: label.clone(), points: s.snapshots.iter().filter_map(at).collect(), variance };
+        let part = NoiseCurve { name: label.clone(), points: s.snapshots.iter().filter_map(at).collect(), variance };
         let replicates = s.series.image().total.replicates;
         let point = |(spp, scatter): &(u32, Scatter)| {
             let v = fredholm::terms::variance::Variance::from(scatter);

@@ -9,7 +9,7 @@
 //! | what to do | [`Asked`], [`Settings`] |
 //! | the work, in that order | [`Run::solve`] |
 //! | what was found | the fields of [`Run`] |
-//! | one world held against another | [`Verdict`] |
+//! | one world held against another | [`RunVerdict`] |
 //! | what follows from it: rates, bounds, orders | [`facts`] |
 
 pub mod facts;
@@ -28,7 +28,7 @@ use crate::study::strategies::{self, Strategy};
 use crate::study::surface;
 use crate::terms::functional::Replicates;
 use crate::terms::{Recorded, Series, Variance, World};
-pub use verdicts::Verdict;
+pub use verdicts::RunVerdict;
 
 /// What a run is asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,7 +121,7 @@ pub struct Run {
     /// Moments of paths without roulette.
     pub moments: Option<Recorded>,
     /// What the worlds say of each other.
-    pub verdicts: Vec<Verdict>,
+    pub verdicts: Vec<RunVerdict>,
 }
 
 impl Run {

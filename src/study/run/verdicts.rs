@@ -7,7 +7,7 @@ use crate::terms::{Functional, Series};
 
 /// One result held against another.
 #[derive(Clone, Debug)]
-pub struct Verdict {
+pub struct RunVerdict {
     /// Which of them: `terms − path`.
     pub name: &'static str,
     /// Every part of both, compared.
@@ -15,7 +15,7 @@ pub struct Verdict {
 }
 
 /// The first estimator of the terms against everything else.
-pub(super) fn verdicts(terms: &[Sampled], path: Option<&Sampled>, radiosity: Option<&Discrete>) -> Vec<Verdict> {
+pub(super) fn verdicts(terms: &[Sampled], path: Option<&Sampled>, radiosity: Option<&Discrete>) -> Vec<RunVerdict> {
     let criterion = Criterion::default();
     let judge = |name, a: &Series, b: &Series, allowance: &[Functional]| {
         // terms that one of them does not see in full are not compared
@@ -23,7 +23,7 @@ pub(super) fn verdicts(terms: &[Sampled], path: Option<&Sampled>, radiosity: Opt
             None => compare(a, b, &criterion, allowance),
             Some((from, _)) => compare(&a.before(from), b, &criterion, allowance),
         };
-        Verdict { name, comparison }
+        RunVerdict { name, comparison }
     };
     let Some(first) = terms.first().map(|t| &t.series) else { return vec![] };
     let other = terms.get(1).map(|other| judge("single − prefix", first, &other.series, &[]));

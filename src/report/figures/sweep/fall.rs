@@ -18,7 +18,7 @@ use crate::report::{
     },
 };
 use crate::stats::Slope;
-use crate::study::convergence::{Part, Stand};
+use crate::study::convergence::{NoiseCurve, Stand};
 use crate::terms::{Variance, scatter::Scatter};
 
 /// One render as its noise falls.
@@ -31,13 +31,13 @@ pub struct Fall {
     /// Cost and scatter at every n.
     pub stands: Vec<Stand>,
     /// The same by term.
-    pub parts: Vec<Part>,
+    pub parts: Vec<NoiseCurve>,
 }
 
 impl Fall {
     /// From the stands of one render. `variance` is that of the tail and of the sum.
     pub fn new(label: String, pixels: usize, stands: Vec<Stand>, tail_is_known: bool, variance: Variance) -> Self {
-        Self { label, pixels, parts: Part::all(&stands, tail_is_known, variance), stands }
+        Self { label, pixels, parts: NoiseCurve::all(&stands, tail_is_known, variance), stands }
     }
 
     /// Rays and seconds per path at a stand.
@@ -153,7 +153,7 @@ struct Line {
     slope: Option<Slope>,
 }
 
-fn line(label: String, part: &Part, look: Look) -> Option<Line> {
+fn line(label: String, part: &NoiseCurve, look: Look) -> Option<Line> {
     let point = |(n, s): &(u32, Scatter)| {
         let (v, half) = (s.variance(), half_width_95(s.variance_error(), s.replicates() as u64));
         let factor = if half.is_finite() { (half / v).exp() } else { 1.0 };
