@@ -194,6 +194,7 @@ fn patterns(f: &Facts) -> Vec<Suspicion> {
 }
 
 /// What a pattern with its constant is called; several where it does not tell.
+// long, because it is a table: one line for each pattern and constant
 fn named(pattern: Pattern, c: Option<Constant>, p: f64, misfit: f64) -> Vec<Suspicion> {
     let value = c.map_or(1.0, |c| c.value);
     let number = c.map_or(String::new(), |c| {

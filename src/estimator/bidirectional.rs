@@ -46,6 +46,7 @@ pub struct StrategyValue {
 
 impl Bidirectional {
     /// Everything that one pair of walks finds; `rays` gets the slot of each ray.
+    // long, because the ways to join two walks share all of their vertices and densities
     pub fn find<T: Adjoint>(
         &self,
         t: &T,

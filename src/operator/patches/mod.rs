@@ -105,28 +105,7 @@ impl Patches {
         let scene = &scene;
         let surfaces = scene.surfaces();
         let listed = &surfaces.list;
-        if listed.is_empty() {
-            return Err(SceneError::new("the scene has no surface").help("add a shape"));
-        }
-        if !scene.lights.is_empty() {
-            let e = SceneError::new("a radiosity matrix holds light from surfaces only").key("lights");
-            return Err(e.help("leave the radiosity world out"));
-        }
-        for &(s, p) in listed {
-            let shape = &scene.shapes[s];
-            if shape.material >= scene.materials.len() {
-                return Err(SceneError::new(format!("material {} does not exist", shape.material)).key(&shape.name));
-            }
-            let material = &scene.materials[shape.material];
-            if material.lambertian().is_none() {
-                let e = SceneError::new("a radiosity matrix holds Lambertian surfaces of one colour only");
-                return Err(e.key(format!("materials.{}", material.name)).help("leave the radiosity world out"));
-            }
-            if !(p.area() > 0.0 && p.area().is_finite()) {
-                let what = format!("a surface of {} has the area {}", shape.name, p.area());
-                return Err(SceneError::new(what).key(&shape.name).help("remove or repair it"));
-            }
-        }
+        suits(scene, listed)?;
         let sides = |s: usize| scene.materials[scene.shapes[s].material].sides;
         let primitives: Vec<(Primitive, Sides)> = listed.iter().map(|&(s, p)| (p, sides(s))).collect();
         let cover = CoverTest::new(primitives.clone(), &surfaces.overlaps);
@@ -269,6 +248,33 @@ impl Patches {
     pub fn areas(&self) -> Vec<f64> {
         self.list.iter().map(|p| p.area).collect()
     }
+}
+
+/// Whether a matrix can hold these surfaces.
+fn suits(scene: &Description, listed: &[(usize, Primitive)]) -> Result<(), SceneError> {
+    if listed.is_empty() {
+        return Err(SceneError::new("the scene has no surface").help("add a shape"));
+    }
+    if !scene.lights.is_empty() {
+        let e = SceneError::new("a radiosity matrix holds light from surfaces only").key("lights");
+        return Err(e.help("leave the radiosity world out"));
+    }
+    for &(s, p) in listed {
+        let shape = &scene.shapes[s];
+        if shape.material >= scene.materials.len() {
+            return Err(SceneError::new(format!("material {} does not exist", shape.material)).key(&shape.name));
+        }
+        let material = &scene.materials[shape.material];
+        if material.lambertian().is_none() {
+            let e = SceneError::new("a radiosity matrix holds Lambertian surfaces of one colour only");
+            return Err(e.key(format!("materials.{}", material.name)).help("leave the radiosity world out"));
+        }
+        if !(p.area() > 0.0 && p.area().is_finite()) {
+            let what = format!("a surface of {} has the area {}", shape.name, p.area());
+            return Err(SceneError::new(what).key(&shape.name).help("remove or repair it"));
+        }
+    }
+    Ok(())
 }
 
 impl std::ops::Deref for Patches {
