@@ -351,3 +351,16 @@ fn the_table_of_symbols_names_files() {
     let missing: Vec<&&str> = files.iter().filter(|f| !src().join(f).exists()).collect();
     assert!(missing.is_empty(), "{missing:?}");
 }
+
+/// So does `CONTRIBUTING.md`; NAME stands for a file that is to be added.
+#[test]
+fn contributing_names_files() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("CONTRIBUTING.md")).unwrap();
+    let prose = text.split("```").step_by(2).flat_map(|t| t.split('`').skip(1).step_by(2));
+    let is_file = |word: &&str| word.starts_with("src/") || word.starts_with("tests/") || word.ends_with(".md");
+    let named: Vec<&str> = prose.filter(is_file).filter(|w| !w.contains("NAME") && !w.contains('*')).collect();
+    assert!(named.len() > 20, "{named:?}");
+    let missing: Vec<&&str> = named.iter().filter(|w| !root.join(w).exists()).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
