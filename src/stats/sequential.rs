@@ -137,7 +137,8 @@ mod tests {
 
     fn sequence(n: u32) -> MeanSequence {
         let mut s = MeanSequence::default();
-        (0..n).for_each(|i| s.push(2.0 + f64::from((i * i * 7 + i * 13) % 101) / 50.0));
+        let at = |i: u32| i.wrapping_mul(i).wrapping_mul(7).wrapping_add(i.wrapping_mul(13)) % 101;
+        (0..n).for_each(|i| s.push(2.0 + f64::from(at(i)) / 50.0));
         s
     }
 
