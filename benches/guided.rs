@@ -49,7 +49,7 @@ where
     let (kept, usual) = (plan(Roulette::Albedo { from: 8 }), plan(Roulette::Albedo { from: 2 }));
     let film = match what {
         "prefix window" if knows => {
-            let prefix = guide::Prefix { plan: kept, end };
+            let prefix = guide::Prefix { max_bounces: kept.max_bounces, technique: kept.technique, end };
             render(&Tracked(t), &TrackedSensor(camera), &prefix, amount, Progress::NONE)
         }
         "prefix" | "prefix window" => render(t, camera, &Prefix(kept), amount, Progress::NONE),

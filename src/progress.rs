@@ -4,8 +4,8 @@
 //! begin("form factors", n)    advance(1) … advance(1)    film(…) after every pass    stopped()?
 //! ```
 //!
-//! A computation is given a [`Progress`], tells it what it does, and asks it whether to stop. Who listens is the caller's
-//! business: nobody ([`Progress::NONE`]), a bar on a terminal, a test. No result depends on it, except that it may be cut short.
+//! A computation is given a [`Progress`], tells it what it does, and asks it whether to stop. The caller chooses
+//! who listens: nobody ([`Progress::NONE`]), a bar on a terminal, a test. No result depends on it, except that it may be cut short.
 //!
 //! | what | place |
 //! |---|---|
@@ -75,7 +75,7 @@ impl<'a> Progress<'a> {
         Self { listener: None, ..self }
     }
 
-    /// The same for work that ends by the clock: what is told are milliseconds, whatever is counted.
+    /// The same for work that ends after a given time: its progress is counted in milliseconds.
     #[must_use]
     pub fn by_clock(self, clock: &'a Clock) -> Self {
         Self { clock: Some(clock), ..self }

@@ -1,7 +1,12 @@
 //! `fredholm check` as its users meet it: verdicts, exit codes, files.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/program.rs"]
+#[allow(dead_code, unreachable_pub)]
+mod program;
+
 use fredholm::report::text::summary;
+use program::{Said, run};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -9,27 +14,15 @@ use tempfile::TempDir;
 
 struct Desk(TempDir);
 
-struct Said {
-    code: i32,
-    out: String,
-    err: String,
-}
-
 impl Desk {
     fn new() -> Self {
         Self(TempDir::new().unwrap())
     }
     fn command(&self, line: &str) -> Command {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
-        command.args(line.split_whitespace()).current_dir(self.0.path());
-        command
+        program::command(self.0.path(), line)
     }
     fn run(&self, line: &str) -> Said {
-        let output = self.command(line).output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        let said = Said { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) };
-        assert!(!said.err.contains("panicked"), "{line}: {}", said.err);
-        said
+        run(self.0.path(), line)
     }
     fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)

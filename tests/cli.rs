@@ -5,24 +5,21 @@
 mod comparisons;
 #[path = "cli/process.rs"]
 mod process;
+#[path = "common/program.rs"]
+#[allow(dead_code, unreachable_pub)]
+mod program;
 #[path = "cli/results.rs"]
 mod results;
 
 use fredholm::report::image::exr;
 use fredholm::report::text::summary;
 use fredholm::terms::World;
+use program::{Said, run_tidily};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
-
-/// What a command left on the screen.
-struct Said {
-    code: i32,
-    out: String,
-    err: String,
-}
 
 /// A folder of its own for every test: the program writes below the folder it stands in.
 struct Desk(TempDir);
@@ -35,20 +32,10 @@ impl Desk {
         self.0.path().join(name)
     }
     fn command(&self, line: &str) -> Command {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
-        command.args(line.split_whitespace()).current_dir(self.0.path());
-        command
+        program::command(self.0.path(), line)
     }
     fn run(&self, line: &str) -> Said {
-        let output = self.command(line).output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        let said = Said { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) };
-        assert!(!said.err.contains("panicked"), "{line}: {}", said.err);
-        assert!(!said.out.contains("\n\n\n"), "{line}: two blank lines in a row\n{}", said.out);
-        for line in said.out.lines().filter(|l| !l.starts_with("fredholm ") && !l.trim_start().starts_with('"')) {
-            assert!(line.chars().count() <= 100, "{line}");
-        }
-        said
+        run_tidily(self.0.path(), line)
     }
     /// Runs what must go well.
     fn ok(&self, line: &str) -> Said {

@@ -123,7 +123,7 @@ where
         }
         (Kind::Single, By(end)) => render(t, camera, &SingleTerm(plan(&end.plain())), amount, Progress::NONE),
         (Kind::Prefix, &By(end)) => {
-            let prefix = guide::Prefix { plan: plan(&end.plain()), end };
+            let prefix = guide::Prefix { max_bounces: k, technique, end };
             render(&Tracked(t), &TrackedSensor(camera), &prefix, amount, Progress::NONE)
         }
         (Kind::Path, &By(end)) => {
@@ -270,9 +270,9 @@ fn guided_terms_and_tail_sum_to_the_guided_path_tracer() {
                 By(end) => {
                     let plan = plan(3, technique, &end.plain());
                     let (tracked, sensor) = (Tracked(&t), TrackedSensor(&scene.camera));
-                    let path = guide::PathTracer { plan: plan.clone(), end: Some(end) };
+                    let path = guide::PathTracer { plan, end: Some(end) };
                     (
-                        collect(&tracked, &sensor, &guide::Prefix { plan, end }, 16, 16, key),
+                        collect(&tracked, &sensor, &guide::Prefix { max_bounces: 3, technique, end }, 16, 16, key),
                         collect(&t, &scene.camera, &path, 16, 16, key),
                     )
                 }

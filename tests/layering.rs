@@ -99,10 +99,10 @@ impl<'ast> Visit<'ast> for Source {
         Self::flatten(&item.tree, &[], &mut paths);
         for (name, path) in paths {
             // `pub use child::Name` names a module below without saying so
-            let relative = self.absolute(&path);
+            let path = self.absolute(&path).unwrap_or_else(|| self.module.iter().chain(&path).cloned().collect());
             if matches!(item.vis, syn::Visibility::Inherited) || !self.inner.is_empty() {
-                self.uses.extend(relative.or_else(|| self.below(&path)));
-            } else if let Some(path) = relative.or_else(|| self.below(&path)) {
+                self.uses.insert(path);
+            } else {
                 self.passed_on.push((name, path));
             }
         }
@@ -118,7 +118,7 @@ impl<'ast> Visit<'ast> for Source {
     fn visit_visibility(&mut self, _: &'ast syn::Visibility) {}
 
     fn visit_item_mod(&mut self, item: &'ast syn::ItemMod) {
-        let test = item.attrs.iter().any(|a| a.path().is_ident("cfg") && quote(&a.meta).contains("test"));
+        let test = item.attrs.iter().any(|a| a.path().is_ident("cfg") && tokens(&a.meta).contains("test"));
         // a test may look at what is downstream in its folder
         if item.content.is_some() && !test {
             self.inner.push(item.ident.to_string());
@@ -128,18 +128,11 @@ impl<'ast> Visit<'ast> for Source {
     }
 }
 
-/// Whether an attribute is `cfg(test)`.
-fn quote(meta: &syn::Meta) -> String {
+/// What stands in the brackets of an attribute.
+fn tokens(meta: &syn::Meta) -> String {
     match meta {
         syn::Meta::List(list) => list.tokens.to_string(),
         _ => String::new(),
-    }
-}
-
-impl Source {
-    /// A path that may begin with a module below this one: it does if there is such a file.
-    fn below(&self, path: &[String]) -> Option<Names> {
-        Some(self.module.iter().chain(path).cloned().collect())
     }
 }
 

@@ -33,8 +33,8 @@ use fredholm::scene::description::{BsdfDescription, Description, Geometry, Light
 use fredholm::scene::emitter::environment::Environment;
 use fredholm::scene::{ESCAPED, LIGHT, Primitive, Scene, SurfaceSensor, Vertex};
 use fredholm::stats::critical;
+use fredholm::terms::TermFilm;
 use fredholm::terms::functional::{Replicates, image_replicates};
-use fredholm::terms::{Estimate, TermFilm};
 use glam::{DQuat, DVec3, Vec3};
 use proptest::prelude::*;
 use std::f64::consts::PI;

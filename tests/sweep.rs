@@ -1,6 +1,9 @@
 //! `fredholm sweep`: a row per value, numbers that programs can read, costs that are known, and refusals.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/program.rs"]
+#[allow(dead_code, unreachable_pub)]
+mod program;
 #[path = "sweep/refusals.rs"]
 mod refusals;
 #[path = "sweep/samples.rs"]
@@ -15,29 +18,9 @@ use fredholm::scene::Scene;
 use fredholm::scene::load::{self, Options};
 use fredholm::stats::variance_slope;
 use fredholm::study::split;
+use program::{Said, run_tidily as run};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use tempfile::TempDir;
-
-struct Said {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-/// Runs a sweep in a folder.
-fn run(desk: &Path, line: &str) -> Said {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
-    let output = command.args(line.split_whitespace()).current_dir(desk).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    let said = Said { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) };
-    assert!(!said.err.contains("panicked"), "{line}: {}", said.err);
-    assert!(!said.out.contains("\n\n\n"), "{line}: two blank lines in a row\n{}", said.out);
-    for l in said.out.lines().filter(|l| !l.starts_with("fredholm ") && !l.trim_start().starts_with('"')) {
-        assert!(l.chars().count() <= 100, "{l}");
-    }
-    said
-}
 
 /// A sweep that must go well, in a folder of its own; its csv as one map per line.
 struct Swept {
@@ -256,9 +239,8 @@ fn series_branches_and_takes_sobol_points() {
 fn finer_meshes_come_nearer() {
     let dir = tempfile::tempdir().unwrap();
     let run = |line: &str| {
-        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
-        let output = command.args(line.split_whitespace()).current_dir(dir.path()).output().unwrap();
-        (output.status.code().unwrap(), String::from_utf8(output.stdout).unwrap())
+        let said = program::run(dir.path(), line);
+        (said.code, said.out)
     };
     let (code, out) = run("sweep cornell --over patches --values 40,160 --size 48x48 --spp 64 -q -o p");
     assert_eq!(code, 0, "{out}");

@@ -238,6 +238,13 @@ pub fn black(run: &Run) -> Option<String> {
     Some(format!("every pixel is black: none of {paths} paths found any light. The camera sees\n{seen}"))
 }
 
+/// A warning for each result with samples that are not finite.
+pub fn not_finite(all: &[Series]) -> String {
+    let broken = all.iter().filter(|s| s.cost.non_finite > 0);
+    let lines = broken.map(|s| format!("warning: {}: {} samples were not finite", s.label, s.cost.non_finite));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
 /// What the reader must know before trusting an error bar.
 pub fn warnings(run: &Run) -> Vec<String> {
     let mut out = vec![];

@@ -46,6 +46,30 @@ impl Changes {
     }
 }
 
+/// What is rendered: scene, samples, seed, size and K.
+#[derive(Clone, Debug, Args)]
+pub struct Frame {
+    /// Built-in scene, .toml, or .obj
+    #[arg(value_name = "SCENE", default_value = "cornell")]
+    pub scene: String,
+    /// Samples per pixel [default: 256]
+    ///
+    /// [default in a sweep over branching: 32]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub spp: Option<u32>,
+    /// Seed: same seed, same bits, for any number of threads
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Image size in pixels [default: the scene's; 192x192 for the tour]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// K: keep the terms k = 0..=K; k counts applications of T [default: 8]
+    ///
+    /// [default in a sweep over branching: 4]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=1000))]
+    pub max_bounces: Option<u16>,
+}
+
 /// What every study of a scene takes.
 #[derive(Clone, Debug, Args)]
 pub struct Shared {
@@ -72,7 +96,7 @@ pub struct Shared {
     pub quiet: bool,
 }
 
-/// How a command works, whatever it does.
+/// Output folder, threads, and how a command speaks: what all commands have in common.
 #[derive(Clone, Debug, Default)]
 pub struct Manner {
     /// The output folder that was asked for.

@@ -1,6 +1,6 @@
 //! What is refused before a run starts, because it could only end badly.
 
-use super::base::{Failure, note};
+use super::base::{Failure, note, usage};
 use fredholm::engine::Settings;
 use fredholm::engine::by_matrix::MatrixError;
 use fredholm::engine::by_rays::{Begins, Estimator};
@@ -29,7 +29,7 @@ pub fn can_be_guided(
     settings: &Settings,
     worlds: &[World],
 ) -> Result<(), Failure> {
-    let wrong = |what: &str, help: &str| Err(Failure::Usage(format!("error: {what}\nhelp: {help}")));
+    let wrong = |what: &str, help: &str| Err(usage(what, help));
     if estimators.iter().any(|e| e.begins() != Begins::AtEye) {
         return wrong("a guide steers walks from the eye only", "use --estimator prefix, single or branching");
     }
@@ -39,7 +39,7 @@ pub fn can_be_guided(
     if settings.sampling == Sampling::Uniform {
         return wrong("a guide replaces the cosine, and --sampling uniform has none", "leave --sampling out");
     }
-    let sides = (0..scene.sides()).filter(|&s| scene.takes_part(s)).count();
+    let sides = reflecting(scene);
     if sides > POSSIBLE {
         let what = format!("{sides} sides make at least as many patches, more than the {POSSIBLE} a guide may have");
         return wrong(&what, "leave --guide out");
@@ -197,20 +197,17 @@ pub fn fixed(asked: Option<&Schedule>) -> Result<Option<Roulette>, Failure> {
         Some(Schedule::Optimal) => Err(Failure::Usage(
             "error: --roulette optimal has no part in this\nhelp: `fredholm roulette SCENE --optimise` finds it; give its table here".into(),
         )),
-        asked => {
-            asked.map_or(Ok(()), |schedule| somebody_expects(schedule, false))?;
-            Ok(asked.and_then(Schedule::given))
-        }
+        asked => needs_no_guide(asked).map(|()| asked.and_then(Schedule::given)),
     }
 }
 
-/// A schedule that goes by what is expected needs a guide.
-pub fn somebody_expects(schedule: &Schedule, guided: bool) -> Result<(), Failure> {
-    match schedule {
-        Schedule::ByExpectation(end) if !guided => Err(Failure::Usage(format!(
-            "error: --roulette {end} goes by what a guide expects, and there is none\n\
-             help: add --guide radiosity (series, render), or choose albedo"
-        ))),
+/// A schedule that goes by what is expected needs a guide, and there is none.
+pub fn needs_no_guide(asked: Option<&Schedule>) -> Result<(), Failure> {
+    match asked {
+        Some(Schedule::ByExpectation(end)) => Err(usage(
+            &format!("--roulette {end} goes by what a guide expects, and there is none"),
+            "add --guide radiosity (series, render), or choose albedo",
+        )),
         _ => Ok(()),
     }
 }

@@ -86,17 +86,17 @@ impl Session {
         self.progress().stopped()
     }
 
-    /// Nobody wants to see progress.
+    /// Whether no progress is to be shown.
     pub fn quiet(&self) -> bool {
         self.manner.quiet
     }
 
-    /// How long it has worked.
+    /// When it began.
     pub fn since(&self) -> Instant {
         self.started
     }
 
-    /// Takes the bar away, before something is printed.
+    /// Takes the progress bar away, before something is printed.
     pub fn clear(&self) {
         self.bar.finish();
     }

@@ -108,7 +108,9 @@ impl Prepared {
         let result = match (estimator, end) {
             (Estimator::Prefix, Some(end)) => {
                 let (t, camera) = (Tracked(&t), TrackedSensor(camera));
-                by_rays::sample(&t, &camera, &guide::Prefix { plan, end }, &stream, name, settings, progress)
+                let Plan { max_bounces, technique, .. } = plan;
+                let prefix = guide::Prefix { max_bounces, technique, end };
+                by_rays::sample(&t, &camera, &prefix, &stream, name, settings, progress)
             }
             (Estimator::Prefix, None) => by_rays::sample(&t, camera, &Prefix(plan), &stream, name, settings, progress),
             (Estimator::Single, _) => by_rays::sample(&t, camera, &SingleTerm(plan), &stream, name, settings, progress),

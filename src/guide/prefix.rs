@@ -10,21 +10,23 @@
 use super::expected::{ByExpectation, Expecting};
 use super::tracked::{Track, Tracked, TrackedWave};
 use crate::estimator::branching::lineage;
-use crate::estimator::{Job, Paths, Plan, TermEstimator, TermSink, prefix};
+use crate::estimator::{Job, Paths, Technique, TermEstimator, TermSink, prefix};
 use crate::operator::{Sensor, Wave};
 
-/// The prefix estimator of guided walks. The roulette of its plan is not used.
+/// The prefix estimator of guided walks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prefix {
-    /// How far, and how light is found.
-    pub plan: Plan,
+    /// K: the terms k = 0..=K are kept.
+    pub max_bounces: usize,
+    /// How light is found.
+    pub technique: Technique,
     /// How walks end or split.
     pub end: ByExpectation,
 }
 
 impl<'a, T: Expecting> TermEstimator<Tracked<'a, T>> for Prefix {
     fn slots(&self) -> usize {
-        self.plan.max_bounces + 2
+        self.max_bounces + 2
     }
 
     fn sample<S: Sensor<Tracked<'a, T>>>(
@@ -47,12 +49,12 @@ impl Prefix {
         paths: &mut Paths<TrackedWave<T::Wave>>,
         sink: &mut impl TermSink,
     ) {
-        let technique = self.plan.technique;
+        let technique = self.technique;
         for v in first.. {
             if paths.n == 0 {
                 break;
             }
-            let slot = (v + 1).min(self.plan.max_bounces + 1);
+            let slot = (v + 1).min(self.max_bounces + 1);
             prefix::connect(t, technique, v, slot, paths, sink);
             let splits = self.split(t, v, paths);
             for copy in 1..ByExpectation::MOST {

@@ -37,14 +37,6 @@ pub struct Factors<S> {
     pub pair: [f32; 2],
 }
 
-impl<S> Factors<S> {
-    /// f cos θ / p.
-    #[inline(always)]
-    pub fn weight(&self) -> Rgb {
-        self.f * (self.cos / self.pdf)
-    }
-}
-
 /// A transport whose factors can be seen.
 pub trait Kernel: Transport {
     /// x' along a direction that was drawn at x; nothing when the sample is zero. Draws as [`Transport::scatter`].

@@ -4,6 +4,7 @@
 
 pub mod judge;
 pub mod ledger;
+pub mod program;
 pub mod random;
 pub mod sampling;
 pub mod scenes;

@@ -144,3 +144,10 @@ pub fn point(scene: &Scene, p: DVec3, n: DVec3) -> Vertex {
     );
     v
 }
+
+/// The difference of two independent estimates; of an exact one only the other's replicates count.
+pub fn difference(a: &Estimate, b: &Estimate) -> Estimate {
+    let std_error = (a.std_error * a.std_error + b.std_error * b.std_error).map(f64::sqrt);
+    let replicates = [a.replicates, b.replicates].into_iter().filter(|r| *r > 0).min().unwrap_or(0);
+    Estimate { mean: a.mean - b.mean, std_error, replicates, events: None }
+}

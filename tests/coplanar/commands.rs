@@ -20,10 +20,8 @@ fn commands_name_what_coincides() {
     std::fs::write(desk.path().join("flush.toml"), file("-1")).unwrap();
     std::fs::write(desk.path().join("raised.toml"), file("-0.999")).unwrap();
     let run = |line: &str| {
-        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
-        let output = command.args(line.split_whitespace()).current_dir(desk.path()).output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+        let said = super::common::program::run(desk.path(), line);
+        (said.code, said.out, said.err)
     };
     let words = "shapes `shapes[0]` and `shapes[2]` lie in one plane and differ";
     let (code, out, err) = run("info flush.toml");

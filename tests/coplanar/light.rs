@@ -1,6 +1,7 @@
 //! Lamps in the plane of a wall are worth their light, by every way of sampling and in the matrix.
 
 use super::*;
+use common::sampling::difference;
 
 /// T⁰, T¹, T², and the whole.
 type Values = [Estimate; 4];
@@ -34,12 +35,6 @@ const WAYS: [(&str, Estimator, Technique, u32, &[usize]); 5] = [
 
 fn matrix(d: &Description, patches: usize) -> Matrix<Radiosity> {
     by_matrix::dense_matrix(d, &Scene::new(d), patches, 1.0, 3, Progress::NONE).unwrap()
-}
-
-fn apart(a: &Estimate, b: &Estimate) -> Estimate {
-    let std_error = (a.std_error * a.std_error + b.std_error * b.std_error).map(f64::sqrt);
-    let replicates = [a.replicates, b.replicates].into_iter().filter(|r| *r > 0).min().unwrap_or(0);
-    Estimate { mean: a.mean - b.mean, std_error, replicates, events: None }
 }
 
 /// From anywhere in a room that is turned by any angle, a ray to a lamp in the plane of a wall meets the front of the lamp, and
@@ -123,7 +118,7 @@ fn lamps_in_a_plane_are_worth_their_light() {
             let found = values(&scene, estimator, technique, spp, seed);
             for &k in judged {
                 let delta = [0.06, 0.03, 0.03, 0.05][k] * reference[k].mean;
-                let d = apart(&found[k], &reference[k]);
+                let d = difference(&found[k], &reference[k]);
                 account.assert_equivalent(&format!("{what}, {way}, {k}"), &d, DVec3::ZERO, delta);
             }
         }
@@ -177,7 +172,12 @@ fn lamps_in_a_plane_far_away() {
         let found = values(&scene, estimator, technique, spp, seed);
         for &k in judged {
             let delta = [0.06, 0.03, 0.03, 0.05][k] * reference[k].mean;
-            account.assert_equivalent(&format!("{way}, {k}"), &apart(&found[k], &reference[k]), DVec3::ZERO, delta);
+            account.assert_equivalent(
+                &format!("{way}, {k}"),
+                &difference(&found[k], &reference[k]),
+                DVec3::ZERO,
+                delta,
+            );
         }
     }
 }
@@ -202,6 +202,6 @@ fn what_a_lamp_covers_sends_no_light() {
     let hole = norms(&with_hole([-0.3, -0.3, 0.3, 0.3], square(), Sides::Front), seed ^ 1);
     for (k, (a, b)) in flush.iter().zip(&hole).enumerate().skip(1) {
         // the covered ceiling is 1.5 % of the area
-        account.assert_equivalent(&format!("T{k}"), &apart(a, b), DVec3::ZERO, 0.01 * b.mean);
+        account.assert_equivalent(&format!("T{k}"), &difference(a, b), DVec3::ZERO, 0.01 * b.mean);
     }
 }

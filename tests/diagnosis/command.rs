@@ -1,24 +1,10 @@
 //! `fredholm diagnose` on files: what it names, what it cannot see and says so, and bad input.
 
+use super::common::program::{Said, run_tidily};
 use super::*;
 
-struct Said {
-    code: i32,
-    out: String,
-    err: String,
-}
-
 fn run(desk: &tempfile::TempDir, line: &str) -> Said {
-    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
-    let output = command.args(line.split_whitespace()).current_dir(desk.path()).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    let said = Said { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) };
-    assert!(!said.err.contains("panicked"), "{line}: {}", said.err);
-    assert!(!said.out.contains("\n\n\n"), "{line}: two blank lines in a row\n{}", said.out);
-    for l in said.out.lines().filter(|l| !l.starts_with("fredholm ") && !l.trim_start().starts_with('"')) {
-        assert!(l.chars().count() <= 100, "{l}");
-    }
-    said
+    run_tidily(desk.path(), line)
 }
 
 /// Writes layers as an EXR.

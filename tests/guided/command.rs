@@ -2,10 +2,8 @@
 
 /// A folder of its own, and what the program says there.
 fn fredholm(desk: &tempfile::TempDir, line: &str) -> (i32, String) {
-    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
-    let output = command.args(line.split_whitespace()).current_dir(desk.path()).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout) + &text(output.stderr))
+    let said = super::common::program::run(desk.path(), line);
+    (said.code, said.out + &said.err)
 }
 
 /// `--time` decides how many samples there are and nothing else; so does a guide know only the seed.

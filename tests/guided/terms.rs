@@ -1,6 +1,7 @@
 //! Means under a guide are those without one; a guide that nobody accounts for is found.
 
 use super::*;
+use common::sampling::difference;
 
 /// Means of the image, slot by slot, and of all of it.
 fn means<T: Expecting>(
@@ -23,16 +24,6 @@ fn slots(film: &TermFilm) -> Vec<Estimate> {
     let mut all: Vec<Estimate> = (0..slots).map(|s| r.estimate(s..s + 1)).collect();
     all.push(r.estimate(0..slots));
     all
-}
-
-/// The difference of two independent estimates.
-fn less(a: &Estimate, b: &Estimate) -> Estimate {
-    Estimate {
-        mean: a.mean - b.mean,
-        std_error: (a.std_error.powf(2.0) + b.std_error.powf(2.0)).map(f64::sqrt),
-        replicates: a.replicates.min(b.replicates),
-        events: None,
-    }
 }
 
 /// Image means of every term, the tail and the whole, guided and not, in scenes with and without surfaces that the guide takes for
@@ -62,7 +53,7 @@ fn guided_terms_agree_with_the_others() {
             let whole = plain[plain.len() - 1].mean;
             // what the eye sees of the lamps is no matter of guides, and of small lamps it is noisy
             for (s, (a, b)) in guided.iter().zip(&plain).enumerate().skip(1) {
-                let difference = less(a, b);
+                let difference = difference(a, b);
                 let delta = criterion.of_term * b.mean + criterion.of_total * whole;
                 let noisy = d.name == "many-lights" && s == 6;
                 let visible = if noisy { 0.4 } else { 0.15 } * b.mean;
@@ -92,7 +83,7 @@ fn guided_terms_agree_closely() {
         let terms = means(&t, &scene.camera, Kind::Prefix, window, spp, key.branch(1));
         let path = means(&t, &scene.camera, Kind::Path, window, spp, key.branch(2)).pop();
         for (s, (a, b)) in terms.iter().chain(&path).zip(plain.iter().chain([&whole])).enumerate().skip(1) {
-            let difference = less(a, b);
+            let difference = difference(a, b);
             let delta = 0.02 * b.mean + 1e-4 * whole.mean;
             let what = format!("{name}, slot {s}");
             let judged = jury.judge(&what, &difference, DVec3::ZERO, delta, delta.max(0.15 * b.mean));
@@ -181,6 +172,6 @@ fn a_guide_that_nobody_accounts_for_is_found() {
     let prefix = Prefix(plan(1, Technique::Mis, &Roulette::Never));
     let wrong = render(&Forgetful(t), &Eye(&scene.camera), &prefix, amount, Progress::NONE);
     let wrong = image_replicates(&wrong).estimate(1..2);
-    account.assert_equivalent("direct light", &less(&right[1], &plain[1]), DVec3::ZERO, 0.01 * plain[1].mean);
-    account.assert_differs("direct light, weights that do not add up", &less(&wrong, &plain[1]), DVec3::ZERO);
+    account.assert_equivalent("direct light", &difference(&right[1], &plain[1]), DVec3::ZERO, 0.01 * plain[1].mean);
+    account.assert_differs("direct light, weights that do not add up", &difference(&wrong, &plain[1]), DVec3::ZERO);
 }

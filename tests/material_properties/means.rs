@@ -1,11 +1,7 @@
 //! Means in random scenes: estimators agree, axes do not matter, no material gains energy, two patches may change places.
 
 use super::*;
-
-fn difference(a: &Estimate, b: &Estimate) -> Estimate {
-    let std_error = (a.std_error * a.std_error + b.std_error * b.std_error).map(f64::sqrt);
-    Estimate { mean: a.mean - b.mean, std_error, replicates: a.replicates, events: None }
-}
+use common::sampling::difference;
 
 /// Judges the slots of two images of what should be one.
 fn same(jury: &mut Jury, what: &str, a: &Replicates, b: &Replicates) {

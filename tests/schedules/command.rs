@@ -1,10 +1,8 @@
 //! `fredholm roulette`, and schedules wherever a command takes roulette.
 
 fn fredholm(desk: &std::path::Path, line: &str) -> (i32, String, String) {
-    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"));
-    let output = command.args(line.split_whitespace()).current_dir(desk).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    let said = super::common::program::run(desk, line);
+    (said.code, said.out, said.err)
 }
 
 #[test]

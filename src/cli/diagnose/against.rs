@@ -122,7 +122,7 @@ fn scene_of(command: &str) -> Option<Description> {
         None => tour,
         Some(Renders::Tour(args) | Renders::Series(args) | Renders::Render(args)) => args,
     };
-    Some(load::scene(&args.scene, &args.shared.changes.options(None)).ok()?.description)
+    Some(load::scene(&args.frame.scene, &args.shared.changes.options(None)).ok()?.description)
 }
 
 impl Source {

@@ -52,11 +52,11 @@ impl<R> Laboratory<R> {
         factors: Factors,
         make: impl FnOnce(&Opened, &Settings, Progress<'_>) -> Result<(usize, Matrix<R>), MatrixError>,
     ) -> Result<Option<Self>, Failure> {
-        let mut session = Session::new(&args.shared, args.seed)?;
-        let opened = session.open(&args.scene, &args.shared.changes, args.size)?;
+        let mut session = Session::new(&args.shared, args.frame.seed)?;
+        let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size)?;
         let opened = Opened { scene: opened.scene.select_lights(args.lights), ..opened };
         preflight::has_a_matrix(&opened.description, &opened.scene, factors)?;
-        let (patches, grading, seed) = (args.patches.unwrap_or(600) as usize, args.grading, args.seed);
+        let (patches, grading, seed) = (args.patches.unwrap_or(600) as usize, args.grading, args.frame.seed);
         let settings = Settings { patches, factors, grading, max_bounces: 0, seed, ..Settings::default() };
         preflight::rows_fit_in_memory(&opened.scene, &settings)?;
         session.make_folder(&format!("{}-{what}", opened.description.name))?;

@@ -21,8 +21,12 @@ const BOUNCES: usize = 12;
 pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     let run = &args.run;
     let Some(lab) = Laboratory::new(run, "modes")? else { return Ok(Ending::Interrupted) };
-    let settings =
-        Settings { spp: run.spp.unwrap_or(64), seed: run.seed, max_bounces: count + 1, ..Settings::default() };
+    let settings = Settings {
+        spp: run.frame.spp.unwrap_or(64),
+        seed: run.frame.seed,
+        max_bounces: count + 1,
+        ..Settings::default()
+    };
     preflight::fits_in_memory(&settings, lab.opened.description.camera.size)?;
 
     // eigenvalues, channel by channel
@@ -46,7 +50,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
         "command": lab.session.command(),
         "scene": lab.opened.description.name,
         "scene_hash": lab.opened.hash,
-        "seed": run.seed,
+        "seed": run.frame.seed,
         "patches": lab.patches,
         "channels": modes::machine(&spectra),
     });

@@ -176,7 +176,7 @@ impl<'a, R> Study<'a, R> {
             "command": lab.session.command(),
             "scene": lab.opened.description.name,
             "scene_hash": lab.opened.hash.clone(),
-            "seed": args.run.seed,
+            "seed": args.run.frame.seed,
             "threads": rayon::current_num_threads(),
             "patches": lab.patches,
             "rays": lab.matrix.sampling.map(|s| s.per_row),

@@ -1,6 +1,6 @@
 //! What everything that renders takes.
 
-use crate::cli::options::{Shared, among, duration, grading, one_of, size};
+use crate::cli::options::{Frame, Shared, among, duration, grading, one_of};
 use clap::Args;
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::Estimator;
@@ -19,25 +19,9 @@ const ESTIMATORS: [&str; 5] = ["single", "prefix", "branching", "light", "bidire
 /// Arguments of everything that renders.
 #[derive(Clone, Debug, Args)]
 pub struct RunArgs {
-    /// Built-in scene, .toml, or .obj
-    #[arg(value_name = "SCENE", default_value = "cornell")]
-    pub scene: String,
-    /// Samples per pixel [default: 256]
-    ///
-    /// [default in a sweep over branching: 32]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
-    pub spp: Option<u32>,
-    /// Seed: same seed, same bits, for any number of threads
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u64,
-    /// Image size in pixels [default: the scene's; 192x192 for the tour]
-    #[arg(long, value_name = "WxH", value_parser = size)]
-    pub size: Option<[u32; 2]>,
-    /// K: keep the terms k = 0..=K; k counts applications of T [default: 8]
-    ///
-    /// [default in a sweep over branching: 4]
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=1000))]
-    pub max_bounces: Option<u16>,
+    /// What is rendered.
+    #[command(flatten)]
+    pub frame: Frame,
     /// Estimator of the terms: prefix, single, light, … [default: prefix]
     ///
     /// single: each term from paths of its own; prefix: all terms from the prefixes of one path;
@@ -92,12 +76,13 @@ pub struct RunArgs {
     ///   table:q0,q1,…        as listed, the last for all that follow
     ///   albedo[@V]           q = 1 − albedo from vertex V on (2)
     ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
-    ///   contribution[@V]     with --guide: q = 1 − expected of the rest/expected of the pixel,
-    ///                        at most 0.9, from vertex V on (1); elsewhere as albedo
-    ///   window[@V]           with --guide, from vertex V on (0), for w = expected of the rest/expected
+    ///   contribution[@V]     needs --guide: q = 1 − expected of the rest/expected of the pixel,
+    ///                        at most 0.9, from vertex V on (1)
+    ///   window[@V]           needs --guide, from vertex V on (0), for w = expected of the rest/expected
     ///                        of the pixel: below 0.5 q = 1 − 2w, at most 0.9; above 1 the path splits
-    ///                        into w walks in the mean, at most 8 (prefix and path tracer; others
-    ///                        do not split); elsewhere as albedo
+    ///                        into w walks in the mean, at most 8
+    ///                        (both: prefix and path tracer; single and branching end by albedo,
+    ///                        and so does a path at surfaces that the guide knows nothing of)
     ///   optimal              the table with the most efficiency, found by a pilot of 2^18 paths
     #[arg(long, value_name = "SCHEDULE", verbatim_doc_comment)]
     pub roulette: Option<Schedule>,
@@ -173,16 +158,16 @@ radiosity: the matrix over patches. [default: all; render and radiosity: their o
 impl RunArgs {
     /// What is rendered with unless a schedule is given: `fallback`, in the terms only after K.
     pub fn settings(&self, fallback: Roulette, patches: u32, factors: Factors) -> Settings {
-        let max_bounces = usize::from(self.max_bounces.unwrap_or(8));
+        let max_bounces = usize::from(self.frame.max_bounces.unwrap_or(8));
         let asked = self.roulette.as_ref().and_then(Schedule::given);
         let by_expectation = match self.roulette {
             Some(Schedule::ByExpectation(end)) => Some(end),
             _ => None,
         };
         Settings {
-            spp: self.spp.unwrap_or(if self.time.is_some() { 1 << 24 } else { 256 }),
+            spp: self.frame.spp.unwrap_or(if self.time.is_some() { 1 << 24 } else { 256 }),
             time: self.time,
-            seed: self.seed,
+            seed: self.frame.seed,
             points: self.points,
             max_bounces,
             technique: self.technique,

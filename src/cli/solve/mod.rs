@@ -58,9 +58,9 @@ pub fn radiosity(args: &RunArgs, export: Option<Export>) -> Result<Ending, Failu
 }
 
 fn solve(args: &RunArgs, default: &Default) -> Result<Ending, Failure> {
-    let mut session = Session::new(&args.shared, args.seed)?;
-    let built_in_size = if args.scene == "cornell" { default.size } else { None };
-    let opened = session.open(&args.scene, &args.shared.changes, args.size.or(built_in_size))?;
+    let mut session = Session::new(&args.shared, args.frame.seed)?;
+    let built_in_size = if args.frame.scene == "cornell" { default.size } else { None };
+    let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size.or(built_in_size))?;
     let mut run = plan(args, default, opened)?;
     session.make_folder(&run.description.name)?;
     session.preview(write::preview(&session.folder, session.caption()));
@@ -94,11 +94,9 @@ fn plan(args: &RunArgs, default: &Default, opened: Opened) -> Result<Run, Failur
     if args.strategies && estimators != [Estimator::Bidirectional] {
         return Err(usage("only the bidirectional estimator has strategies", "add --estimator bidirectional"));
     }
-    if let Some(schedule) = &args.roulette {
-        preflight::somebody_expects(schedule, args.guide == Guiding::Radiosity)?;
-    }
-    if args.guide == Guiding::Radiosity {
-        preflight::can_be_guided(&scene, &estimators, &settings, &worlds)?;
+    match args.guide {
+        Guiding::Bsdf => preflight::needs_no_guide(args.roulette.as_ref())?,
+        Guiding::Radiosity => preflight::can_be_guided(&scene, &estimators, &settings, &worlds)?,
     }
     preflight::light_is_seen(&scene, &estimators, &settings, &worlds)?;
     preflight::fits_in_memory(&settings, description.camera.size)?;

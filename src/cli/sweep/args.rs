@@ -1,8 +1,8 @@
 //! What `sweep` takes.
 
 use crate::cli::base::{Failure, usage};
-use crate::cli::options::{Shared, among, duration, grading, one_of, size, values};
-use crate::cli::preflight::somebody_expects;
+use crate::cli::options::{Frame, Shared, among, duration, grading, one_of, values};
+use crate::cli::preflight::needs_no_guide;
 use clap::{Args, ValueEnum};
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::Estimator;
@@ -98,25 +98,9 @@ pub struct Sweep {
     #[arg(long = "points", value_name = "NAME,…", help = usual("How samples lie in a pixel", Points::ALL, "independent"),
         long_help = usual("How samples lie in a pixel", Points::ALL, "independent") + "\n\nWith --over spp a list.")]
     pub spreads: Option<String>,
-    /// Built-in scene, .toml, or .obj
-    #[arg(value_name = "SCENE", default_value = "cornell")]
-    pub scene: String,
-    /// Samples per pixel [default: 256]
-    ///
-    /// [default in a sweep over branching: 32]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
-    pub spp: Option<u32>,
-    /// Seed: same seed, same bits, for any number of threads
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u64,
-    /// Image size in pixels [default: the scene's; 192x192 for the tour]
-    #[arg(long, value_name = "WxH", value_parser = size)]
-    pub size: Option<[u32; 2]>,
-    /// K: keep the terms k = 0..=K; k counts applications of T [default: 8]
-    ///
-    /// [default in a sweep over branching: 4]
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=1000))]
-    pub max_bounces: Option<u16>,
+    /// What is rendered.
+    #[command(flatten)]
+    pub frame: Frame,
     /// With --estimator bidirectional: every strategy apart
     ///
     /// Writes strategies.png, strategies-alone.png and strategies.exr, and prints a table:
@@ -184,15 +168,15 @@ pub fn estimator(text: &str, children: u32) -> Result<Option<Estimator>, String>
 impl Sweep {
     /// K, where nothing is said 8, and 4 where the setting makes trees.
     pub fn max_bounces(&self) -> usize {
-        self.max_bounces.unwrap_or(if self.over == Over::Branching { 4 } else { 8 }).into()
+        self.frame.max_bounces.unwrap_or(if self.over == Over::Branching { 4 } else { 8 }).into()
     }
 
     /// The settings that are no lists, with the usual schedules.
     pub fn settings(&self, spp: u32) -> Settings {
         let (max_bounces, end) = (self.max_bounces(), Roulette::Albedo { from: 2 });
         Settings {
-            spp: self.spp.unwrap_or(spp),
-            seed: self.seed,
+            spp: self.frame.spp.unwrap_or(spp),
+            seed: self.frame.seed,
             max_bounces,
             sampling: self.sampling,
             roulette: end.clone().after(max_bounces),
@@ -220,7 +204,7 @@ impl Sweep {
             None => Err("`path` has one value for all terms, and is for --over spp".into()),
         };
         let schedule = one("--roulette", self.schedules.as_ref(), Schedule::from_str)?;
-        schedule.as_ref().map_or(Ok(()), |s| somebody_expects(s, false))?;
+        needs_no_guide(schedule.as_ref())?;
         Ok(One {
             estimator: one("--estimator", self.estimators.as_ref(), of_terms)?.unwrap_or(Estimator::Prefix),
             technique: one("--technique", self.techniques.as_ref(), Technique::from_str)?.unwrap_or(Technique::Mis),

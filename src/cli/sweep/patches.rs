@@ -18,9 +18,9 @@ const USUAL: &str = "38,150,600,2400";
 
 /// Solves on every mesh and holds the terms against rays.
 pub fn run(args: &Sweep) -> Result<Ending, Failure> {
-    let mut session = Session::new(&args.shared, args.seed)?;
+    let mut session = Session::new(&args.shared, args.frame.seed)?;
     let sizes = sizes(args)?;
-    let opened = session.open(&args.scene, &args.shared.changes, args.size)?;
+    let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size)?;
     let (description, scene) = (opened.description, opened.scene.select_lights(args.lights));
     preflight::has_a_matrix(&description, &scene, Factors::Dense)?;
     let (grading, read_patches) = (args.aside.grading, args.aside.read_patches);

@@ -16,9 +16,9 @@ pub fn run(args: &Sweep) -> Result<Ending, Failure> {
     if args.estimators.is_some() {
         return Err(usage("--over split always compares single with prefix", "leave --estimator out"));
     }
-    let mut session = Session::new(&args.shared, args.seed)?;
+    let mut session = Session::new(&args.shared, args.frame.seed)?;
     let settings = settings(args)?;
-    let opened = session.open(&args.scene, &args.shared.changes, args.size)?;
+    let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size)?;
     let scene = opened.scene.select_lights(args.lights);
     preflight::can_be_sampled(&scene, Some(Estimator::Prefix), &settings)?;
     session.make_folder(&format!("{}-split", opened.description.name))?;

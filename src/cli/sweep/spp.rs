@@ -5,8 +5,8 @@ use super::args::{Sweep, estimator};
 use super::reference;
 use crate::cli::base::{Ending, Failure, names, paragraphs, usage};
 use crate::cli::options::{number, values};
-use crate::cli::preflight;
 use crate::cli::session::Session;
+use crate::cli::{notes, preflight};
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Begins, Estimator};
 use fredholm::estimator::Technique;
@@ -36,14 +36,14 @@ struct Case {
 
 /// Renders every combination once.
 pub fn run(args: &Sweep) -> Result<Ending, Failure> {
-    let mut session = Session::new(&args.shared, args.seed)?;
+    let mut session = Session::new(&args.shared, args.frame.seed)?;
     let at = counts(args)?;
-    let spp = args.spp.or(at.last().copied()).unwrap_or(256);
+    let spp = args.frame.spp.or(at.last().copied()).unwrap_or(256);
     if spp < 3 {
         return Err(usage(&format!("{spp} samples leave no error of a variance"), "choose at least --spp 32"));
     }
     let mut cases = cases(args, spp)?;
-    let opened = session.open(&args.scene, &args.shared.changes, args.size)?;
+    let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size)?;
     let (description, scene) = (opened.description, opened.scene.select_lights(args.lights));
     for case in &cases {
         preflight::can_be_sampled(&scene, case.estimator, &case.settings)?;
@@ -132,7 +132,7 @@ fn cases(args: &Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
                     let words = [(e, true), (t, techniques.len() > 1), (r, schedules.len() > 1), (p, !p.is_empty())];
                     let words: Vec<&str> = words.iter().filter(|w| w.1).map(|w| w.0.as_str()).collect();
                     let mut settings = Settings { spp, points: *points, technique: *technique, ..args.settings(spp) };
-                    schedule.as_ref().map_or(Ok(()), |s| preflight::somebody_expects(s, false))?;
+                    preflight::needs_no_guide(schedule.as_ref())?;
                     if let Some(given) = schedule.as_ref().and_then(Schedule::given) {
                         (settings.roulette, settings.path_roulette) = (given.clone(), given);
                     }
@@ -162,7 +162,7 @@ fn counts(args: &Sweep) -> Result<Vec<u32>, Failure> {
         let what = format!("{n} samples are not the same number for each of the {REPLICATES} replicates");
         return Err(usage(&what, "values of --over spp are multiples of 16, such as 16,64,256"));
     }
-    if let Some(&n) = all.iter().find(|&&n| args.spp.is_some_and(|spp| n > spp)) {
+    if let Some(&n) = all.iter().find(|&&n| args.frame.spp.is_some_and(|spp| n > spp)) {
         return Err(usage(&format!("{n} samples are more than --spp renders"), "leave --spp out, or raise it"));
     }
     Ok(all)
@@ -189,8 +189,5 @@ fn people(session: &Session, falls: &[Fall], record: &Summary, reference: Option
             head += &format!("\n{}: {reason}; its V(n) of the tail and of all has no meaning", fall.label);
         }
     }
-    let broken = record.series.iter().filter(|s| s.cost.non_finite > 0);
-    let broken: Vec<_> =
-        broken.map(|s| format!("warning: {}: {} samples were not finite", s.label, s.cost.non_finite)).collect();
-    paragraphs(&[head, fall::table(falls), broken.join("\n"), session.written(&record.files)])
+    paragraphs(&[head, fall::table(falls), notes::not_finite(&record.series), session.written(&record.files)])
 }

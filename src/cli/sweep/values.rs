@@ -6,8 +6,8 @@
 use super::args::{Over, Sweep};
 use crate::cli::base::{Ending, Failure, names, note, paragraphs, usage};
 use crate::cli::options::{number, values};
-use crate::cli::preflight;
 use crate::cli::session::Session;
+use crate::cli::{notes, preflight};
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Estimator};
 use fredholm::progress::Progress;
@@ -16,7 +16,6 @@ use fredholm::report::text::summary::Summary;
 use fredholm::report::write_atomically;
 use fredholm::scene::Scene;
 use fredholm::study::roulette::{self, Schedule};
-use fredholm::terms::Series;
 
 /// One value of the setting.
 struct Case {
@@ -29,9 +28,9 @@ struct Case {
 
 /// Renders the terms for every value.
 pub fn run(args: &Sweep) -> Result<Ending, Failure> {
-    let mut session = Session::new(&args.shared, args.seed)?;
+    let mut session = Session::new(&args.shared, args.frame.seed)?;
     let mut cases = cases(args)?;
-    let opened = session.open(&args.scene, &args.shared.changes, args.size)?;
+    let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size)?;
     let scene = opened.scene.select_lights(args.lights);
     for case in &cases {
         preflight::can_be_sampled(&scene, Some(case.estimator), &case.settings)?;
@@ -93,10 +92,7 @@ fn write(session: &Session, found: &sweep::Sweep, record: Summary) -> Result<Sum
 fn people(session: &Session, found: &sweep::Sweep, record: &Summary) -> String {
     let Summary { command, seed, width, height, max_bounces, .. } = record;
     let head = format!("{command}\nseed {seed}, {width}×{height} pixels, k ≤ {max_bounces}");
-    let broken = record.series.iter().filter(|s: &&Series| s.cost.non_finite > 0);
-    let broken = broken.map(|s| format!("warning: {}: {} samples were not finite", s.label, s.cost.non_finite));
-    let broken = broken.collect::<Vec<_>>().join("\n");
-    paragraphs(&[head, sweep::table(found), broken, session.written(&record.files)])
+    paragraphs(&[head, sweep::table(found), notes::not_finite(&record.series), session.written(&record.files)])
 }
 
 /// The values of each setting unless told otherwise.

@@ -9,24 +9,8 @@ use fredholm::zoo::{self, Bug};
 
 /// There is no member of that name.
 pub fn unknown(name: &str) -> Failure {
-    let near = zoo::all().into_iter().map(|b| (strsim(b.name, name), b.name)).min().map_or("", |n| n.1);
+    let near = zoo::all().into_iter().map(|b| (strsim::levenshtein(b.name, name), b.name)).min().map_or("", |n| n.1);
     usage(&format!("the zoo has no `{name}`"), &format!("perhaps `{near}`; `fredholm zoo --list` shows all"))
-}
-
-/// Letters to change, at least: Levenshtein's distance.
-fn strsim(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = i;
-        row[0] = i + 1;
-        for j in 0..b.len() {
-            let change = diagonal + usize::from(x != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = change.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
 }
 
 /// Who lives there.

@@ -79,8 +79,6 @@ impl Look {
     pub const PREFIX: Self = Self { color: VERMILION, mark: Mark::Square };
     /// The radiosity matrix.
     pub const MATRIX: Self = Self { color: BLACK, mark: Mark::Ring };
-    /// The full path tracer.
-    pub const PATH: Self = Self { color: PURPLE, mark: Mark::Triangle };
 
     /// The mark of a second quantity on the same axes.
     pub(crate) const CROSS: Mark = Mark::Cross;

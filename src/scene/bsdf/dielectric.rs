@@ -44,9 +44,6 @@ impl Model for SmoothDielectric {
     fn sample(&self, wo: Vec3, _: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
         Some(self.choose(wo, mode, u[2]))
     }
-    fn albedo(&self, _: Vec3) -> Rgb {
-        Rgb::ONE
-    }
     fn max_albedo(&self) -> Rgb {
         Rgb::ONE
     }
@@ -105,9 +102,6 @@ impl Model for Dielectric {
             Self::Smooth(f) => f.pdf(wo, wi, sampling),
             Self::Rough(f) => f.pdf(wo, wi, sampling),
         }
-    }
-    fn albedo(&self, _: Vec3) -> Rgb {
-        Rgb::ONE
     }
     fn max_albedo(&self) -> Rgb {
         Rgb::ONE

@@ -48,9 +48,6 @@ impl Model for Diffuse {
     fn pdf(&self, _: Vec3, wi: Vec3, sampling: Sampling) -> f32 {
         blind_pdf(wi, sampling)
     }
-    fn albedo(&self, _: Vec3) -> Rgb {
-        self.reflectance
-    }
     fn max_albedo(&self) -> Rgb {
         self.reflectance
     }

@@ -27,9 +27,6 @@ impl Model for Mirror {
     fn sample(&self, wo: Vec3, _: Sampling, _: TransportMode, _: [f32; 3]) -> Option<BsdfSample> {
         Some(BsdfSample { wi: reflection(wo), weight: self.reflectance, pdf: 1.0, delta: true })
     }
-    fn albedo(&self, _: Vec3) -> Rgb {
-        self.reflectance
-    }
     fn max_albedo(&self) -> Rgb {
         self.reflectance
     }

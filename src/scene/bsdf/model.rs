@@ -19,7 +19,10 @@ pub trait Model: Copy {
         0.0
     }
     /// ∫ f cos θ_i dω_i with its delta part, or an upper bound of it.
-    fn albedo(&self, wo: Vec3) -> Rgb;
+    #[inline(always)]
+    fn albedo(&self, _wo: Vec3) -> Rgb {
+        self.max_albedo()
+    }
     /// The largest albedo of any direction.
     fn max_albedo(&self) -> Rgb;
     /// Whether f has a part that connections can find.

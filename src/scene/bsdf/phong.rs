@@ -96,10 +96,6 @@ impl Model for Phong {
         self.diffuse + self.specular
     }
 
-    fn albedo(&self, _: Vec3) -> Rgb {
-        self.max_albedo()
-    }
-
     /// The same with another k_d.
     fn with_reflectance(self, diffuse: Rgb) -> Self {
         Self::new(diffuse, self.specular, self.exponent)

@@ -129,9 +129,6 @@ impl Model for RoughDielectric {
         (pdf > 0.0).then_some(BsdfSample { wi, weight: Rgb::splat(weight), pdf, delta: false })
     }
 
-    fn albedo(&self, _: Vec3) -> Rgb {
-        Rgb::ONE
-    }
     fn max_albedo(&self) -> Rgb {
         Rgb::ONE
     }
