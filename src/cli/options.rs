@@ -94,9 +94,12 @@ pub struct Shared {
     /// No progress
     #[arg(short, long)]
     pub quiet: bool,
+    /// Print every number behind the answer, not only the answer
+    #[arg(short, long)]
+    pub verbose: bool,
 }
 
-/// Output folder, threads, and how a command speaks: what all commands have in common.
+/// Options that every command has: output folder, number of threads, and what is printed.
 #[derive(Clone, Debug, Default)]
 pub struct Manner {
     /// The output folder that was asked for.
@@ -109,11 +112,20 @@ pub struct Manner {
     pub json: bool,
     /// No progress.
     pub quiet: bool,
+    /// Print every number behind the answer.
+    pub verbose: bool,
 }
 
 impl From<&Shared> for Manner {
     fn from(s: &Shared) -> Self {
-        Self { out: s.out.clone(), force: s.force, threads: s.threads, json: s.json, quiet: s.quiet }
+        Self {
+            out: s.out.clone(),
+            force: s.force,
+            threads: s.threads,
+            json: s.json,
+            quiet: s.quiet,
+            verbose: s.verbose,
+        }
     }
 }
 

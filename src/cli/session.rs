@@ -5,7 +5,7 @@
 //! new → open → make_folder → progress … → sign → show → ending
 //! ```
 
-use super::base::{Ending, Failure, note, print};
+use super::base::{Ending, Failure, note, paragraphs, print};
 use super::open::{self, Opened};
 use super::options::{Changes, Manner};
 use super::output;
@@ -91,6 +91,11 @@ impl Session {
         self.manner.quiet
     }
 
+    /// Returns true if every number behind the answer is to be printed.
+    pub fn verbose(&self) -> bool {
+        self.manner.verbose
+    }
+
     /// When it began.
     pub fn since(&self) -> Instant {
         self.started
@@ -145,6 +150,18 @@ impl Session {
         if self.manner.json {
             warnings.iter().for_each(|w| note(&format!("warning: {w}")));
         }
+    }
+
+    /// The text that a person reads: the answer in one sentence, small tables, with `--verbose` also the details, and last
+    /// where the files are. Blocks may be empty.
+    pub fn text(&self, answer: &str, tables: &[String], details: &[String], files: &[String]) -> String {
+        let mut blocks = vec![answer.to_owned()];
+        blocks.extend_from_slice(tables);
+        blocks.extend_from_slice(if self.manner.verbose { details } else { &[] });
+        let more =
+            if self.manner.verbose || details.iter().all(String::is_empty) { "" } else { "\nmore numbers: --verbose" };
+        blocks.push(self.written(files) + more);
+        paragraphs(&blocks)
     }
 
     /// Where which files are.

@@ -57,9 +57,6 @@ pub struct Diagnose {
     /// Scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
-    /// Also the candidates that were struck off
-    #[arg(short, long)]
-    pub verbose: bool,
 }
 
 fn scale(s: &str) -> Result<(f64, PathBuf), String> {

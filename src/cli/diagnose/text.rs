@@ -123,7 +123,7 @@ impl Text<'_> {
                 "",
             ));
         }
-        if self.args.verbose && !d.candidates.is_empty() {
+        if self.args.shared.verbose && !d.candidates.is_empty() {
             blocks.push(candidates(d));
         }
         paragraphs(&blocks)

@@ -123,9 +123,6 @@ pub struct RunArgs {
     /// Scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
-    /// More about the matrix and the cost
-    #[arg(short, long)]
-    pub verbose: bool,
 }
 
 const POINTS: (&str, &str) = (

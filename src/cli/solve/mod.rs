@@ -72,7 +72,7 @@ fn solve(args: &RunArgs, default: &Default) -> Result<Ending, Failure> {
     let summary = write::all(&run, &session.folder, default.export, || session.record())?;
     session.sign(&summary)?;
     session.warn(&notes::warnings(&run));
-    session.show(&summary, || text::people(&run, &summary, &session.folder, args.verbose))?;
+    session.show(&summary, || text::people(&run, &summary, &session.folder, session.verbose()))?;
     Ok(session.ending(run.failed()))
 }
 

@@ -147,8 +147,6 @@ pub struct Aside {
     rays: Option<u32>,
     #[arg(long, hide = true)]
     orders: bool,
-    #[arg(short, long, hide = true)]
-    verbose: bool,
 }
 
 /// Help for an option with one usual value.

@@ -62,6 +62,6 @@ impl Zoo {
 
 impl From<&Zoo> for Manner {
     fn from(z: &Zoo) -> Self {
-        Self { out: z.out.clone(), force: z.force, threads: z.threads, json: false, quiet: z.quiet }
+        Self { out: z.out.clone(), force: z.force, threads: z.threads, quiet: z.quiet, ..Self::default() }
     }
 }
