@@ -50,7 +50,7 @@ pub fn undecided(why: &str) -> String {
 }
 
 /// What is printed about the matrix on every run.
-pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
+pub fn matrix_facts(r: &Discrete) -> String {
     let m = &r.matrix;
     let i = &m.invariants;
     let rho = m.spectral.each_ref().map(|s| format!("{:.5}", s.radius)).join(", ");
@@ -77,21 +77,19 @@ pub fn matrix_facts(r: &Discrete, verbose: bool) -> String {
     if let Some(s) = &m.sampling {
         out += &format!("\n{}", sampling(s));
     }
-    if verbose {
-        if let Some(norms) = &m.norms {
-            let norms = norms.each_ref().map(|(one, inf)| format!("{one:.4}/{inf:.4}")).join(", ");
-            out += &format!("\n‖T_h‖₁/‖T_h‖∞ per channel {norms}");
-        }
-        let p = m.radiosity.patches();
-        out += &format!(
-            "\nsurface {:.4} m², covered {:.4} m²; {} {}",
-            p.surface_area(),
-            p.covered_area(),
-            if m.sampling.is_some() { "rays" } else { "visibility rays" },
-            m.radiosity.rays()
-        );
-        out += "\nT¹ through the camera reads E itself: it tests no matrix";
+    if let Some(norms) = &m.norms {
+        let norms = norms.each_ref().map(|(one, inf)| format!("{one:.4}/{inf:.4}")).join(", ");
+        out += &format!("\n‖T_h‖₁/‖T_h‖∞ per channel {norms}");
     }
+    let p = m.radiosity.patches();
+    out += &format!(
+        "\nsurface {:.4} m², covered {:.4} m²; {} {}",
+        p.surface_area(),
+        p.covered_area(),
+        if m.sampling.is_some() { "rays" } else { "visibility rays" },
+        m.radiosity.rays()
+    );
+    out += "\nT¹ through the camera reads E itself: it tests no matrix";
     out
 }
 

@@ -91,11 +91,6 @@ impl Session {
         self.manner.quiet
     }
 
-    /// Returns true if every number behind the answer is to be printed.
-    pub fn verbose(&self) -> bool {
-        self.manner.verbose
-    }
-
     /// When it began.
     pub fn since(&self) -> Instant {
         self.started
@@ -155,12 +150,17 @@ impl Session {
     /// The text that a person reads: the answer in one sentence, small tables, with `--verbose` also the details, and last
     /// where the files are. Blocks may be empty.
     pub fn text(&self, answer: &str, tables: &[String], details: &[String], files: &[String]) -> String {
+        self.text_ending(answer, tables, details, &self.written(files))
+    }
+
+    /// The same with a last line of its own.
+    pub fn text_ending(&self, answer: &str, tables: &[String], details: &[String], last: &str) -> String {
+        let verbose = self.manner.verbose;
+        let more = if verbose || details.iter().all(String::is_empty) { "" } else { "; more numbers: --verbose" };
         let mut blocks = vec![answer.to_owned()];
         blocks.extend_from_slice(tables);
-        blocks.extend_from_slice(if self.manner.verbose { details } else { &[] });
-        let more =
-            if self.manner.verbose || details.iter().all(String::is_empty) { "" } else { "\nmore numbers: --verbose" };
-        blocks.push(self.written(files) + more);
+        blocks.extend_from_slice(if verbose { details } else { &[] });
+        blocks.push(format!("{last}{more}"));
         paragraphs(&blocks)
     }
 

@@ -112,7 +112,11 @@ pub struct SurfaceSensor {
 impl SurfaceSensor {
     /// All sides that take part in transport: both of a two-sided surface, else the front.
     pub fn new(scene: &Scene) -> Self {
-        let sides: Vec<u32> = (0..scene.sides()).filter(|&s| scene.takes_part(s)).collect();
+        Self::of(scene, (0..scene.sides()).filter(|&s| scene.takes_part(s)).collect())
+    }
+
+    /// These sides only.
+    pub fn of(scene: &Scene, sides: Vec<u32>) -> Self {
         let areas: Vec<f64> = sides.iter().map(|&s| scene.area(s)).collect();
         let area = areas.iter().sum();
         let mut up_to = 0.0;

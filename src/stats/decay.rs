@@ -65,13 +65,25 @@ impl TermMeans {
 impl From<&Replicates> for TermMeans {
     /// The mean over channels of every term, without the tail.
     fn from(r: &Replicates) -> Self {
+        Self::weighed(r, DVec3::splat(1.0 / 3.0))
+    }
+}
+
+impl TermMeans {
+    /// One channel of every term, without the tail.
+    pub fn channel(r: &Replicates, channel: usize) -> Self {
+        Self::weighed(r, DVec3::AXES[channel])
+    }
+
+    /// A weighted sum of the channels.
+    fn weighed(r: &Replicates, weights: DVec3) -> Self {
         let terms = r.mean.len().saturating_sub(1);
-        let grey = |v: DVec3| v.element_sum() / 3.0;
+        let of = |v: DVec3| v.dot(weights);
         let n = r.deviation.len() as f64;
         let covariance =
-            |a: usize, b: usize| r.deviation.iter().map(|d| grey(d[a]) * grey(d[b])).sum::<f64>() * n / (n - 1.0);
+            |a: usize, b: usize| r.deviation.iter().map(|d| of(d[a]) * of(d[b])).sum::<f64>() * n / (n - 1.0);
         Self {
-            mean: r.mean[..terms].iter().map(|&m| grey(m)).collect(),
+            mean: r.mean[..terms].iter().map(|&m| of(m)).collect(),
             covariance: DMatrix::from_fn(terms, terms, covariance),
             replicates: r.deviation.len() as u64,
             evidence: (0..terms).map(|k| Evidence::of(&r.estimate(k..k + 1))).collect(),

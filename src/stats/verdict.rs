@@ -81,6 +81,8 @@ pub struct Verdict {
     pub outcome: Outcome,
     /// The margin of equivalence.
     pub delta: f64,
+    /// The quantity itself: the mean of both image means in this channel, the unit in which a reader measures the effect.
+    pub size: f64,
     /// If inconclusive: with this many times the samples one of the other outcomes is certain, whatever the effect.
     /// None if no number of samples will do.
     pub needed_factor: Option<f64>,
@@ -154,6 +156,10 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
         return Comparison { rows: Vec::new(), family: 0, outcome: Outcome::Inconclusive, undecided: None };
     };
     let delta_of = |q: Quantity| margin(criterion, q, image_a, image_b);
+    let size_of = |q: Quantity| {
+        let of = |f| q.of(f).map_or(DVec3::ZERO, |e| e.mean.abs());
+        0.5 * (of(image_a) + of(image_b))
+    };
     let mesh = [b, a].into_iter().find(|s| s.world == World::Radiosity);
     for (i, fa) in a.functionals.iter().enumerate() {
         let Some(fb) = b.functionals.iter().find(|f| f.name == fa.name) else { continue };
@@ -183,6 +189,7 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
                     excuse: if own[c] { f64::INFINITY } else { excused[c].max(extra[c]) + unknown[c] },
                     rounding: ROUNDING * whole[c],
                     delta: delta_of(quantity)[c].max(ROUNDING * whole[c]),
+                    size: size_of(quantity)[c],
                     weak: evidence.no_verdict,
                     doubt: doubt.clone(),
                 });
@@ -275,6 +282,8 @@ struct Item {
     /// What `f32` may lose: never a difference.
     rounding: f64,
     delta: f64,
+    /// The mean of both image means.
+    size: f64,
     /// Why nothing may be rejected.
     weak: Option<Reason>,
     /// Why there can be no verdict at all.
@@ -377,6 +386,7 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Ve
         },
         outcome,
         delta,
+        size: item.size,
         needed_factor: noise_decides.then(|| ((noise + reject) / room).powi(2)),
         reason,
     }

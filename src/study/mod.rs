@@ -8,6 +8,8 @@
 //! | split | how many samples for which term? | [`split::study`] |
 //! | roulette | noise and cost of schedules, the best of them | [`roulette::pilot`], [`roulette::optimal`] |
 //! | strategies | which way from both ends finds which term? | [`strategies::strategies`] |
+//! | bounces | how many bounces are enough? | [`bounces::bounces`] |
+//! | lit | which bounce lights which surface? | [`lit::lit`] |
 //! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
 //! | refinement | how does the matrix come closer on finer meshes? | [`refinement::refine`] |
 //! | equilibrium | are both sides of L = E + T L equal? | [`equilibrium`] |
@@ -15,8 +17,10 @@
 //! | walk | do the estimators find the powers of a matrix? | [`walk::walk`] |
 //! | zero variance | how much does a guide help? | [`zero_variance::study`] |
 
+pub mod bounces;
 pub mod convergence;
 pub mod equilibrium;
+pub mod lit;
 pub mod refinement;
 pub mod roulette;
 pub mod run;

@@ -25,6 +25,8 @@ struct Default {
     roulette: Roulette,
     patches: u32,
     export: Option<Export>,
+    /// What to try next.
+    next: &'static str,
 }
 
 /// What `series` computes.
@@ -35,11 +37,16 @@ const SERIES: Default = Default {
     roulette: Roulette::Albedo { from: 2 },
     patches: 600,
     export: None,
+    next: "",
 };
+
+/// What the tour suggests at its end.
+const NEXT: &str = "Next: fredholm chapter 1 (the book, run), fredholm series veach-ajar (a harder scene),
+      fredholm diagnose YOURS.exr --against cornell (is your own renderer right?)";
 
 /// The tour: all worlds, both estimators.
 pub fn tour(args: &RunArgs) -> Result<Ending, Failure> {
-    solve(args, &Default { both_estimators: true, size: Some([192, 192]), patches: 2400, ..SERIES })
+    solve(args, &Default { both_estimators: true, size: Some([192, 192]), patches: 3600, next: NEXT, ..SERIES })
 }
 
 /// Each T^k E and the sum.
@@ -72,7 +79,7 @@ fn solve(args: &RunArgs, default: &Default) -> Result<Ending, Failure> {
     let summary = write::all(&run, &session.folder, default.export, || session.record())?;
     session.sign(&summary)?;
     session.warn(&notes::warnings(&run));
-    session.show(&summary, || text::people(&run, &summary, &session.folder, session.verbose()))?;
+    session.show(&summary, || text::people(&run, &summary, &session, default.next))?;
     Ok(session.ending(run.failed()))
 }
 

@@ -1,5 +1,6 @@
 //! One file for each study: its figure, its table, its CSV.
 
+pub mod bounces;
 pub mod decay;
 pub mod diagnosis;
 pub mod drift;
@@ -7,6 +8,7 @@ pub mod equilibrium;
 #[cfg(test)]
 mod example;
 pub mod extrapolation;
+pub mod lit;
 pub mod modes;
 pub mod patches;
 pub mod pyramid;

@@ -1,10 +1,12 @@
 //! What is made of text only: tables, Markdown, CSV, `summary.json`.
 
 pub mod csv;
+pub mod grid;
 pub mod markdown;
 mod null_as_nan;
 pub mod number;
 pub mod pixel_errors;
 pub(crate) mod rows;
+pub mod sentence;
 pub mod summary;
 pub mod table;

@@ -106,7 +106,7 @@ pub fn count(n: u64) -> String {
 }
 
 /// A share of the whole with one decimal.
-pub(crate) fn percent(share: f64) -> String {
+pub fn percent(share: f64) -> String {
     let share = 100.0 * share;
     if share.is_finite() { format!("{share:.1} %") } else { dash() }
 }

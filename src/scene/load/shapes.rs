@@ -33,7 +33,7 @@ pub(super) const KINDS: [(&str, &[&str]); 6] = [
     ("disk", &["center", "normal", "radius"]),
 ];
 /// The keys every shape may have.
-pub(super) const LIGHT_KEYS: [&str; 4] = ["type", "material", "emission", "power"];
+pub(super) const SHAPE_KEYS: [&str; 5] = ["type", "name", "material", "emission", "power"];
 
 /// What the shapes of a file amount to.
 pub(super) struct Read {
@@ -53,7 +53,9 @@ pub(super) fn read(list: &Cursor, materials: Vec<Material>) -> Result<Read, Scen
         let at = c.require("type", "type = \"quad\"; types: mesh, obj, quad, box, sphere, disk")?;
         let kinds: Vec<(&str, (&str, &[&str]))> = KINDS.iter().map(|&(k, keys)| (k, (k, keys))).collect();
         let (kind, keys) = at.choice("type of shape", &kinds)?;
-        c.only(&[&LIGHT_KEYS, keys].concat())?;
+        // the shapes of an OBJ file have the names of its groups
+        let common: Vec<&str> = SHAPE_KEYS.iter().copied().filter(|&key| key != "name" || kind != "obj").collect();
+        c.only(&[&common, keys].concat())?;
         if kind == "obj" {
             let material = c.get("material").map(|m| material(&m, &out.materials[..named])).transpose()?;
             append_obj(&c, material, &mut out)?;
@@ -65,7 +67,8 @@ pub(super) fn read(list: &Cursor, materials: Vec<Material>) -> Result<Read, Scen
         let geometry = geometry(&c, kind)?;
         placed(&at, &out.materials[material], &geometry, kind)?;
         let emission = emission(&c, area(&geometry))?.unwrap_or(DVec3::ZERO);
-        out.shapes.push(Shape { name: c.key.clone(), geometry, material, emission });
+        let name = c.get("name").map_or(Ok(c.key.clone()), |name| name.text().map(str::to_owned))?;
+        out.shapes.push(Shape { name, geometry, material, emission });
         out.places.push(c.error(""));
     }
     Ok(out)

@@ -95,7 +95,7 @@ mod tests {
         let kinds = shapes::KINDS.iter().chain(&lights::KINDS).copied();
         let kinds = kinds.chain(KINDS.iter().map(|k| (k.name, k.keys))).chain([("type", &materials::KEYS[..])]);
         let keys: Vec<&str> = kinds.flat_map(|(kind, keys)| keys.iter().copied().chain([kind])).collect();
-        let all = ROOT_KEYS.iter().chain(&EXPECT_KEYS).chain(&camera::KEYS).chain(&shapes::LIGHT_KEYS);
+        let all = ROOT_KEYS.iter().chain(&EXPECT_KEYS).chain(&camera::KEYS).chain(&shapes::SHAPE_KEYS);
         for key in all.copied().chain(keys) {
             assert!(readme.contains(&format!("`{key}`")), "scenes/README.md says nothing about `{key}`");
         }

@@ -50,9 +50,28 @@ impl Run {
         self.norms().map(|norms| observed_rate(&TermMeans::from(norms)))
     }
 
+    /// The rate at which ‖T^k E‖₁ falls in one channel, or why none could be fitted.
+    pub fn observed_rate_in(&self, channel: usize) -> Option<Result<Rate, NoRate>> {
+        self.norms().map(|norms| observed_rate(&TermMeans::channel(norms, channel)))
+    }
+
+    /// The channel in which the terms fall most slowly: by the spectral radius of the matrix, or else by the largest albedo.
+    pub fn slowest_channel(&self) -> usize {
+        let radii = self.radiosity.as_ref().map(|r| DVec3::from_array(r.matrix.spectral.each_ref().map(|s| s.radius)));
+        radii.unwrap_or(self.guaranteed_rate()).max_position()
+    }
+
     /// max albedo, which ‖T‖₁ does not exceed, by channel.
     pub fn guaranteed_rate(&self) -> DVec3 {
         self.scene.max_albedo().as_dvec3()
+    }
+
+    /// For all light and for indirect light (k ≥ 2), returns true if the largest albedo bounds what a truncated series leaves out:
+    /// of all light only if every light is a surface, and never where glass changes the radiance by the square of its index.
+    pub fn bounds_from(&self) -> [bool; 2] {
+        let glass = self.description.materials.iter().any(|m| m.bsdf.lets_through());
+        let on_surfaces = self.description.lights.is_empty();
+        [on_surfaces && !glass, !glass]
     }
 
     /// What ‖T‖₁ ≤ g leaves for everything longer than K: g/(1 − g) ‖T^K E‖₁, NaN where g = 1.

@@ -23,6 +23,8 @@ use crate::engine::guided::{self, Prepared};
 use crate::progress::Progress;
 use crate::scene::bsdf::Sampling;
 use crate::scene::{Description, Scene};
+use crate::study::bounces::{Bounces, bounces};
+use crate::study::lit::{Lit, lit};
 use crate::study::roulette::{self, Radii};
 use crate::study::strategies::{self, Strategy};
 use crate::study::surface;
@@ -49,6 +51,8 @@ pub struct Asked {
     pub orders: bool,
     /// Estimators of the norms of the terms over all surfaces.
     pub surface: Vec<Estimator>,
+    /// How many bounces are enough, and which bounce lights which surface.
+    pub bounces: bool,
     /// Moments of paths without roulette, where the terms are estimated by prefixes.
     pub moments: bool,
 }
@@ -65,6 +69,7 @@ impl Default for Asked {
             against_rays: None,
             orders: false,
             surface: vec![Estimator::Single, Estimator::Prefix],
+            bounces: true,
             moments: true,
         }
     }
@@ -116,6 +121,10 @@ pub struct Run {
     pub strategies: Vec<Strategy>,
     /// ‖T^k E‖₁ by estimator.
     pub surface: Vec<(Estimator, Replicates)>,
+    /// The terms of long paths, from which follows how many bounces are enough.
+    pub bounces: Option<Bounces>,
+    /// Which bounce lights which surface.
+    pub lit: Vec<Lit>,
     /// Whether the moments of the path tracer are finite, where its roulette is constant.
     pub radii: Option<Radii>,
     /// Moments of paths without roulette.
@@ -140,6 +149,8 @@ impl Run {
             meshes: vec![],
             strategies: vec![],
             surface: vec![],
+            bounces: None,
+            lit: vec![],
             radii: None,
             moments: None,
             verdicts: vec![],
@@ -235,6 +246,10 @@ impl Run {
                 let norms = surface::norms(&self.scene, estimator, paths, &self.settings, progress);
                 self.surface.push((estimator, norms));
             }
+        }
+        if self.asked.bounces && !progress.stopped() {
+            self.bounces = bounces(&self.scene, paths, &self.settings, progress);
+            self.lit = lit(&self.description, &self.scene, paths / 4, &self.settings, progress);
         }
         // 3 % of the run; none where that is less than two samples, or where moments of so many slots would fill the memory
         let prefixes = self.asked.moments && self.asked.estimators.contains(&Estimator::Prefix);

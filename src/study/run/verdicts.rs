@@ -10,6 +10,8 @@ use crate::terms::{Functional, Series};
 pub struct RunVerdict {
     /// Which of them: `terms − path`.
     pub name: &'static str,
+    /// Both sides in words: the series, the path tracer.
+    pub sides: [&'static str; 2],
     /// Every part of both, compared.
     pub comparison: Comparison,
 }
@@ -17,20 +19,22 @@ pub struct RunVerdict {
 /// The first estimator of the terms against everything else.
 pub(super) fn verdicts(terms: &[Sampled], path: Option<&Sampled>, radiosity: Option<&Discrete>) -> Vec<RunVerdict> {
     let criterion = Criterion::default();
-    let judge = |name, a: &Series, b: &Series, allowance: &[Functional]| {
+    let judge = |name, sides, a: &Series, b: &Series, allowance: &[Functional]| {
         // terms that one of them does not see in full are not compared
         let comparison = match a.gap(b) {
             None => compare(a, b, &criterion, allowance),
             Some((from, _)) => compare(&a.before(from), b, &criterion, allowance),
         };
-        RunVerdict { name, comparison }
+        RunVerdict { name, sides, comparison }
     };
     let Some(first) = terms.first().map(|t| &t.series) else { return vec![] };
-    let other = terms.get(1).map(|other| judge("single − prefix", first, &other.series, &[]));
-    let path = path.map(|path| judge("terms − path", first, &path.series, &[]));
+    let other = terms.get(1).map(|other| {
+        judge("single − prefix", ["each term from its own paths", "all terms from one path"], first, &other.series, &[])
+    });
+    let path = path.map(|path| judge("terms − path", ["series", "path tracer"], first, &path.series, &[]));
     let matrix = radiosity.map(|r| {
         let (fine, coarse) = (&r.fine.series, &r.coarse.series);
-        judge("terms − radiosity", first, fine, &discretisation(fine, coarse))
+        judge("terms − radiosity", ["series", "radiosity matrix"], first, fine, &discretisation(fine, coarse))
     });
     other.into_iter().chain(path).chain(matrix).collect()
 }

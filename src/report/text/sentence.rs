@@ -1,0 +1,79 @@
+//! A comparison as one sentence, for the terminal and for the page.
+
+use super::number::{mark, p_value, significant};
+use crate::stats::{Comparison, Outcome, Verdict};
+
+/// The outcome of a comparison of `a` with `b`, with its mark: ✓ agrees, ✗ differs, ? inconclusive.
+///
+/// ```
+/// use fredholm::report::text::sentence::sentence;
+/// use fredholm::stats::{Criterion, compare};
+/// use fredholm::terms::Series;
+/// let nothing = Series::default();
+/// let found = compare(&nothing, &nothing, &Criterion::default(), &[]);
+/// assert_eq!(sentence(["A", "B"], &found), "? A and B: they have nothing in common to compare");
+/// ```
+pub fn sentence(sides: [&str; 2], found: &Comparison) -> String {
+    let [a, b] = sides;
+    let mark = mark(found.outcome);
+    match found.outcome {
+        Outcome::Agrees => format!("{mark} {a} = {b}{}", accuracy(found)),
+        Outcome::Differs => format!("{mark} {a} ≠ {b}: {}", differences(found)),
+        Outcome::Inconclusive => format!("{mark} {a} and {b}: {}", open(found)),
+    }
+}
+
+/// The largest difference of the whole image that the interval allows, as a fraction of the image: ± 0.13 % is 0.0013. None
+/// if the whole image was not compared.
+pub fn bound(found: &Comparison) -> Option<f64> {
+    found.rows.iter().find(|row| row.name == "total").and_then(reach)
+}
+
+/// The largest difference that the interval of a row allows, as a fraction of the quantity.
+fn reach(row: &Verdict) -> Option<f64> {
+    let reach = row.interval.0.abs().max(row.interval.1.abs()) / row.size;
+    reach.is_finite().then_some(reach)
+}
+
+fn accuracy(found: &Comparison) -> String {
+    let parts = match found.rows.len() {
+        1 => String::new(),
+        n => format!(", and so do all {n} parts"),
+    };
+    bound(found).map_or(parts.clone(), |x| format!(" to ± {} %{parts}", significant(100.0 * x, 2)))
+}
+
+/// The clearest difference, and how many there are.
+fn differences(found: &Comparison) -> String {
+    let differ = || found.rows.iter().filter(|row| row.outcome == Outcome::Differs);
+    let Some(worst) = differ().min_by(|a, b| a.p.total_cmp(&b.p)) else { return "a difference is proved".into() };
+    let by = match 100.0 * worst.effect / worst.size {
+        x if x.is_finite() => format!("{} %", significant(x, 2).replace('-', "−")),
+        _ => significant(worst.effect, 2),
+    };
+    let others = match differ().count() - 1 {
+        0 => String::new(),
+        1 => "; 1 other part differs, too".into(),
+        n => format!("; {n} other parts differ, too"),
+    };
+    format!("{} differs by {by} ({}, p = {}){others}", worst.name, worst.functional, p_value(worst.p))
+}
+
+/// What is not decided, and what would decide it.
+fn open(found: &Comparison) -> String {
+    if let Some(why) = &found.undecided {
+        return format!("no verdict, because {why}");
+    }
+    let open: Vec<&Verdict> = found.rows.iter().filter(|row| row.outcome == Outcome::Inconclusive).collect();
+    if open.is_empty() {
+        return "they have nothing in common to compare".into();
+    }
+    let names = open.iter().map(|row| row.name.as_str()).collect::<Vec<_>>().join(", ");
+    let factor = open.iter().filter_map(|row| row.needed_factor).fold(0.0, f64::max);
+    let remedy = match open.iter().find_map(|row| row.reason.as_deref()) {
+        Some(reason) => reason.to_owned(),
+        None if factor > 0.0 => format!("{} times the samples will decide", significant(factor, 2)),
+        None => "more samples will decide".into(),
+    };
+    format!("no difference found; undecided: {names} ({remedy})")
+}
