@@ -67,8 +67,8 @@ pub trait Transport: Sync {
         None
     }
 
-    /// Returns true if [`Transport::connect`] finds all of E from every state, which requires that no vertex is a delta vertex. A light
-    /// hit by scattering then need not be counted.
+    /// Returns true if [`Transport::connect`] finds all of E from every state, which requires that no vertex is a delta
+    /// vertex. A light hit by scattering then need not be counted.
     fn connects_to_all(&self) -> bool {
         true
     }
