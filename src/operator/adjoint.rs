@@ -33,7 +33,7 @@ pub enum Role {
     Radiance,
 }
 
-/// One step of a walk.
+/// One sampled step of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdjointStep<S> {
     /// The state at the end of the step; its direction points back to the start of the step.

@@ -31,16 +31,16 @@ pub enum AlgebraError {
     /// The two operands have different numbers of patches.
     #[error("one side has {left} patches, the other {right}: they act on different meshes")]
     Sizes {
-        /// Of the left operand.
+        /// Number of patches of the left operand.
         left: usize,
-        /// Of the right operand.
+        /// Number of patches of the right operand.
         right: usize,
     },
     /// The two operands have equally many patches with different areas. The adjoint of one is then not the adjoint of the
     /// other.
     #[error("patch {patch} has area {left} on one side and {right} on the other: they act on different meshes")]
     Areas {
-        /// The first patch that differs.
+        /// The first patch whose areas differ.
         patch: usize,
         /// Its area in the left operand, m².
         left: f64,
@@ -114,7 +114,7 @@ impl<'a> Expression<'a> {
         }
     }
 
-    /// S + T.
+    /// The sum S + T, where S is `self` and T is `other`.
     ///
     /// # Errors
     /// [`AlgebraError`] if they act on different spaces.
@@ -122,7 +122,7 @@ impl<'a> Expression<'a> {
         self.join(other, Node::Sum)
     }
 
-    /// S − T.
+    /// The difference S − T, where S is `self` and T is `other`.
     ///
     /// # Errors
     /// [`AlgebraError`] if they act on different spaces.
@@ -138,12 +138,12 @@ impl<'a> Expression<'a> {
         self.join(other, Node::Product)
     }
 
-    /// c T.
+    /// The multiple c T.
     pub fn scaled(&self, c: f64) -> Self {
         self.with(Node::Scaled(c, self.boxed()))
     }
 
-    /// T^k; T⁰ = I.
+    /// The power T^k; T⁰ = I.
     pub fn power(&self, k: usize) -> Self {
         self.with(Node::Power(self.boxed(), k))
     }
@@ -174,7 +174,6 @@ impl<'a> Expression<'a> {
     ///
     /// Convergence is tested on x = 1 first. For T ≥ 0 this proves convergence for every x, because |T^k x| ≤ max|x| T^k 1.
     /// For other T, a series that does not converge gives NaN, never a wrong number.
-    /// |T^k x| ≤ max|x| T^k 1. For other T a series that does not settle gives NaN, never a wrong number.
     ///
     /// # Errors
     /// [`AlgebraError::Diverges`] if Σ T^k 1 does not converge.
@@ -184,7 +183,7 @@ impl<'a> Expression<'a> {
         if probe.iter().all(|x| x.is_finite()) { Ok(out) } else { Err(AlgebraError::Diverges { steps: MOST_TERMS }) }
     }
 
-    /// T x as a new vector.
+    /// Computes T x as a new vector.
     ///
     /// # Errors
     /// [`AlgebraError::Sizes`] if x does not have one value per patch.
@@ -225,7 +224,7 @@ fn same_space(left: &[f64], right: &[f64]) -> Result<(), AlgebraError> {
 }
 
 impl Node<'_> {
-    /// T x, or T* x if `adjoint`.
+    /// T x, or T* x if `adjoint` is true.
     fn image(&self, x: &[f64], adjoint: bool) -> Vec<f64> {
         match self {
             Node::Leaf(t) => {

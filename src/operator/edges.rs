@@ -7,8 +7,8 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | κ | L₂ norm of the kernel xy/2(x² + y²)^{3/2} on a half line: its Mellin symbol at −½ | [`KAPPA`] |
-//! | √(ρ₁ρ₂) | largest over the edges of the mesh | [`essential_band`] |
+//! | κ | L₂ norm of the operator with kernel xy/2(x² + y²)^{3/2} on a half line: its Mellin symbol at −½ | [`KAPPA`] |
+//! | √(ρ₁ρ₂) | geometric mean of the albedos at an edge; the largest value over the mesh counts | [`essential_band`] |
 //!
 //! Near an edge the kernel is homogeneous of degree −2: if a function is squeezed towards the edge, its image under T is
 //! squeezed in the same way. Therefore T is not compact, and the band is continuous spectrum. As a mesh is refined, its
@@ -25,7 +25,7 @@ use super::form_factor::FormFactors;
 use super::patches::{Patch, Patches};
 use glam::DVec3;
 
-/// κ = Γ(¾)²/(2√π).
+/// κ = Γ(¾)²/(2√π): half width of the band for albedo 1.
 pub const KAPPA: f64 = 0.423_606_542_396_989_5;
 
 /// The essential band of a mesh, and the number of edges that contribute to it.

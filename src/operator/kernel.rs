@@ -31,7 +31,7 @@ pub struct Factors<S> {
     /// f: BSDF or matrix entry. At a delta vertex it is R/|cos θ|, where R is the reflected or transmitted share: once the
     /// delta functions of f and p are divided out, f cos θ/p is R/p.
     pub f: Rgb,
-    /// |cos θ|.
+    /// |cos θ| at x.
     pub cos: f32,
     /// p: density of x'. At a delta vertex it is the probability of the discrete choice.
     pub pdf: f32,

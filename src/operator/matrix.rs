@@ -43,18 +43,18 @@ pub trait LinearOperator: Sync {
         self.len() == 0
     }
 
-    /// y = T x.
+    /// Computes y = T x.
     fn apply(&self, x: &[f64], y: &mut [f64]);
 
-    /// y = T* x, where T* is the adjoint in the area inner product: ⟨z, T x⟩_A = ⟨T* z, x⟩_A.
+    /// Computes y = T* x, where T* is the adjoint in the area inner product: ⟨z, T x⟩_A = ⟨T* z, x⟩_A.
     fn apply_adjoint(&self, x: &[f64], y: &mut [f64]);
 
-    /// ⟨u, v⟩_A = Σᵢ Aᵢ uᵢ vᵢ.
+    /// The area inner product ⟨u, v⟩_A = Σᵢ Aᵢ uᵢ vᵢ.
     fn inner(&self, u: &[f64], v: &[f64]) -> f64 {
         self.area().iter().zip(u).zip(v).map(|((a, u), v)| a * u * v).sum()
     }
 
-    /// √⟨u, u⟩_A.
+    /// The area norm ‖u‖_A = √⟨u, u⟩_A.
     fn norm(&self, u: &[f64]) -> f64 {
         self.inner(u, u).sqrt()
     }
@@ -62,14 +62,14 @@ pub trait LinearOperator: Sync {
 
 /// An operator with access to single rows and single entries.
 pub trait Rows: LinearOperator {
-    /// Tᵢⱼ.
+    /// The entry Tᵢⱼ.
     fn entry(&self, i: usize, j: usize) -> f64;
 
-    /// (T x)ᵢ.
+    /// Entry i of T x.
     fn row_times(&self, i: usize, x: &[f64]) -> f64;
 }
 
-/// `diag(ρ) F` for one channel.
+/// The operator `diag(ρ) F` of one colour channel.
 #[derive(Clone, Debug)]
 pub struct PatchOperator<'a> {
     /// The form factors F.

@@ -9,7 +9,7 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | λ_j, u_j | eigenvalues by decreasing magnitude; modes with ‖u_j‖_w = 1 | [`Modes`] |
-//! | ‖T u − λ u‖_w | some eigenvalue lies within this of λ | [`Mode::residual`] |
+//! | ‖T u − λ u‖_w | residual of a mode: some eigenvalue lies within this distance of λ | [`Mode::residual`] |
 //! | r(T) | spectral radius: the rate at which T^k E decays for large k | [`radius_bounds`] |
 //! | ‖T‖₂ | largest factor by which one bounce can multiply the area norm | [`norm_2`] |
 //!
@@ -23,11 +23,11 @@ use super::matrix::{LinearOperator, PatchOperator, Rows};
 /// One eigenvalue with its mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// λ.
+    /// The eigenvalue λ.
     pub value: f64,
-    /// u, one value per patch, with ‖u‖_w = 1; the value of largest magnitude is positive.
+    /// The mode u, one value per patch, with ‖u‖_w = 1; the value of largest magnitude is positive.
     pub vector: Vec<f64>,
-    /// ‖T u − λ u‖_w.
+    /// The residual ‖T u − λ u‖_w.
     pub residual: f64,
 }
 

@@ -17,7 +17,7 @@
 
 use crate::math::{Columns, Rgb, Rng, Streams, columns};
 
-/// One sample of the kernel of T.
+/// One sample of the kernel of T: the new state, its weight and its densities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step<S> {
     /// The state x' to which the walk moves, or at which the connection ends.
@@ -129,7 +129,7 @@ pub(crate) fn scatter_one_by_one<T: Transport + ?Sized>(
 pub trait Wave<S>: Default + Send {
     /// Changes the number of states to `n`.
     fn resize(&mut self, n: usize);
-    /// State `i`.
+    /// Returns state `i`.
     fn get(&self, i: usize) -> S;
     /// Replaces state `i`.
     fn set(&mut self, i: usize, state: S);
@@ -158,9 +158,9 @@ impl<S: Copy + Default + Send> Wave<S> for Vec<S> {
 pub struct Samples {
     /// A radiance or a weight, per path.
     pub value: Columns,
-    /// Density of the technique used.
+    /// Density of the technique that chose the sample.
     pub pdf: Vec<f32>,
-    /// Density of the other technique.
+    /// Density of the other technique for the same sample.
     pub other_pdf: Vec<f32>,
 }
 

@@ -11,7 +11,7 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | t_k | a term: ⟨W, T^k E⟩, or one entry of T^k E | argument `terms` |
-//! | S_n | Σ_{k≤n} t_k | |
+//! | S_n | partial sum Σ_{k≤n} t_k | |
 //! | A | the extrapolated value | [`Accelerated::value`] |
 //! | ∇A | the derivatives ∂A/∂t_k | [`Accelerated::gradient`] |
 //! | r | a decay rate of the terms that is assumed to be known | [`known_rate`] |

@@ -117,7 +117,7 @@ impl<T: Transposed> System<'_, T> {
         Solver::ALL.into_iter().filter(|s| self.dense() || s.suits_rays()).collect()
     }
 
-    /// ‖E − (I − T) L‖/‖E‖ in the area inner product.
+    /// Relative residual of the reference solution, ‖E − (I − T) L‖/‖E‖ in the area inner product.
     pub fn residual(&self) -> f64 {
         let left = super::residual(self.operator, &self.emission, &self.light);
         self.operator.norm(&left) / self.operator.norm(&self.emission)

@@ -18,7 +18,7 @@ pub const LARGE: usize = 1000;
 pub struct Direct {
     /// The solution x of (I − T) x = E.
     pub x: Vec<f64>,
-    /// max |E − (I − T) x|.
+    /// The residual max |E − (I − T) x|.
     pub residual: f64,
 }
 

@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | x | the iterate | [`Iteration::iterate`] |
 //! | applications | products with T so far, n² multiplications each | [`Iteration::applications`] |
-//! | ‖x‖, ‖r‖ | in the area inner product | [`IterationStep`] |
+//! | ‖x‖, ‖r‖ | norms in the area inner product | [`IterationStep`] |
 //!
 //! Every iteration starts at x₀ = E, so that patches that reflect nothing are right from the start. [`Watched`] runs an
 //! iteration and measures it independently. It computes the residual of each step from the iterate with a separate product

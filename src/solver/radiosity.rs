@@ -37,7 +37,7 @@ pub struct Radiosity {
 pub struct Solution {
     /// Radiance per patch.
     pub radiance: Vec<DVec3>,
-    /// max |E − (I − T) L| per channel.
+    /// The residual max |E − (I − T) L| per channel.
     pub residual: DVec3,
 }
 

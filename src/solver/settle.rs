@@ -26,7 +26,7 @@ const ROUNDS: usize = 200;
 pub struct Settled {
     /// The solution x of (I − T) x = E.
     pub x: Vec<f64>,
-    /// ‖E − (I − T) x‖/‖E‖ in the area inner product.
+    /// The relative residual ‖E − (I − T) x‖/‖E‖ in the area inner product.
     pub residual: f64,
     /// Number of applications of T.
     pub applications: usize,

@@ -9,7 +9,7 @@ use super::FormFactors;
 /// The measured properties of a matrix of form factors; every run prints them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Invariants {
-    /// max |1 − Σⱼ Fᵢⱼ|: small in a closed scene.
+    /// Largest error of a row sum, max |1 − Σⱼ Fᵢⱼ|; it is small in a closed scene.
     pub closure: f64,
     /// Smallest row sum.
     pub row_sum_min: f64,

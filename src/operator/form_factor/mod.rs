@@ -38,9 +38,9 @@ pub use visibility::{Visibility, VisibilitySampling};
 pub struct FormFactors {
     /// Number of patches.
     pub n: usize,
-    /// Fᵢⱼ at `i·n + j`.
+    /// The form factors: Fᵢⱼ at `i·n + j`.
     pub f: Vec<f32>,
-    /// Aᵢ, m².
+    /// The areas Aᵢ of the patches, m².
     pub area: Vec<f64>,
     /// Number of visibility rays traced.
     pub rays: u64,
@@ -153,7 +153,7 @@ impl Scratch {
 }
 
 impl Pairs<'_> {
-    /// Aᵢ Fᵢⱼ.
+    /// The product Aᵢ Fᵢⱼ, m².
     fn exchange(&self, i: usize, j: usize, work: &mut Scratch) -> f64 {
         let (a, b) = (&self.patches[i], &self.patches[j]);
         if let (Some((_, radius)), true) = (a.ball, a.ball == b.ball) {

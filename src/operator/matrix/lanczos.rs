@@ -66,7 +66,7 @@ pub fn extremes<T: LinearOperator + ?Sized>(t: &T, weight: &Weight, tolerance: f
 /// A Ritz value with its error bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ritz {
-    /// θ.
+    /// The Ritz value θ.
     pub value: f64,
     /// Some eigenvalue lies within this distance of θ.
     pub residual: f64,

@@ -10,7 +10,7 @@
 //!
 //! Sums and powers of T are self-adjoint in the same weight.
 
-/// One weight per patch.
+/// The weight w: one number per patch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weight(Vec<f64>);
 
@@ -31,12 +31,12 @@ impl Weight {
         &self.0
     }
 
-    /// ⟨u, v⟩_w.
+    /// The inner product ⟨u, v⟩_w.
     pub fn inner(&self, u: &[f64], v: &[f64]) -> f64 {
         self.0.iter().zip(u).zip(v).map(|((w, u), v)| w * u * v).sum()
     }
 
-    /// ‖u‖_w = √⟨u, u⟩_w.
+    /// The norm ‖u‖_w = √⟨u, u⟩_w.
     pub fn norm(&self, u: &[f64]) -> f64 {
         self.inner(u, u).sqrt()
     }

@@ -41,7 +41,7 @@ pub(super) enum Shape {
     Curved(Grid),
 }
 
-/// Finds the cell of a point.
+/// Search structure that finds the cell of a point.
 #[derive(Clone, Debug)]
 pub(super) enum Search {
     Flat(Finder),

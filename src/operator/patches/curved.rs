@@ -168,7 +168,7 @@ mod tests {
                 assert!(a.length() < f.area * (1.0 + 1e-12) && a.length() > 0.8 * f.area);
                 assert!(outward * a.dot(centroid(&f.polygon) - c) >= 0.0);
                 assert!(outward != 0.0 || a.dot(DVec3::new(0.6, 0.0, 0.8)) > 0.0);
-                // planar
+                // facets are planar
                 assert!(f.polygon.iter().all(|p| a.normalize().dot(*p - f.polygon[0]).abs() < 1e-12));
             }
         }

@@ -22,13 +22,13 @@ enum Node {
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    /// Size of the primitive, metres: the unit of all tolerances.
+    /// Size of the primitive, metres; tolerances are shares of it.
     size: f64,
     /// Lengths below this count as zero, metres.
     tiny: f64,
 }
 
-/// Lengths below this share of the primitive's size count as zero, whatever else does.
+/// Lengths below this share of the primitive's size always count as zero.
 const TINY: f64 = 1e-9;
 
 impl Tree {

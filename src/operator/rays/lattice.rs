@@ -7,7 +7,7 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | φ₂ | radical inverse: the bits of s mirrored at the binary point | [`Lattice::at`] |
-//! | { } | fractional part | wrapping arithmetic of 32 bits |
+//! | { } | fractional part | wrapping 32-bit arithmetic |
 //!
 //! The first 2^m points are a lattice for every m. Rows are therefore nested, and both halves of a row are lattices, too.
 //! The light that a patch sees jumps at edges. For such functions a shifted lattice has less variance than a scrambled net,

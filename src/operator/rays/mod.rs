@@ -59,7 +59,7 @@ pub struct Rays {
     pub n: usize,
     /// N, the number of rays per row; it is even.
     pub per_row: usize,
-    /// Aᵢ, m².
+    /// The areas Aᵢ of the patches, m².
     pub area: Vec<f64>,
     /// The hits of row i begin at `i·N`: those of its first half, ascending, then those of its second half, ascending.
     hits: Vec<Hit>,

@@ -111,7 +111,7 @@ impl<'a, T: LinearOperator + ?Sized> Coarse<'a, T> {
     /// The projection of `fine`. For every fine patch, `parent` holds the number of its union and `area` its area.
     ///
     /// # Panics
-    /// If the three differ in length.
+    /// If `parent` and `area` do not have one entry per patch of `fine`.
     pub fn new(fine: &'a T, parent: &'a [u32], area: &'a [f64]) -> Self {
         assert!(parent.len() == fine.len() && area.len() == fine.len(), "one parent and one area per patch");
         let mut coarse_area = vec![0.0; parent.iter().max().map_or(0, |m| *m as usize + 1)];

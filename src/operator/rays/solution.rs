@@ -49,9 +49,9 @@ pub struct Light<'a> {
 /// The solution L, computed by the Neumann series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solved {
-    /// L per patch.
+    /// The radiance L per patch.
     pub radiance: Vec<DVec3>,
-    /// max |D − (I − T) u| per channel.
+    /// The residual max |D − (I − T) u| per channel.
     pub residual: DVec3,
     /// Number of applications of T.
     pub steps: usize,
@@ -106,7 +106,7 @@ impl<'a> Light<'a> {
         (0..self.rays.n).into_par_iter().with_min_len(64).map(of).collect()
     }
 
-    /// (F x)ᵢ.
+    /// The mean of x over the hits of row i, (F x)ᵢ.
     fn mean(&self, x: &[Record], half: Half, i: usize) -> DVec3 {
         let [a, b] = self.rays.row(i);
         match half {

@@ -130,11 +130,11 @@ pub struct Point {
     pub step: usize,
     /// Work so far, in products with T.
     pub applications: f64,
-    /// ‖x‖_A.
+    /// ‖x‖ in the area inner product.
     pub norm: f64,
-    /// ‖E − (I − T) x‖_A.
+    /// Residual ‖E − (I − T) x‖ in the area inner product.
     pub residual: f64,
-    /// ‖x − L‖_w/‖L‖_w.
+    /// Relative error ‖x − L‖_w/‖L‖_w, with the weight w = A/ρ.
     pub error: f64,
     /// Seconds so far.
     pub seconds: f64,
