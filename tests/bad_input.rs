@@ -85,7 +85,7 @@ fn scenes_and_files_that_are_not_there_exit_with_3() {
         ("info no_sky.toml", "cannot read `none.exr`: No such file"),
         ("render no_sky.toml", "lights[0].file"),
         ("info text_sky.toml", "cannot read `text.png`: "),
-        ("info caustic --set lights=[{type=\"sun\"}]", "`sun` is no type of light"),
+        ("info caustic --set lights=[{type=\"sun\"}]", "`sun` is not a type of light"),
         ("info caustic --set materials.glass.ior=0.5", "ior 0.5 is outside [1, 10]"),
         ("info caustic --set materials.floor={type=\"diffuse\",texture=\"none.png\"}", "materials.floor"),
         ("compare none none", "--> none"),
