@@ -105,8 +105,7 @@ impl ByExpectation {
             Self::Window { .. } if w < LEAST_SHARE => w / LEAST_SHARE,
             Self::Window { .. } => w.clamp(1.0, Self::MOST as f32),
         };
-        // a path that splits has a large weight, and it becomes light, and ends, sooner or later: only its survival is
-        // bounded
+        // a path that splits has a large weight; sooner or later its weight is small and it ends: only survival is bounded
         let q = 1.0 - if copies > 1.0 { copies } else { copies.max(LEAST_SURVIVAL).min(at_last(v)) };
         match t.last_resort() {
             Some((vertex, last)) if v >= vertex && q >= 0.0 => q.max(last),

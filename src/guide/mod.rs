@@ -72,7 +72,7 @@ pub struct Recipe {
     pub fineness: Fineness,
     /// β, the share of plain BSDF sampling; 1 means no guide.
     pub bsdf: f64,
-    /// Returns true if rays must find the lamps too, because no connections are made.
+    /// True if rays must find the lamps too, because no connections are made.
     pub emission: bool,
 }
 
@@ -89,7 +89,7 @@ const NONE: u32 = u32::MAX;
 /// A guide: for every patch a density of directions, a choice of lamps and the expected reflected radiance.
 pub struct Guide {
     patches: Patches,
-    /// The tables of directions. `tables` gives the number of its table for each patch.
+    /// The tables of directions; `tables[i]` is the number of the table of patch i, or `NONE`.
     warps: Vec<Warp>,
     tables: Vec<u32>,
     places: Places,

@@ -118,7 +118,7 @@ struct Walker<S> {
     key: Key,
     /// Number of copies into which its path has split.
     siblings: u32,
-    /// Returns true if another copy has already added this vertex's contribution and played its roulette.
+    /// True if another copy has already added this vertex's contribution and played its roulette.
     scored: bool,
 }
 

@@ -77,7 +77,7 @@ pub struct CameraDescription {
     pub size: [u32; 2],
 }
 
-/// The sides of a surface that scatter and emit light. The other side blocks light and is black.
+/// The sides of a surface that take part in light transport. The other side blocks light and is black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
     /// Both sides reflect.

@@ -80,7 +80,7 @@ pub struct Scene {
     accel: Accel,
     /// True if waves are traced in packets of rays.
     packets: bool,
-    /// For every side: its BSDF, largest albedo and emission, and whether it scatters or emits.
+    /// For every side: its BSDF, largest albedo and emission, and whether it takes part in light transport.
     bsdf: Vec<Bsdf>,
     albedo: Vec<Rgb>,
     emission: Vec<Rgb>,
@@ -180,7 +180,8 @@ impl Scene {
         self.takes_part.len() as u32
     }
 
-    /// Returns true if a side scatters or emits light. All other sides block light and are black.
+    /// Returns true if a side takes part in light transport: every front, and the back of a two-sided surface. All other sides
+    /// block light and are black.
     pub fn takes_part(&self, side: Side) -> bool {
         self.takes_part[side as usize]
     }
@@ -270,7 +271,7 @@ impl Scene {
         self.last_resort
     }
 
-    /// The same scene with the last resort that paths end from `vertex` on with probability `q` at least.
+    /// The same scene, but paths that nothing else ends are terminated from `vertex` on with a probability of at least `q`.
     #[must_use]
     pub fn ending_at(self, vertex: usize, q: f32) -> Self {
         Self { last_resort: Some((vertex, q)), ..self }

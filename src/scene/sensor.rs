@@ -108,12 +108,12 @@ pub struct SurfaceSensor {
     sides: Vec<u32>,
     /// Cumulative fraction of the area.
     cdf: Vec<f64>,
-    /// Area of all sides that scatter or emit, m².
+    /// Area of all sides that take part in light transport, m².
     pub area: f64,
 }
 
 impl SurfaceSensor {
-    /// All sides that scatter or emit: both of a two-sided surface, else the front.
+    /// All sides that take part in light transport: both of a two-sided surface, else the front.
     pub fn new(scene: &Scene) -> Self {
         let sides: Vec<u32> = (0..scene.sides()).filter(|&s| scene.takes_part(s)).collect();
         let areas: Vec<f64> = sides.iter().map(|&s| scene.area(s)).collect();

@@ -11,9 +11,9 @@
 //! | t(ω_o) | refracted direction (−x/η, −y/η, −g/η), by Snell's law | [`Dielectric::sample`] |
 //! | p | probability of choosing reflection: F, or a constant | [`Odds::of_reflection`] |
 //!
-//! r(ω_o) is the mirror direction. Refraction into the denser side narrows a beam: radiance grows by η², so radiance divided
-//! by η² is constant along a ray. Flux does not change. References: Born and Wolf, *Principles of Optics* (7th ed. 1999),
-//! section 1.5; Veach, *Non-symmetric Scattering in Light Transport Algorithms* (EGWR 1996).
+//! r(ω_o) is the mirror direction. Refraction into the denser side narrows a beam: radiance grows by η². So radiance divided
+//! by the squared index of refraction is constant along a ray. Flux does not change. References: Born and Wolf, *Principles
+//! of Optics* (7th ed. 1999), section 1.5; Veach, *Non-symmetric Scattering in Light Transport Algorithms* (EGWR 1996).
 
 use super::fresnel::Interface;
 use super::ggx::{Ggx, Microfacets};

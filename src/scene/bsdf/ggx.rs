@@ -34,7 +34,7 @@ use std::f32::consts::PI;
 /// GGX microfacets as described in a scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
-    /// Roughness α as it enters the distribution (not the square root of α).
+    /// Roughness α as it enters the distribution; it is not squared first.
     pub alpha: f64,
     /// Model of masking and shadowing.
     pub masking: Masking,

@@ -67,7 +67,9 @@ pub struct Lights {
     cdf: Vec<f32>,
     /// For every primitive the number of its light.
     of_prim: Vec<u32>,
+    /// Area of every light, m²; 0 for a light without a surface.
     area: Vec<f64>,
+    /// For every primitive p_A, m⁻²; 0 if it does not emit.
     pub(crate) density: Vec<f32>,
     /// The sky, and its number among the lights.
     pub(crate) environment: Option<(Environment, u32)>,

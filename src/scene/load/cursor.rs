@@ -102,7 +102,7 @@ impl<'a> Cursor<'a> {
         if x.is_finite() { Ok(x) } else { Err(self.error(format!("{x} is not finite")).help("write a finite number")) }
     }
 
-    /// A length in metres, at most [`LARGEST_LENGTH`] in absolute value.
+    /// A length in metres, at most 1e12 in absolute value.
     pub fn length(&self) -> Result<f64, SceneError> {
         let x = self.number()?;
         if x.abs() <= LARGEST_LENGTH {
