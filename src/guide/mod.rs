@@ -17,11 +17,6 @@
 //! r ≥ β, and a connection needs no look-up in the table. So the densities of a [`Step`] belong to the parts that can find a
 //! lamp, while its weight is divided by the whole of p.
 //!
-//! **Weights of the techniques.** p is a mixture, and β cos θ/π, the part of the BSDF, is the one that looks for lamps. Hits and
-//! connections are weighed by this part against the density of the connection: the two weights of a path add up to one, which is all
-//! that they have to do, the value of a hit stays bounded as r ≥ β, and a connection needs no table. So the densities of a
-//! [`Step`] are those of the parts that can find a lamp, while its weight is over the whole of p.
-//!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | L_h | radiance of the patches, computed from stored rays | [`incident`] |
