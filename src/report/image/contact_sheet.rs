@@ -20,7 +20,7 @@ const SHEET: f64 = 1600.0;
 pub struct Cell<'a> {
     /// Line above the image, such as `T3 E`.
     pub label: String,
-    /// Line of text above the image, such as `T3 E`.
+    /// Linear RGB; every cell of a sheet has the same size.
     pub pixels: &'a [[f32; 3]],
     /// Gain with which it is shown; if none, [`auto_gain`] chooses it.
     pub gain: Option<f64>,
