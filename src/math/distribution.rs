@@ -112,6 +112,9 @@ pub struct Table {
 impl Table {
     /// A distribution with probabilities in proportion to `weight(column, row)`; `None` if no weight is positive. `size` is
     /// [columns, rows].
+    ///
+    /// # Panics
+    /// As [`Discrete::new`], for each row and for the sums of rows.
     pub fn new(size: [u32; 2], weight: impl Fn(u32, u32) -> f64) -> Option<Self> {
         let (mut sums, mut columns) = (vec![], vec![]);
         for row in 0..size[1] {
