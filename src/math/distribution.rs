@@ -111,7 +111,7 @@ pub struct Table {
 
 impl Table {
     /// A distribution with probabilities in proportion to `weight(column, row)`; `None` if no weight is positive. `size` is
-    /// [columns, rows].
+    /// `[columns, rows]`.
     ///
     /// # Panics
     /// As [`Discrete::new`], for each row and for the sums of rows.
