@@ -93,7 +93,11 @@ fn claims(scene: &Scene, a: &Answers<'_>, [(_, path), (_, matrix)]: [(&str, &Com
         // T1 through the camera is read from E, so that T2 is the first term that tests the matrix
         claim(same_as_matrix.contains("T2"), "the term k = 2 agrees with the matrix", same_as_matrix.clone()),
         claim(same_as_matrix.contains("total"), "the whole image agrees with the matrix", same_as_matrix),
-        claim(matrix.outcome != Outcome::Differs, "no term differs significantly from the matrix", format!("{:?}", matrix.outcome)),
+        claim(
+            matrix.outcome != Outcome::Differs,
+            "no term differs significantly from the matrix",
+            format!("{:?}", matrix.outcome),
+        ),
         claim(term < 1.0, "no term exceeds its bound", format!("at most {} of the bound", percent(term))),
         claim(tail < 1.0, "the tail does not exceed its bound", format!("at most {} of the bound", percent(tail))),
         claim(lit == 2, "k = 2 is the first term that lights the ceiling", format!("k = {lit}")),

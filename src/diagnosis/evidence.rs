@@ -68,7 +68,7 @@ pub struct Evidence {
     pub errors: &'static str,
     /// Names of the regions.
     pub regions: Vec<String>,
-    /// Correlation with the reference as it stands, mirrored left to right, and upside down.
+    /// Correlation with the reference itself, with its left-right mirror image, and with the reference upside down.
     pub likeness: [f64; 3],
 }
 
