@@ -110,8 +110,8 @@ fn a_scene_that_keeps_its_light_is_refused_with_the_remedy() {
         assert_eq!(code, 3, "{err}");
         insta::allow_duplicates! {
             insta::assert_snapshot!(err, @r"
-            error: a channel keeps all its light, so L = E + T L has no solution
-            help: lower a reflectance below 1, or look at the first terms alone with --worlds terms,path --roulette none
+            error: one colour channel loses no light, so L = E + T L has no solution
+            help: lower a reflectance below 1, or compute only the first terms with --worlds terms,path --roulette none
             ");
         }
     }
