@@ -64,7 +64,7 @@ pub struct Finding {
     pub interval: (f64, f64),
     /// ln E_n(0) now: the evidence against "no bias" in this functional and channel.
     pub log_e: f64,
-    /// Adjusted p-value. Without a bias, evidence as strong as this has at most this probability, whenever one stops and for
+    /// Adjusted p-value. Without a bias, evidence as strong as this has at most this probability, for any stopping rule and
     /// any number of quantities. The quantity is rejected if p ≤ α.
     pub p: f64,
     /// The smallest bias that would have been detected by now with probability 1 − β.

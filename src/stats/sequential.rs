@@ -15,7 +15,7 @@
 //! | δ | (mean − m)/σ, the effect in standard deviations of one batch | |
 //! | g | variance of the prior of δ; it decides where the test is most sensitive, not whether it is valid | [`PRIOR`] |
 //! | E_n(m) | e-value against "the mean is m" | [`MeanSequence::log_e`] |
-//! | r_n | half width of the confidence sequence | [`MeanSequence::radius`] |
+//! | r_n | half width of the confidence sequence, an interval that is valid for all n at once | [`MeanSequence::radius`] |
 //! | a | allowance: only means outside m ± a count as evidence against m | `allowance` |
 //!
 //! p_δ is the density of the batches up to their scale (of x_i/|x_1|), which does not contain σ. So E_n is a likelihood

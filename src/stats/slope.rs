@@ -40,7 +40,7 @@ const SKEW: f64 = 8.0;
 /// A slope in log-log scale with its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slope {
-    /// b.
+    /// b, the slope.
     pub slope: f64,
     /// Standard error of b.
     pub std_error: f64,
