@@ -1,11 +1,19 @@
-//! What form factors cost and how right they are:
+//! Cost and accuracy of form factors:
 //! `cargo bench --bench factors [-- cube:1944 cornell:2305 cornell:8602 rays:33000:1024 split:33000:256
 //! obj:200000:1000000:256 reference]`.
 //!
-//! Prints CPU seconds of all threads (wall time in brackets) and errors. A cube is compared with the closed contour of
-//! every pair; `split` tells how much of the error of stored rays is that of D and of T, by seeds; `obj` is a room of so many
-//! triangles, patches and rays; with `reference` the Cornell box is compared with a matrix of 256, then 6400 visibility rays per pair.
-//! u = L − E is the reflected light, red channel; its error is the area-weighted relative L² norm.
+//! Prints CPU seconds of all threads (wall time in brackets) and errors.
+//!
+//! | argument | measures |
+//! |---|---|
+//! | `cube:PATCHES` | a cube, compared with the exact form factor (contour integral) of every pair |
+//! | `cornell:PATCHES` | form factors of the Cornell box |
+//! | `rays:PATCHES:RAYS` | stored rays in the Cornell box, with `RAYS` rays per row |
+//! | `split:PATCHES:RAYS` | the parts of the error of stored rays that come from D (direct light) and from T, by comparison of seeds |
+//! | `obj:TRIANGLES:PATCHES:RAYS` | stored rays in a room from an OBJ file |
+//! | `reference` | additionally compares the Cornell box with a matrix of 256, then 6400 visibility rays per pair |
+//!
+//! u = L − E is the reflected light in the red channel. Its error is the area-weighted relative L² norm.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
 use fredholm::operator::form_factor::{FormFactors, VisibilitySampling, polygon_to_polygon};
@@ -48,7 +56,8 @@ fn rays(n: usize, per_row: usize, with_reference: bool) {
     by_rays(&load::scene("cornell", &load::Options::default()).unwrap().description, n, per_row, with_reference);
 }
 
-/// Stored rays, with the bar from their halves; `reference`: against those of another seed as well.
+/// Stored rays, with the error bar computed from the two halves of the rays. If `with_reference`, also compares with the
+/// rays of another seed.
 fn by_rays(description: &Description, n: usize, per_row: usize, with_reference: bool) {
     let scene = timed("scene", || Scene::new(description));
     let patches = timed("patches", || Patches::new(description, n).unwrap());
@@ -75,7 +84,7 @@ fn by_rays(description: &Description, n: usize, per_row: usize, with_reference: 
     println!("  bar of u {}", three(light.norm(&noise) / size));
     drop(noise);
     if with_reference {
-        // two independent solutions differ by √2 of the error of one
+        // two independent solutions differ by √2 times the error of one
         let first = reflected(solved.radiance);
         drop(rows);
         let rows = shoot(1);
@@ -90,14 +99,14 @@ fn three(x: DVec3) -> String {
     format!("{:.2e} {:.2e} {:.2e}", x.x, x.y, x.z)
 }
 
-/// The most memory held so far.
+/// Peak memory of the process so far.
 fn memory() -> String {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:")).unwrap();
     format!("{:.2} GB at most", line.trim().trim_end_matches(" kB").parse::<f64>().unwrap() * 1.024e-6)
 }
 
-/// A room of many triangles by stored rays, from its OBJ.
+/// Stored rays in a room of many triangles, loaded from an OBJ file.
 fn obj(triangles: usize, n: usize, per_row: usize, with_reference: bool) {
     let folder = std::env::temp_dir().join(format!("fredholm-obj-{triangles}"));
     std::fs::create_dir_all(&folder).unwrap();
@@ -109,7 +118,7 @@ fn obj(triangles: usize, n: usize, per_row: usize, with_reference: bool) {
     by_rays(&loaded.description, n, per_row, with_reference);
 }
 
-/// A room open to the front with a wavy floor, a torus, a ball and a lamp, as about so many triangles.
+/// Writes a room that is open at the front, with a wavy floor, a torus, a ball and a lamp, of about `triangles` triangles.
 fn write_room(folder: &std::path::Path, triangles: usize) {
     use std::f64::consts::{PI, TAU};
     use std::fmt::Write;
@@ -143,7 +152,7 @@ fn write_room(folder: &std::path::Path, triangles: usize) {
         let r = 0.17 + 0.06 * b.cos();
         v(0.3 + r * a.cos(), 0.3 + 0.06 * b.sin() + 0.5 * r * a.cos(), 0.45 - r * a.sin())
     });
-    // rings that stay off the poles, where triangles would have no area
+    // rings that avoid the poles, where triangles would have no area
     sheet("ball", part(0.2, 2.0), &|s, t| {
         let (a, b) = (TAU * s, PI * (0.002 + 0.996 * t));
         v(0.7 + 0.17 * b.sin() * a.cos(), 0.3 - 0.17 * b.cos(), 0.6 - 0.17 * b.sin() * a.sin())
@@ -164,7 +173,7 @@ fn write_room(folder: &std::path::Path, triangles: usize) {
     std::fs::write(folder.join("room.mtl"), materials).unwrap();
 }
 
-/// Where the error of u comes from, by seeds: D and T of two seeds each, combined.
+/// Sources of the error of u: combines D and T from two seeds each.
 fn split(n: usize, per_row: usize) {
     let description = load::scene("cornell", &load::Options::default()).unwrap().description;
     let scene = Scene::new(&description);
@@ -195,7 +204,7 @@ fn split(n: usize, per_row: usize) {
     println!("  bar of u               {}", three(lights[0].norm(&lights[0].noise(&radiance)) / lights[0].norm(&a)));
 }
 
-/// Runs it and prints what it cost.
+/// Runs a closure and prints its time.
 fn timed<R>(what: &str, f: impl FnOnce() -> R) -> R {
     let (cpu, wall) = (cpu_seconds(), Instant::now());
     let result = f();
@@ -219,7 +228,7 @@ fn cube(n: usize) {
     println!("cube, {} patches", patches.len());
     let f = timed("form factors", || dense(&patches, &scene, VisibilitySampling::default()));
     let invariants = f.invariants();
-    // the closed contour of 4×4 parts of each patch: the far rule is the only approximation
+    // exact value: the contour integral of 4×4 parts of each patch; only the rule for distant patches is approximate
     let (mut worst, mut square, mut whole) = (0.0f64, 0.0, 0.0);
     for i in (0..patches.len()).step_by(patches.len() / 24) {
         for (j, b) in patches.iter().enumerate().filter(|(_, b)| b.primitive != patches[i].primitive) {
@@ -237,7 +246,7 @@ fn cube(n: usize) {
     );
 }
 
-/// The mean of 4×4 parts of both, so that every distance is long against the parts.
+/// Form factor as the mean over 4×4 parts of both patches, so that all distances are large compared with the parts.
 fn in_parts(a: &[DVec3], b: &[DVec3]) -> f64 {
     let parts = |p: &[DVec3]| -> Vec<[DVec3; 4]> {
         let (u, v) = ((p[1] - p[0]) / 4.0, (p[3] - p[0]) / 4.0);
@@ -283,14 +292,14 @@ fn cornell(n: usize, with_reference: bool) {
     );
 }
 
-/// Area-weighted relative L² distance.
+/// Area-weighted relative L² distance of `u` from `truth`.
 fn distance(patches: &Patches, u: &[f64], truth: &[f64]) -> f64 {
     let norm =
         |f: &dyn Fn(usize) -> f64| patches.iter().enumerate().map(|(i, p)| p.area * f(i).powi(2)).sum::<f64>().sqrt();
     norm(&|i| u[i] - truth[i]) / norm(&|i| truth[i])
 }
 
-/// CPU seconds of all threads so far.
+/// CPU seconds of all threads of this process so far.
 fn cpu_seconds() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap();
     let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();

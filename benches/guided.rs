@@ -1,12 +1,16 @@
-//! What a guide gains: `cargo bench --bench guided [-- SCENE SPP PATCHES RAYS BSDF SEEDS]`.
+//! Gain in efficiency by a guide: `cargo bench --bench guided [-- SCENE SPP PATCHES RAYS BSDF SEEDS]`.
 //!
 //! ```text
-//! gain = (relMSE · seconds) of the BSDF / (relMSE · seconds) of the guide        relMSE = mean of (I − R)²/(R² + ε²)
+//! gain = (relMSE · seconds) without a guide / (relMSE · seconds) with the guide        relMSE = mean of (I − R)²/(R² + ε²)
 //! ```
 //!
-//! R is a guided reference of 16 times the samples from a stream of its own, whose error adds the same to both; ε is a tenth of the
-//! image mean. The seconds are those that all threads worked (Linux tells), so that other work on the machine matters little. The
-//! errors have heavy tails, so every gain is the median over seeds, with the least and the greatest. `in 60 s` is the gain at equal
+//! I is the image and R a guided reference with 16 times the samples and independent random numbers. The error of the
+//! reference affects both sides equally. ε is a tenth of the image mean.
+//!
+//! Seconds are CPU seconds of all threads (read from Linux), so that other load on the machine has little effect. The errors
+//! have heavy tails. Each gain is therefore the median over seeds, printed with the smallest and the largest value.
+//! `in 60 s` is the gain at equal time if 60 seconds of work include the preparation of the guide: the gain times
+//! (1 − preparation/60 s).
 //! time when 60 seconds of work include the guide's preparation: times 1 − preparation/60 s.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
@@ -21,7 +25,7 @@ use fredholm::scene::{Camera, Scene, load};
 use fredholm::terms::TermFilm;
 use glam::DVec3;
 
-/// Seconds that this process has worked, in all its threads; hundredths.
+/// CPU seconds of all threads of this process so far, to a hundredth.
 fn worked() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap();
     let after_name = stat.rsplit(") ").next().unwrap();
@@ -34,8 +38,8 @@ struct Run {
     seconds: f64,
 }
 
-/// Estimator and roulette: without a guide nobody knows what to expect, and paths end by albedo: from vertex 2 on, and where terms are
-/// kept from vertex K on.
+/// Estimator and roulette. Without a guide the expected light is not known, and paths end by albedo instead: from vertex 2
+/// on, and from vertex K on if the terms are kept.
 const KINDS: [&str; 4] = ["prefix", "prefix window", "path", "window"];
 
 fn run<T: Expecting>(t: &T, camera: &Camera, what: &str, spp: u32, key: Key) -> Run
@@ -61,7 +65,7 @@ where
     Run { film, seconds: worked() - start }
 }
 
-/// The median, the least and the greatest.
+/// The median, the smallest and the largest value.
 fn middle(mut all: Vec<f64>) -> [f64; 3] {
     all.sort_by(f64::total_cmp);
     [all[all.len() / 2], all[0], all[all.len() - 1]]
@@ -80,7 +84,7 @@ fn rel_mse(film: &TermFilm, reference: &[DVec3]) -> f64 {
     image(film).iter().zip(reference).map(error).sum::<f64>() / reference.len() as f64
 }
 
-/// Median over the pixels of se²: what the few fireflies of the mean do not hide.
+/// Median over the pixels of se². Unlike the mean, it is not dominated by a few fireflies.
 fn median_variance(film: &TermFilm) -> f64 {
     let mut all: Vec<f64> =
         (0..film.shape.pixels()).map(|p| film.pixel(p, 0..film.shape.slots).1.powf(2.0).element_sum()).collect();

@@ -1,6 +1,7 @@
-//! What a path costs: `cargo bench --bench paths [-- SPP]`, one thread, Cornell box 256×256, k = 0..=8, MIS.
+//! Cost of a path: `cargo bench --bench paths [-- SPP]`, one thread, Cornell box 256×256, k = 0..=8, MIS.
 //!
-//! Prints nanoseconds per path, medians of five interleaved rounds, and the ratio of keeping all terms to keeping their sum.
+//! Prints nanoseconds per path, as medians of five interleaved rounds, and the cost of keeping all terms relative to keeping
+//! only their sum.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
 use fredholm::estimator::render::{Amount, render};
@@ -14,7 +15,7 @@ use fredholm::progress::Progress;
 use fredholm::scene::{Scene, load};
 use std::time::Instant;
 
-/// The prefix estimator with every term added to one slot: the same walk, nothing kept apart.
+/// The prefix estimator with all terms added to one slot: the same paths, without separate terms.
 struct OnlyTheSum(Prefix);
 
 struct OneSlot<'a, S>(&'a mut S);

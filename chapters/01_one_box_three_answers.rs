@@ -1,10 +1,10 @@
-//! Chapter 1, one box, three answers: the light in a Cornell box by the series, by a path tracer and by a matrix.
+//! Chapter 1, one box, three answers: the light in a Cornell box from the series, a path tracer and a matrix.
 //!
 //! ```text
 //! L = E + T L = Σ T^k E,   k = 0, 1, …, K, and the tail
 //! ```
 //!
-//! Writes the figures and tables of the text into a folder and checks every claim the text makes:
+//! Writes the figures and tables of the chapter into a folder, and checks every claim of the text:
 //! `fredholm chapter 1`, or `cargo run --release --example 01_one_box_three_answers -- --out DIR`.
 #![allow(clippy::print_stdout)] // a program, not the library
 
@@ -34,7 +34,8 @@ fn setup() -> Result<Run, SceneError> {
     let room = load::scene("cornell", &small)?.description;
     let scene = Scene::new(&room);
     let settings = Settings { spp: 256, max_bounces: 8, patches: 600, ..Settings::default() };
-    // every term from paths of its own; and ‖T^k E‖₁ in the same way, from all surfaces instead of from the eye
+    // each term has its own paths; the norms ‖T^k E‖₁ are estimated in the same way, but from all surfaces instead of the
+    // camera
     let (estimators, surface) = (vec![Estimator::Single], vec![Estimator::Single]);
     Ok(Run::new(room, scene, settings, Asked { estimators, surface, ..Asked::default() }))
 }
@@ -49,7 +50,7 @@ struct Answers<'a> {
 }
 
 fn solve(mut run: Run) -> Result<Run, MatrixError> {
-    run.solve(Progress::NONE)?; // nobody watches, and nothing stops it
+    run.solve(Progress::NONE)?; // no progress display, no interruption
     Ok(run)
 }
 
@@ -61,7 +62,7 @@ fn answers(run: &Run) -> Option<Answers<'_>> {
 
 // ANCHOR: compare
 fn verdicts(run: &Run) -> Option<[(&'static str, &Comparison); 2]> {
-    // the run has compared its first answer with every other
+    // the run has compared its first result with each of the others
     let [path, matrix] = run.verdicts.as_slice() else { return None };
     Some([("series − path tracer", &path.comparison), ("series − matrix", &matrix.comparison)])
 }
@@ -69,16 +70,16 @@ fn verdicts(run: &Run) -> Option<[(&'static str, &Comparison); 2]> {
 
 // ANCHOR: claim
 fn claims(scene: &Scene, a: &Answers<'_>, [(_, path), (_, matrix)]: [(&str, &Comparison); 2]) -> Vec<Claim> {
-    let k = a.norms.mean.len() - 2; // K: the tail has a place of its own
+    let k = a.norms.mean.len() - 2; // K, because the last entry is the tail
     let proved = |c: &Comparison| {
         let rows = c.rows.iter().filter(|row| row.outcome == Outcome::Agrees);
         format!("agree: {}", rows.map(|row| row.name.as_str()).collect::<Vec<_>>().join(", "))
     };
     let (same_as_path, same_as_matrix) = (proved(path), proved(matrix));
 
-    // norms and bounds in every channel, with five standard errors to spare
+    // norms and bounds in every channel, with a margin of five standard errors
     let g = scene.max_albedo().as_dvec3();
-    let emission = a.matrix.matrix.surface[0]; // known without noise
+    let emission = a.matrix.matrix.surface[0]; // without noise
     let seen = |n: usize| a.norms.estimate(n..n + 1).mean + 5.0 * a.norms.estimate(n..n + 1).std_error;
     let of_bound = |n: usize| (seen(n) / (emission * g.powf(n as f64))).max_element();
     let term = (1..=k).map(of_bound).fold(0.0, f64::max);
@@ -89,19 +90,23 @@ fn claims(scene: &Scene, a: &Answers<'_>, [(_, path), (_, matrix)]: [(&str, &Com
     let claim = |holds: bool, says, found: String| Claim { says, found, holds };
     vec![
         claim(same_as_path.contains("total"), "terms and tail add up to the path tracer's image", same_as_path),
-        // T1 through the camera is gathered from E: the first term that the matrix has a part in is T2
-        claim(same_as_matrix.contains("T2"), "light reflected twice is the matrix's", same_as_matrix.clone()),
-        claim(same_as_matrix.contains("total"), "and so is the whole", same_as_matrix),
-        claim(matrix.outcome != Outcome::Differs, "no term is proved to differ", format!("{:?}", matrix.outcome)),
-        claim(term < 1.0, "no term exceeds its bound", format!("at most {} of it", percent(term))),
-        claim(tail < 1.0, "nor does the tail", format!("at most {} of it", percent(tail))),
-        claim(lit == 2, "k = 2 is the first to light the ceiling", format!("k = {lit}")),
-        claim(left.log10().round() == -2.0, "about a hundredth is left after k = 8", percent(left)),
+        // T1 through the camera is read from E, so that T2 is the first term that tests the matrix
+        claim(same_as_matrix.contains("T2"), "the term k = 2 agrees with the matrix", same_as_matrix.clone()),
+        claim(same_as_matrix.contains("total"), "the whole image agrees with the matrix", same_as_matrix),
+        claim(
+            matrix.outcome != Outcome::Differs,
+            "no term differs significantly from the matrix",
+            format!("{:?}", matrix.outcome),
+        ),
+        claim(term < 1.0, "no term exceeds its bound", format!("at most {} of the bound", percent(term))),
+        claim(tail < 1.0, "the tail does not exceed its bound", format!("at most {} of the bound", percent(tail))),
+        claim(lit == 2, "k = 2 is the first term that lights the ceiling", format!("k = {lit}")),
+        claim(left.log10().round() == -2.0, "about a hundredth of the light is left after k = 8", percent(left)),
     ]
 }
 // ANCHOR_END: claim
 
-/// The mean of an image over the pixels in which nothing but the ceiling is seen.
+/// The mean of an image over the pixels that show only the ceiling.
 fn on_ceiling(scene: &Scene, image: &TermImage) -> f64 {
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
     let ceiling = |p: Vec3| scene.origin().y + f64::from(p.y) > 0.999; // the lamp hangs a centimetre lower
@@ -120,7 +125,7 @@ fn percent(x: f64) -> String {
 
 const NORM: &str = "all surfaces, $\\norm{\\T^k E}_1$";
 
-/// Solves, draws, writes, and checks: true if every claim of the chapter holds.
+/// Solves, draws, writes and checks. Returns true if every claim of the chapter holds.
 ///
 /// # Errors
 /// If the folder cannot be written.

@@ -1,11 +1,13 @@
-//! Operators as values: what holds for every T, in numbers, on the matrix of a Cornell box.
+//! Identities of operators, checked in numbers on the matrix of a Cornell box. Operators are values that can be added,
+//! multiplied and inverted.
 //!
 //! ```text
 //! ⟨W, T x⟩ = ⟨T*W, x⟩        ⟨W, (I − T)⁻¹E⟩ = ⟨(I − T*)⁻¹W, E⟩        ⟨u, v⟩ = Σᵢ Aᵢ uᵢ vᵢ
 //! ```
 //!
-//! T is red light, S green, E the lamp, W the mean over the red wall. Whoever walks from the eye evaluates the left side of
-//! the second equation, whoever walks from the lamp the right one; ⟨(T*)²W, T E⟩ meets in the middle.
+//! T is the operator for red light, S the one for green light, E the emission of the lamp in red, and W the mean over the red
+//! wall. Tracing paths from the eye evaluates the left side of the second equation, tracing from the lamp the right side.
+//! ⟨(T*)²W, T E⟩ combines both.
 //!
 //! `cargo run --release --example operators`
 #![allow(clippy::print_stdout)] // a program, not the library
@@ -19,24 +21,24 @@ use fredholm::scene::{Scene, load};
 use fredholm::solver::Radiosity;
 use std::{error::Error, process::ExitCode};
 
-/// Two numbers that are, or are not, the same.
+/// Two numbers that should be equal, or should differ.
 pub struct Equation {
-    /// As it is written.
+    /// The equation as text.
     pub says: &'static str,
-    /// Left and right side.
+    /// Values of the left and the right side.
     pub sides: [f64; 2],
-    /// Why it does not hold, where it does not.
+    /// The reason why the equation does not hold; none if it should hold.
     pub but: Option<&'static str>,
 }
 
 impl Equation {
-    /// |left − right|/|right|.
+    /// The relative difference |left − right|/|right|.
     pub fn apart(&self) -> f64 {
         let [left, right] = self.sides;
         ((left - right) / right).abs()
     }
 
-    /// Whether it is as it should be: an identity to rounding, anything else clearly not.
+    /// Returns true if the result is as expected: the sides of an identity agree up to rounding, all others differ clearly.
     pub fn is_right(&self) -> bool {
         if self.but.is_none() { self.apart() < 1e-13 } else { self.apart() > 1e-3 }
     }
@@ -45,7 +47,7 @@ impl Equation {
 /// The matrix of a Cornell box.
 ///
 /// # Errors
-/// If the scene cannot be loaded or meshed, which is a defect.
+/// If the scene cannot be loaded or meshed, which is a defect of the program.
 pub fn room() -> Result<Radiosity, Box<dyn Error>> {
     let room = load::scene("cornell", &load::Options::default())?.description;
     let patches = Patches::new(&room, 600)?;
@@ -53,15 +55,15 @@ pub fn room() -> Result<Radiosity, Box<dyn Error>> {
     Ok(Radiosity::new(patches, factors))
 }
 
-/// Everything that is printed.
+/// All equations that are printed.
 ///
 /// # Errors
-/// If operators do not fit together, which is a defect.
+/// If operators do not fit together, which is a defect of the program.
 pub fn equations(room: &Radiosity) -> Result<Vec<Equation>, AlgebraError> {
     let (red, green) = (room.operator(0), room.operator(1));
     let (t, s) = (Expression::from(&red), Expression::from(&green));
     let e = room.emission(0);
-    // the mean over the wall that reflects red alone: ⟨W, x⟩ = Σ Aᵢ xᵢ/A over its patches
+    // W, the mean over the wall that reflects only red light: ⟨W, x⟩ = Σ Aᵢ xᵢ/A over its patches
     let wall: Vec<bool> = room.patches.iter().map(|p| p.reflectance.x > 5.0 * p.reflectance.y).collect();
     let area: f64 = wall.iter().zip(t.area()).filter(|p| *p.0).map(|p| p.1).sum();
     let w: Vec<f64> = wall.iter().map(|on| if *on { 1.0 / area } else { 0.0 }).collect();

@@ -1,4 +1,4 @@
-//! The `fredholm` program: parses, calls the library, reports.
+//! The `fredholm` program: it parses the command line, calls the library, and prints the report.
 
 mod cli;
 

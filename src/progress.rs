@@ -1,33 +1,34 @@
-//! How far long work has come, and whether it is to go on: one value for everything that takes long.
+//! Progress reports and cancellation: one value, [`Progress`], that every long computation receives.
 //!
 //! ```text
 //! begin("form factors", n)    advance(1) … advance(1)    film(…) after every pass    stopped()?
 //! ```
 //!
-//! A computation is given a [`Progress`], tells it what it does, and asks it whether to stop. The caller chooses
-//! who listens: nobody ([`Progress::NONE`]), a bar on a terminal, a test. No result depends on it, except that it may be cut short.
+//! A computation receives a [`Progress`], reports its work to it, and asks it whether to stop. The caller chooses the
+//! listener: none ([`Progress::NONE`]), a progress bar on a terminal, or a test. The progress value never changes a result,
+//! except that it can end the work early.
 //!
 //! | what | place |
 //! |---|---|
-//! | what is told to whom | [`Listener`] |
-//! | whether to stop | [`Progress::stopped`] |
-//! | work that is measured by the clock | [`Clock`] |
+//! | receiver of the progress reports | [`Listener`] |
+//! | request to stop | [`Progress::stopped`] |
+//! | work limited by time instead of units | [`Clock`] |
 
 use crate::terms::TermFilm;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-/// Who is told. Methods are called from any thread.
+/// Receiver of progress reports. Its methods may be called from any thread.
 pub trait Listener: Sync {
-    /// A stretch of work begins, with so many units to do.
+    /// A phase named `_what` begins; it consists of `_units` units of work.
     fn begin(&self, _what: &str, _units: u64) {}
-    /// Some units are done.
+    /// Another `_units` units of work are done.
     fn advance(&self, _units: u64) {}
-    /// The film after a complete pass.
+    /// Receives the film (the accumulated samples of all pixels) after a complete pass.
     fn film(&self, _film: &TermFilm) {}
 }
 
-/// Who listens, and the flag that stops the work.
+/// A listener for progress reports and a flag that stops the work; both are optional.
 ///
 /// ```
 /// use fredholm::progress::Progress;
@@ -43,45 +44,46 @@ pub trait Listener: Sync {
 pub struct Progress<'a> {
     listener: Option<&'a dyn Listener>,
     stop: Option<&'a AtomicBool>,
-    /// Stands before what begins.
+    /// Prefix for the names of phases.
     name: Option<&'a str>,
     clock: Option<&'a Clock>,
 }
 
 impl<'a> Progress<'a> {
-    /// Nobody listens, and nothing stops.
+    /// No listener and no stop flag.
     pub const NONE: Progress<'static> = Progress { listener: None, stop: None, name: None, clock: None };
 
-    /// Somebody listens.
+    /// Sends the reports to `listener`.
     pub fn to(listener: &'a dyn Listener) -> Self {
         Self { listener: Some(listener), ..Self::default() }
     }
 
-    /// Work ends early once the flag is set.
+    /// The same progress with a stop flag: the work ends early once `flag` is true.
     #[must_use]
     pub fn stopped_by(self, flag: &'a AtomicBool) -> Self {
         Self { stop: Some(flag), ..self }
     }
 
-    /// The same for one of several things that are done in turn: `name: what`.
+    /// The same progress with `name` in front of every phase name, as in `name: what`. Use it if several computations run
+    /// one after the other.
     #[must_use]
     pub fn named(self, name: &'a str) -> Self {
         Self { name: Some(name), ..self }
     }
 
-    /// The same, told to nobody: for small parts of something that is itself told.
+    /// The same progress without a listener. Use it for small parts of a computation that reports its own progress.
     #[must_use]
     pub fn silent(self) -> Self {
         Self { listener: None, ..self }
     }
 
-    /// The same for work that ends after a given time: its progress is counted in milliseconds.
+    /// The same progress for work that ends after a given time: progress is then counted in milliseconds.
     #[must_use]
     pub fn by_clock(self, clock: &'a Clock) -> Self {
         Self { clock: Some(clock), ..self }
     }
 
-    /// A stretch of work begins, with so many units to do.
+    /// Reports that a phase begins: `what` is its name, `units` its number of units of work.
     pub fn begin(&self, what: &str, units: u64) {
         let Some(listener) = self.listener else { return };
         match self.name {
@@ -90,43 +92,44 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Some units are done.
+    /// Reports that `units` more units are done. With a clock, the milliseconds passed since the last report are sent
+    /// instead.
     pub fn advance(&self, units: u64) {
         if let Some(listener) = self.listener {
             listener.advance(self.clock.map_or(units, Clock::passed));
         }
     }
 
-    /// The film after a complete pass.
+    /// Sends the film to the listener after a complete pass.
     pub fn film(&self, film: &TermFilm) {
         if let Some(listener) = self.listener {
             listener.film(film);
         }
     }
 
-    /// Whether the work is to end now.
+    /// Returns true if the work should end now.
     pub fn stopped(&self) -> bool {
         self.stop.is_some_and(|flag| flag.load(Relaxed))
     }
 }
 
-/// A clock for work that may take so long.
+/// A clock for work with a time limit.
 #[derive(Debug)]
 pub struct Clock {
-    /// How long.
+    /// The time limit.
     pub time: Duration,
     since: Instant,
-    /// Milliseconds that have been told.
+    /// Milliseconds already reported.
     told: AtomicU64,
 }
 
 impl Clock {
-    /// Starts now.
+    /// Starts a clock now, with the time limit `time`.
     pub fn start(time: Duration) -> Self {
         Self { time, since: Instant::now(), told: AtomicU64::new(0) }
     }
 
-    /// Milliseconds since it was last asked.
+    /// Milliseconds since the previous call.
     fn passed(&self) -> u64 {
         let now = self.since.elapsed().as_millis() as u64;
         now.saturating_sub(self.told.fetch_max(now, Relaxed))

@@ -39,7 +39,7 @@ fn usage_errors_name_the_value_and_exit_with_2() {
         ("series --worlds terms,moon", "invalid value 'moon'"),
         ("series --roulette constant:1.5", "q = `1.5` is not a probability of termination in [0, 1)"),
         ("series --roulette constant:1", "q = `1` is not a probability of termination"),
-        ("series --roulette russian", "unknown roulette `russian`; none, lecture"),
+        ("series --roulette russian", "unknown roulette `russian`; use none, lecture"),
         ("series --max-bounces 1001", "1001 is not in 0..=1000"),
         ("series --size 16", "`16` is not a size such as 128x128"),
         ("series --size 0x16", "`0x16` is not a size"),
@@ -85,7 +85,7 @@ fn scenes_and_files_that_are_not_there_exit_with_3() {
         ("info no_sky.toml", "cannot read `none.exr`: No such file"),
         ("render no_sky.toml", "lights[0].file"),
         ("info text_sky.toml", "cannot read `text.png`: "),
-        ("info caustic --set lights=[{type=\"sun\"}]", "`sun` is no type of light"),
+        ("info caustic --set lights=[{type=\"sun\"}]", "`sun` is not a type of light"),
         ("info caustic --set materials.glass.ior=0.5", "ior 0.5 is outside [1, 10]"),
         ("info caustic --set materials.floor={type=\"diffuse\",texture=\"none.png\"}", "materials.floor"),
         ("compare none none", "--> none"),
@@ -110,8 +110,8 @@ fn a_scene_that_keeps_its_light_is_refused_with_the_remedy() {
         assert_eq!(code, 3, "{err}");
         insta::allow_duplicates! {
             insta::assert_snapshot!(err, @r"
-            error: a channel keeps all its light, so L = E + T L has no solution
-            help: lower a reflectance below 1, or look at the first terms alone with --worlds terms,path --roulette none
+            error: one colour channel loses no light, so L = E + T L has no solution
+            help: lower a reflectance below 1, or compute only the first terms with --worlds terms,path --roulette none
             ");
         }
     }

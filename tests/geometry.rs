@@ -385,5 +385,5 @@ fn a_shape_that_rounding_would_deform_is_refused() {
     let error = load(&[0.0, 1e5]).unwrap_err();
     assert_eq!((error.line, error.key.as_deref()), (Some(17), Some("shapes[1]")), "{error}");
     let text = error.to_string();
-    assert!(text.contains("single precision moves its points by") && text.contains("least height is"), "{text}");
+    assert!(text.contains("single precision moves its points by") && text.contains("smallest height is"), "{text}");
 }

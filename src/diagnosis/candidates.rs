@@ -1,6 +1,7 @@
-//! The zoo as candidates: every member renders the scene of the suspect, once per number of samples.
+//! The members of the zoo as candidates: every member renders the scene of the suspect, once per number of samples.
 //!
-//! The seed is not the one that the zoo itself would use: two renders with equal numbers would agree for no good reason.
+//! The seed differs from the one that the zoo command uses. With the same random numbers, a suspect made by that command
+//! would agree too well with its own simulation.
 
 use super::elimination::Simulate;
 use super::picture::Pictures;
@@ -13,7 +14,7 @@ use crate::zoo;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-/// The members of the zoo in one scene; pictures are kept, so that many suspects share them.
+/// The members of the zoo, rendered in one scene. Pictures are cached, so that several suspects share them.
 pub struct Members<'a> {
     scene: &'a Scene,
     settings: Settings,
@@ -22,16 +23,17 @@ pub struct Members<'a> {
     shown: Mutex<Option<Vec<String>>>,
 }
 
-/// Samples per pixel with which a member is held against what is right.
+/// Samples per pixel of the trial in which a member is compared with the correct renderer.
 const TRIAL: u32 = 8;
 
-/// A seed for what a suspect is compared with: far from any that people type.
+/// Seed for renders with which a suspect is compared. It is a hash, so that it differs from seeds that users type.
 pub fn own_seed(seed: u64) -> u64 {
     fnv1a(b"diagnosis".iter().copied().chain(seed.to_le_bytes()))
 }
 
 impl<'a> Members<'a> {
-    /// In this scene, with terms up to K as the suspect has them; of `progress` only the end is heeded.
+    /// Members in this scene, with terms up to the K of the suspect. `progress` is used only to stop early, and shows
+    /// nothing.
     pub fn new(scene: &'a Scene, max_bounces: usize, seed: u64, progress: Progress<'a>) -> Self {
         let settings = Settings::default();
         let after = settings.path_roulette.clone().after(max_bounces);
@@ -47,7 +49,7 @@ impl<'a> Members<'a> {
 }
 
 impl Members<'_> {
-    /// Whether a member differs from the right renderer of the same plan in any pixel of the same samples.
+    /// Returns true if a member differs from the correct renderer in any pixel when both use the same random numbers.
     fn shows(&self, bug: &zoo::Bug) -> bool {
         let settings = Settings { spp: TRIAL, ..self.settings.clone() };
         let plan = bug.plan(&settings);
@@ -59,7 +61,7 @@ impl Members<'_> {
 }
 
 impl Simulate for Members<'_> {
-    /// Those that this scene can show: with the same random numbers they differ from what is right.
+    /// The members whose mistake this scene can show: with the same random numbers they differ from the correct renderer.
     fn names(&self) -> Vec<String> {
         let mut shown = self.shown.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let all = || zoo::all().into_iter().filter(|bug| self.shows(bug)).map(|bug| bug.name.to_owned()).collect();

@@ -1,48 +1,52 @@
-//! Explanations by simulation: every candidate renders the same scene, and those that the suspect contradicts are struck off.
+//! Elimination of candidates by simulation: every candidate renders the same scene. Those that differ significantly from the
+//! suspect are rejected.
 //!
 //! ```text
-//! candidate c stays while  p(S, P_c) ≥ α_i        Σ α_i = α        stages i: ever more samples for ever fewer candidates
+//! candidate c stays while  p(S, P_c) ≥ α_i        Σ α_i = α        stages i: more samples for fewer candidates
 //! ```
 //!
-//! A true explanation is struck off with probability α at most, however many candidates there are: each is tested by itself, and
-//! its level is shared by the stages, of which the first, where samples are few and no t-test is quite right, gets a thousandth. What stays is a list of all explanations that the data cannot tell apart.
+//! The true cause is rejected with probability at most α, however many candidates there are, because each candidate has its
+//! own test. Its level α is divided among the stages. The first stage gets a thousandth of α: it has few samples, so that a
+//! t-test is not quite valid there. The remaining candidates are all explanations that the data cannot distinguish.
 
 use super::gap::{Fit, compare, ratio};
 use super::picture::{Pictures, Slot};
 use super::regions::Region;
 use crate::progress::Progress;
 
-/// Who can render candidates.
+/// Renders candidates.
 pub trait Simulate {
-    /// All candidates.
+    /// Names of all candidates.
     fn names(&self) -> Vec<String>;
-    /// The pictures of one of them with so many samples per pixel; nothing if it was interrupted.
+    /// The pictures of one candidate with `spp` samples per pixel. None if interrupted.
     fn pictures(&self, name: &str, spp: u32) -> Option<Pictures>;
 }
 
 /// A candidate after its last test.
 #[derive(Clone, Debug)]
 pub struct Tried {
-    /// Its name.
+    /// Name of the candidate.
     pub name: String,
-    /// Its last test.
+    /// Result of its last test.
     pub fit: Fit,
     /// Samples per pixel of that test.
     pub spp: u32,
-    /// Whether it was struck off.
+    /// True if it was rejected.
     pub rejected: bool,
 }
 
-/// How much work elimination may do. Counted in paths and not in seconds, so that equal commands have equal results.
+/// Limits on the work of elimination. They are counted in paths rather than seconds, so that the same command always gives
+/// the same result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
     /// Samples per pixel of the first stage; each stage takes four times as many.
     pub first: u32,
-    /// Paths that one stage may take, all candidates together.
+    /// Largest number of paths of one stage, for all candidates together.
     pub paths: u64,
-    /// Stages.
+    /// Number of stages.
     pub stages: u32,
-    /// Whether the exposure of the suspect is unknown: then every candidate is brought to its brightness first.
+    /// True if the exposure of the suspect is unknown. Every candidate is then first scaled to the brightness of the
+    /// suspect.
     pub any_gain: bool,
 }
 
@@ -52,17 +56,19 @@ impl Default for Effort {
     }
 }
 
-/// Share of the level that the first stage has.
+/// Fraction of the level α that the first stage gets.
 const FIRST: f64 = 1e-3;
 
-/// The prediction at the brightness of the suspect, by the mean of its whole image, or of its first picture.
+/// Scales the prediction to the brightness of the suspect, by the mean of the whole image, or of the last picture that both
+/// have.
 pub(super) fn same_brightness(suspect: &Pictures, predicted: Pictures, regions: &[Region]) -> Pictures {
     let pair = suspect.layers.iter().rev().find_map(|a| Some((a, predicted.layer(a.slot)?)));
     let gain = pair.map_or(1.0, |(a, b)| ratio(a, b, suspect.size[0], &regions[0].pixels).mean);
     if gain.is_finite() && gain > 0.0 { predicted.times(gain) } else { predicted }
 }
 
-/// Strikes off candidates; the best fit first, those that stayed before those that did not.
+/// Rejects candidates stage by stage. Returns those that were not rejected first, and within each group the better fit
+/// first.
 pub fn eliminate(
     suspect: &Pictures,
     candidates: &dyn Simulate,
@@ -71,7 +77,7 @@ pub fn eliminate(
     effort: Effort,
     progress: Progress<'_>,
 ) -> Vec<Tried> {
-    // a tail is what each renderer takes for it: its length depends on where paths end
+    // leave out the tail: renderers differ in how long their paths are, and so in what the tail contains
     let suspect = suspect.only(|s| s != Slot::Tail);
     let pixels = (suspect.size[0] * suspect.size[1]) as u64;
     let later = f64::from(effort.stages.max(2) - 1);

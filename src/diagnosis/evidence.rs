@@ -1,15 +1,15 @@
-//! What can be seen of a suspect beside the reference, before anybody is named.
+//! Evidence about a suspect, collected by comparison with the reference before any cause is considered.
 //!
 //! ```text
-//! r_k = mean S_k / mean T_k          flat in space: Σ ((r_k,i − r_k)/s_i)² is what noise gives
+//! r_k = mean S_k / mean T_k          constant over the image: Σ ((r_k,i − r_k)/s_i)² is as large as noise makes it
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | r_k | with its 95 % interval | [`Ratio`] |
-//! | r_k,i | the same in region i | [`Ratio::regions`] |
-//! | – | numbers that are none, black pixels, the brightest value | [`Counts`] |
-//! | v/s² | variance of neighbours over what the `_se` layer claims: 1 for independent pixels | [`Evidence::noise`] |
+//! | r_k | ratio of means, with its 95 % interval | [`Ratio`] |
+//! | r_k,i | the same ratio in region i, with standard error s_i | [`Ratio::regions`] |
+//! | – | non-finite values, black pixels, the brightest value | [`Counts`] |
+//! | v/s² | variance of neighbouring pixels divided by the variance in the `_se` layer: 1 for independent pixels | [`Evidence::noise`] |
 
 use super::gap::{difference, ratio};
 use super::picture::{Layer, Pictures, Slot};
@@ -18,69 +18,69 @@ use crate::stats::{Measured, critical};
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// A ratio of means with what is known of it in space.
+/// A ratio of means, over the image and in its regions.
 #[derive(Clone, Debug, Serialize)]
 pub struct Ratio {
-    /// Of which picture.
+    /// The picture it belongs to.
     pub slot: Slot,
-    /// r; NaN where the reference is black.
+    /// The ratio r; NaN if the reference is black.
     pub value: f64,
-    /// Half of its 95 % interval.
+    /// Half width of its 95 % interval.
     pub half_width: f64,
-    /// p-value of the same ratio in all regions; NaN with fewer than two.
+    /// p-value of the hypothesis that the ratio is the same in all regions; NaN with fewer than two regions.
     pub flat: f64,
-    /// r in each region, in their order; NaN where the reference is black.
+    /// r in each region, in the order of [`Evidence::regions`]; NaN where the reference is black.
     pub regions: Vec<f64>,
-    /// Means over the image of the suspect and the reference.
+    /// Image means of the suspect and of the reference.
     pub means: [f64; 2],
 }
 
-/// What is counted in the pictures as they came.
+/// Counts of special values in the original pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Counts {
-    /// Values that are no finite number.
+    /// Number of values that are not finite.
     pub non_finite: u64,
-    /// Values below zero.
+    /// Number of values below zero.
     pub negative: u64,
-    /// Fraction of pixels that are black where the reference is not, in the first picture concerned.
+    /// Fraction of pixels that are black although the reference is not; the largest of all pictures.
     pub black: f64,
-    /// Fraction of pixels of an 8-bit picture at 255.
+    /// Fraction of pixels of an 8-bit picture that have the value 255.
     pub clipped: f64,
 }
 
-/// All evidence of one suspect.
+/// The evidence about one suspect.
 #[derive(Clone, Debug, Serialize)]
 pub struct Evidence {
-    /// r_k by slot.
+    /// r_k of every slot.
     pub ratios: Vec<Ratio>,
     /// Counts.
     pub counts: Counts,
-    /// Whole image over the sum of its own terms and tail, half the 95 % interval of that, and what it would be in the
-    /// reference: 1 with a tail; nothing if a part is missing.
+    /// Three numbers: the whole image divided by the sum of its own terms and tail, the half width of its 95 % interval, and
+    /// the same ratio of the reference (1 if there is a tail). None if a part is missing.
     pub sum: Option<[f64; 3]>,
-    /// Largest value of the whole image over that of the reference.
+    /// Largest value of the whole image divided by that of the reference.
     pub brightest: f64,
-    /// Scatter of neighbouring pixels over the variance that the `_se` layers claim; NaN without them.
+    /// Scatter of neighbouring pixels divided by the variance in the `_se` layers; NaN without these layers.
     pub noise: f64,
-    /// Samples per pixel with which the reference would be as noisy; NaN if not known.
+    /// Number of samples per pixel at which the reference would be as noisy as the suspect; NaN if not known.
     pub samples: f64,
-    /// Where the errors come from.
+    /// Source of the errors, in words.
     pub errors: &'static str,
     /// Names of the regions.
     pub regions: Vec<String>,
-    /// Correlation with the reference as it stands, mirrored left to right, and upside down.
+    /// Correlation with the reference itself, with its left-right mirror image, and with the reference upside down.
     pub likeness: [f64; 3],
 }
 
 impl Evidence {
-    /// The ratio of a slot.
+    /// The ratio of a slot, if it was measured.
     pub fn ratio(&self, slot: Slot) -> Option<&Ratio> {
         self.ratios.iter().find(|r| r.slot == slot)
     }
 }
 
-/// Collects the evidence; `counts` come from the pictures before anything was averaged.
-/// `reference_spp` is NaN where it is not known.
+/// Collects the evidence. `counts` come from the original pictures, before they are averaged down. `reference_spp` is NaN if
+/// it is not known.
 pub fn collect(
     suspect: &Pictures,
     reference: &Pictures,
@@ -119,9 +119,9 @@ pub fn collect(
     }
 }
 
-/// p-value of one common ratio in all regions.
+/// p-value of the hypothesis that all regions have the same ratio.
 pub fn flat(regions: &[Measured]) -> f64 {
-    // below a tenth of a percent it is rounding
+    // differences below a tenth of a percent count as rounding
     let known: Vec<(f64, f64)> = regions
         .iter()
         .filter(|m| m.mean.is_finite() && m.std_error.is_finite())
@@ -136,7 +136,7 @@ pub fn flat(regions: &[Measured]) -> f64 {
     ChiSquared::new((known.len() - 1) as f64).map_or(f64::NAN, |d| d.sf(chi2))
 }
 
-/// Whole over the sum of the terms and the tail, and the same of the reference.
+/// The whole divided by the sum of the terms and the tail, with its error, and the same ratio of the reference.
 fn sum(suspect: &Pictures, reference: &Pictures, image: &Region) -> Option<[f64; 3]> {
     suspect.last_term()?;
     let slots: Vec<Slot> = suspect.layers.iter().map(|l| l.slot).filter(|s| *s != Slot::Whole).collect();
@@ -165,7 +165,8 @@ fn brightest(suspect: &Pictures, reference: &Pictures) -> f64 {
     top(suspect) / top(reference)
 }
 
-/// The scatter of S − r T inside blocks over what the errors of both claim, in the brightest slot that scatters.
+/// Scatter of S − r T inside blocks, divided by the variance from the errors of both. Measured in the term k ≥ 1 with the
+/// largest claimed variance.
 fn noise(suspect: &Pictures, reference: &Pictures, image: &Region) -> f64 {
     let one = |l: &Layer| {
         let right = reference.layer(l.slot)?;
@@ -181,7 +182,8 @@ fn noise(suspect: &Pictures, reference: &Pictures, image: &Region) -> f64 {
     all.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(f64::NAN, |a| a.1)
 }
 
-/// Samples of the suspect over those of the reference, by their noise: in the noisiest slot of reflected light, else in the whole.
+/// Samples of the suspect divided by those of the reference, estimated from their noise. Uses the term k ≥ 1 whose reference
+/// is noisiest, or else the whole image.
 fn samples(suspect: &Pictures, reference: &Pictures, image: &Region) -> f64 {
     let one = |l: &Layer| {
         let right = reference.layer(l.slot)?;
@@ -198,7 +200,8 @@ fn samples(suspect: &Pictures, reference: &Pictures, image: &Region) -> f64 {
     best.or_else(|| one(suspect.layer(Slot::Whole)?)).map_or(f64::NAN, |a| a.1)
 }
 
-/// Correlation of log luminance with the reference as it stands, mirrored left to right, upside down.
+/// Correlation of log luminance with the reference itself, with the reference mirrored left to right, and with the reference
+/// upside down.
 fn likeness(suspect: &Pictures, reference: &Pictures) -> [f64; 3] {
     let layer = suspect.layers.iter().rev().find(|l| reference.layer(l.slot).is_some());
     let Some((a, b)) = layer.and_then(|l| Some((l, reference.layer(l.slot)?))) else { return [f64::NAN; 3] };
@@ -227,7 +230,7 @@ fn likeness(suspect: &Pictures, reference: &Pictures) -> [f64; 3] {
     })
 }
 
-/// Counts of pictures as they came; the reference says where black is wrong.
+/// Counts special values in the original pictures. The reference shows where black pixels are wrong.
 pub fn count(suspect: &Pictures, reference: &Pictures, clipped: f64) -> Counts {
     let all = || suspect.layers.iter().flat_map(|l| l.mean.iter().flatten());
     let black = |l: &Layer| {

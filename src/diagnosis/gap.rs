@@ -1,22 +1,27 @@
-//! Two sets of pictures, one comparison: is the difference more than noise, and where?
+//! Comparison of two sets of pictures: is the difference larger than the noise, and where?
 //!
 //! ```text
-//! d = mean over a region of S − P        t = d / se(d)        p adjusted by Holm over slots × channels, and over these × regions: half the level each
+//! d = mean over a region of S − P        t = d / se(d)
+//! p adjusted by Holm in two families with half the level each: image means over slots × channels, and these × regions
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | S, P | the suspect, and what an explanation predicts | arguments of [`compare`] |
-//! | se(d) | from the `_se` layers of both; else from how S − P scatters inside blocks of 8 × 8 pixels | `spread` here |
-//! | r | ratio of means, with its error by the same rule for S − r P | [`ratio`] |
-//! | κ | variance over mean, per pixel, the median of the regions: the least that is believed of any of them | [`compare`] |
-//! | n_eff | (Σ v)²/Σ v² of the pixel variances: how many pixels carry the noise | [`Gap::p`] |
+//! | S, P | the suspect, and the prediction of an explanation | arguments of [`compare`] |
+//! | se(d) | from the `_se` layers of both pictures; without them, from the scatter of S − P inside blocks of 8 × 8 pixels | `spread` here |
+//! | r | ratio of means; its error comes from S − r P by the same rule | [`ratio`] |
+//! | κ | variance divided by mean, per pixel: the median over the regions; no region gets a smaller variance than κ times its mean | [`compare`] |
+//! | n_eff | (Σ v)²/Σ v² of the pixel variances: the number of pixels that carry the noise | [`Gap::p`] |
 //!
-//! The local scatter holds the noise of both sides and, where the explanation is wrong in shape, that misfit too: it is too
-//! large rather than too small, so a noisy difference is not taken for a bias. Noise of rare hits is as their number: a region
-//! that by chance had none looks dark and certain, and κ times its mean mends that. Where fewer than ten pixels carry the noise the
-//! t-test is not to be trusted: `rare` looks for fireflies that nothing pays for, and for lamps that are not there, and
-//! else nothing is rejected. Pixels are taken as independent. Welch (1947); Holm (1979).
+//! The local scatter contains the noise of both pictures. If the explanation has a wrong spatial shape, it also contains
+//! that misfit. The estimated noise is then too large rather than too small, so that noise is not mistaken for a bias.
+//!
+//! Noise from rare hits grows with the number of hits. A region that got none by chance looks dark and without noise. The
+//! lower bound κ times the mean corrects this.
+//!
+//! If fewer than ten pixels carry the noise, a t-test is not valid. Then the tests in `rare` look for excessive fireflies
+//! and for missing lamps, and otherwise nothing is rejected. Pixels are treated as independent. References: Welch (1947);
+//! Holm (1979).
 
 use super::picture::{Code, Layer, Pictures, Slot};
 use super::rare::{Pixel, deficit, excess};
@@ -24,13 +29,13 @@ use super::regions::Region;
 use crate::stats::evidence::JUDGED_PIXELS;
 use crate::stats::{Measured, holm, two_sided_p};
 
-/// Side of the blocks in which the noise is measured.
+/// Side of the blocks, in pixels, inside which the scatter is measured.
 const BLOCK: usize = 8;
 
-/// One comparison: a slot, a region, a channel.
+/// One comparison: one slot, one region, one channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Gap {
-    /// Of which picture.
+    /// The picture that is compared.
     pub slot: Slot,
     /// Index of the region.
     pub region: usize,
@@ -42,11 +47,11 @@ pub struct Gap {
     pub predicted: f64,
     /// Standard error of their difference.
     pub std_error: f64,
-    /// p-value of no difference, not adjusted; 1 where it is rounding or nothing can be decided.
+    /// p-value of no difference, not adjusted. It is 1 if the difference is rounding, or if no valid test exists.
     pub p: f64,
-    /// The same adjusted for the number of comparisons.
+    /// The p-value adjusted for the number of comparisons.
     pub adjusted: f64,
-    /// Whether too few pixels carry the noise for a t-test.
+    /// True if too few pixels carry the noise for a t-test.
     pub few: bool,
 }
 
@@ -55,23 +60,24 @@ pub struct Gap {
 pub struct Fit {
     /// Every comparison.
     pub gaps: Vec<Gap>,
-    /// The smallest p-value, adjusted for their number.
+    /// The smallest adjusted p-value.
     pub p: f64,
-    /// Index of the comparison that has it.
+    /// Index of the comparison with the smallest adjusted p-value.
     pub worst: usize,
     /// Mean of ((S − P)/se)² over the comparisons: about 1 if P explains S.
     pub misfit: f64,
 }
 
 impl Fit {
-    /// The comparison in which S and P are furthest apart; nothing if there was nothing to compare.
+    /// The comparison with the strongest evidence against equality. None if nothing was compared.
     pub fn worst(&self) -> Option<&Gap> {
         self.gaps.get(self.worst)
     }
 }
 
-/// Whether the two differ where the prediction has no noise at all: S/P is one number other than 1 in every pixel of the region
-/// in which P is positive and its error zero, and there are at least four. A suspect with noise would not repeat itself.
+/// Returns true if the two differ where the prediction has no noise at all. That is the case if S/P is the same number,
+/// other than 1, in every pixel of the region where P is positive and its error is zero. There must be at least four such
+/// pixels. A noisy suspect would not show the same ratio twice.
 fn differs_without_noise(a: &Layer, b: &Layer, pixels: &[usize], channel: usize, rounding: f64) -> bool {
     let Some(errors) = &b.std_error else { return false };
     let known = pixels.iter().filter(|&&p| errors[p][channel] == 0.0 && b.mean[p][channel] > 0.0);
@@ -86,7 +92,8 @@ fn differs_without_noise(a: &Layer, b: &Layer, pixels: &[usize], channel: usize,
         && count >= 4
 }
 
-/// One channel of a difference a − f·b over some pixels: mean, error, and the pixels that carry it.
+/// One channel of the difference a − f·b over some pixels: its mean with error, and the number of pixels that carry its
+/// noise. `known` selects the `_se` layers as source of the error, where both have them.
 pub(super) fn difference(
     (a, b, factor): (&Layer, &Layer, f64),
     width: usize,
@@ -101,7 +108,7 @@ pub(super) fn difference(
         (Some(s), Some(t)) if known => {
             let v = |p: usize| f64::from(s[p][channel]).powi(2) + (factor * f64::from(t[p][channel])).powi(2);
             let (one, two) = pixels.iter().fold((0.0, 0.0), |acc, &p| (acc.0 + v(p), acc.1 + v(p) * v(p)));
-            // errors of pixels come from few replicates each, but many pixels are added
+            // each pixel error comes from few replicates, but the sum over many pixels has many degrees of freedom
             (one / (n * n), if two > 0.0 { one * one / two } else { n }, (n - 1.0).max(1.0))
         }
         _ => spread(&d, width, pixels),
@@ -109,8 +116,8 @@ pub(super) fn difference(
     (Measured { mean, std_error: variance.sqrt(), dof }, carried)
 }
 
-/// Variance of the mean of `d` over some pixels from its scatter inside blocks, the number of pixels that carry it, and the
-/// degrees of freedom.
+/// Variance of the mean of `d` over some pixels, from the scatter inside blocks. Also returns the number of pixels that
+/// carry the noise, and the degrees of freedom.
 fn spread(d: &dyn Fn(usize) -> f64, width: usize, pixels: &[usize]) -> (f64, f64, f64) {
     let mut blocks: std::collections::BTreeMap<usize, Vec<f64>> = std::collections::BTreeMap::new();
     for &p in pixels {
@@ -123,24 +130,24 @@ fn spread(d: &dyn Fn(usize) -> f64, width: usize, pixels: &[usize]) -> (f64, f64
         let mean = block.iter().sum::<f64>() / m;
         let squares: Vec<f64> = block.iter().map(|x| (x - mean) * (x - mean)).collect();
         let sum: f64 = squares.iter().sum();
-        // a block of one pixel has no scatter: the others stand for it
+        // a block of one pixel has no scatter and contributes nothing
         variance += if m > 1.0 { m * sum / (m - 1.0) } else { 0.0 };
         dof += m - 1.0;
         second += sum;
         fourth += squares.iter().map(|s| s * s).sum::<f64>();
     }
-    // of a normal variable (Σ x²)²/Σ x⁴ is n/3
+    // for a normal variable, (Σ x²)²/Σ x⁴ is n/3
     let carried = if fourth > 0.0 { 3.0 * second * second / fourth } else { n };
     (variance / (n * n), carried, dof.max(1.0))
 }
 
-/// The middle one; 0 of none.
+/// The median; 0 for an empty list.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// One channel of a layer beside its prediction, where few pixels carry the noise.
+/// One channel of a layer and its prediction, for regions where few pixels carry the noise.
 struct Rare<'a> {
     layers: (&'a Layer, &'a Layer),
     errors: &'a [[f32; 3]],
@@ -156,14 +163,14 @@ impl Rare<'_> {
         chosen.map(|&p| [a.mean[p][c], b.mean[p][c], self.errors[p][c]].map(f64::from)).collect()
     }
 
-    /// Whether many pixels carry the noise of the prediction: else it may have fireflies of its own, here or there.
+    /// Returns true if many pixels carry the noise of the prediction. Otherwise the prediction itself may contain fireflies.
     fn steady(&self, region: &Region) -> bool {
         let squares = self.pixels(region, false).into_iter().map(|[.., s]| s * s);
         let (one, two) = squares.fold((0.0, 0.0), |a, v| (a.0 + v, a.1 + v * v));
         one * one >= JUDGED_PIXELS * two
     }
 
-    /// Variance of the suspect over that of the prediction: the median of the regions.
+    /// Variance of the suspect divided by that of the prediction: the median over the regions.
     fn noise(&self) -> f64 {
         let of = |r: &Region| {
             let (m, _) = difference((self.layers.0, self.layers.1, 1.0), self.width, &r.pixels, self.channel, false);
@@ -174,8 +181,8 @@ impl Rare<'_> {
         if all.is_empty() { f64::INFINITY } else { median(all) }
     }
 
-    /// p-value of no difference. What is emitted towards the eye is found by every renderer alike, so that a lamp can be missed;
-    /// of all other light it is not known how rarely a right renderer finds it.
+    /// p-value of no difference. Every renderer finds directly visible emission equally well, so that a missing lamp can be
+    /// tested. For all other light it is unknown how rarely a correct renderer finds it.
     fn p(&self, region: &Region, brighter: bool) -> f64 {
         if brighter {
             let steady = self.steady(&self.regions[0]) && self.steady(region);
@@ -186,7 +193,7 @@ impl Rare<'_> {
     }
 }
 
-/// Compares every slot that both have in every region.
+/// Compares every slot that both sets have, in every region.
 pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> Fit {
     let rounding = suspect.code.rounding().max(predicted.code.rounding());
     let (width, exact) = (suspect.size[0], suspect.code != Code::EightBit);
@@ -222,7 +229,7 @@ pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> 
                 let few = carried < JUDGED_PIXELS && !equal;
                 let p =
                     if exact && differs_without_noise(a, b, &region.pixels, channel, rounding) || difference.is_nan() {
-                        // what is not a number differs from every number
+                        // NaN differs from every number
                         0.0
                     } else if equal {
                         1.0
@@ -245,7 +252,8 @@ pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> 
             }
         }
     }
-    // half of the level is for the few comparisons of image means, which see what is small and everywhere
+    // half of the level goes to the few comparisons of image means, which detect small differences that cover the whole
+    // image
     let adjust = |gaps: &[Gap], image: bool| {
         let at: Vec<usize> = (0..gaps.len()).filter(|&i| (gaps[i].region == 0) == image).collect();
         let p: Vec<f64> = at.iter().map(|&i| if gaps[i].p.is_nan() { 1.0 } else { gaps[i].p }).collect();
@@ -266,13 +274,13 @@ pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> 
     Fit { gaps, p, worst, misfit }
 }
 
-/// Ratio of the means of two layers over some pixels, channels averaged, with its standard error: of S/P from the scatter of
-/// S − r P. NaN where P is zero.
+/// Ratio S/P of the means of two layers over some pixels, with channels averaged. Its standard error comes from the scatter
+/// of S − r P. NaN if P is zero.
 pub fn ratio(suspect: &Layer, predicted: &Layer, width: usize, pixels: &[usize]) -> Measured {
     let grey = |layer: &Layer| Layer {
         slot: layer.slot,
         mean: layer.mean.iter().map(|v| [(v[0] + v[1] + v[2]) / 3.0; 3]).collect(),
-        // channels of one path share their noise: at worst all of it
+        // channels of one path share their noise; in the worst case they are fully correlated
         std_error: layer.std_error.as_ref().map(|s| s.iter().map(|v| [(v[0] + v[1] + v[2]) / 3.0; 3]).collect()),
     };
     let (a, b) = (grey(suspect), grey(predicted));
@@ -329,7 +337,7 @@ mod tests {
         };
         assert_eq!(compare(&dark(0.0, 0.0), &dark(17.0, 0.0), &regions).p, 0.0);
         assert_eq!(compare(&dark(17.0, 0.0), &dark(17.0, 0.0), &regions).p, 1.0);
-        // four pixels that are noisy decide nothing
+        // four noisy pixels are too few for a decision
         assert_eq!(compare(&dark(0.0, 0.0), &dark(17.0, 1.0), &regions).p, 1.0);
     }
 

@@ -1,22 +1,26 @@
-//! What is wrong with a picture that somebody else made? Evidence, rules and simulations, and an honest short list.
+//! Diagnosis of images from another renderer: finds out whether they are wrong, and which mistakes could be the cause. The
+//! method combines evidence, rules and simulations.
+//!
+//! The *suspect* is the set of images under test. The *reference* is the set of correct terms. A *candidate* is a mistake of
+//! the [zoo](crate::zoo) that could explain the suspect.
 //!
 //! ```text
-//! r_k = mean S_k / mean T_k        correct: p(S, T) ≥ α        suspect c stays while p(S, P_c) ≥ α
+//! r_k = mean S_k / mean T_k        correct: p(S, T) ≥ α        candidate c stays on the list while p(S, P_c) ≥ α
 //! ```
 //!
 //! | step | what happens | place |
 //! |---|---|---|
-//! | pictures | terms and whole image, brought to at most 96 pixels a side | [`picture`] |
+//! | pictures | terms and whole image, averaged down to at most 96 pixels a side where possible | [`picture`] |
 //! | comparison | means of regions, t-tests adjusted by Holm | [`gap`], [`regions`] |
-//! | few pixels | fireflies that nothing pays for, lamps that are not there | `rare` |
-//! | evidence | ratios, flatness in space, counts, noise | [`evidence`], [`series`] |
+//! | few pixels | fireflies that are too frequent, and lamps that are missing | `rare` |
+//! | evidence | ratios, whether they are constant over the image, counts, noise | [`evidence`], [`series`] |
 //! | patterns | rules for r_k with one fitted number | [`pattern`] |
 //! | simulations | every member of the zoo on the same scene | [`elimination`], [`candidates`] |
-//! | decision | an ordered list of small rules, then the short list | [`rules`], [`diagnose`] |
+//! | decision | an ordered list of small rules, then a short list of causes | [`rules`], [`diagnose`] |
 //!
-//! *Correct* means: not told apart from the reference, and a uniform bias above a stated size would have been. Ratios per bounce
-//! as a diagnostic follow the practice of rendering the terms one by one (Arvo and Kirk 1990 for the roulette rows; Veach 1997
-//! for the measures).
+//! *Correct* means two things: no significant difference from the reference was found, and a uniform bias above a stated
+//! size would have been found. Ratios per bounce as a diagnostic follow the practice of rendering the terms one by one (Arvo
+//! and Kirk 1990 for the mistakes in roulette; Veach 1997 for those of measure).
 
 pub mod candidates;
 pub mod elimination;
@@ -43,91 +47,93 @@ use gap::{compare, difference};
 use pattern::{Constant, Pattern};
 use serde::Serialize;
 
-/// Wider pictures are averaged down before anything is compared: means do not need the pixels.
+/// Wider pictures are averaged down to this width before they are compared, because the comparison uses means over regions.
 pub const WIDEST: usize = 96;
 
-/// How it ended.
+/// Result of a diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Conclusion {
-    /// Not told apart from the reference.
+    /// No significant difference from the reference.
     Correct,
-    /// Told apart.
+    /// Significantly different from the reference.
     Wrong,
 }
 
-/// A candidate that was simulated, for the table.
+/// A candidate that was simulated, as a row of the table.
 #[derive(Clone, Debug, Serialize)]
 pub struct Candidate {
-    /// Name in the zoo.
+    /// Name of the member of the zoo.
     pub name: String,
-    /// Smallest adjusted p-value.
+    /// Smallest p-value of the comparison, adjusted for the number of comparisons.
     pub p: f64,
-    /// Mean squared deviation in standard errors.
+    /// Mean squared deviation, in squared standard errors.
     pub misfit: f64,
-    /// Samples per pixel of its last picture.
+    /// Samples per pixel of its last simulation.
     pub spp: u32,
-    /// Whether the suspect contradicts it.
+    /// True if the suspect differs significantly from the simulation.
     pub rejected: bool,
 }
 
-/// All that was found out about one suspect.
+/// The result for one suspect.
 #[derive(Clone, Debug, Serialize)]
 pub struct Diagnosis {
-    /// The result.
+    /// The conclusion.
     pub verdict: Conclusion,
-    /// p-value of *correct*, adjusted.
+    /// Adjusted p-value of the hypothesis that the suspect is correct.
     pub p: f64,
-    /// Where it differs most, in words; empty if it is correct.
+    /// Description of the largest difference; empty if the suspect is correct.
     pub worst: String,
-    /// A uniform relative bias of this size would have been seen with probability 0.99; infinite if none would.
+    /// Smallest uniform relative bias that would have been found with probability 0.99; infinite if no bias would have been
+    /// found.
     pub visible: f64,
-    /// Pictures off by more than that and 5 %, whose mean decides nothing because too few pixels carry its noise.
+    /// Pictures that are off by more than `visible` and by more than 5 %, but not significantly, for example because too few
+    /// pixels carry their noise.
     pub undecided: Vec<Slot>,
-    /// The short list, best first.
+    /// Possible causes, the best explanation first.
     pub suspects: Vec<Suspicion>,
-    /// Evidence.
+    /// The evidence.
     pub evidence: Evidence,
-    /// How the mean changes with samples, if there were several.
+    /// Change of the mean with the number of samples, if several numbers were given.
     pub samples: Option<series::BySamples>,
     /// Candidates that were simulated, best first.
     pub candidates: Vec<Candidate>,
 }
 
-/// What a suspect is judged by.
+/// The input of a diagnosis.
 pub struct Case<'a> {
-    /// The pictures.
+    /// The pictures under test.
     pub suspect: &'a Pictures,
-    /// The right terms, of the same size.
+    /// The correct terms, of the same size.
     pub reference: &'a Pictures,
     /// Samples per pixel of the reference; NaN if not known.
     pub reference_spp: f64,
-    /// What the camera sees, in addition to the regions of the image.
+    /// Regions that are defined by what the camera sees, in addition to the grid of regions.
     pub seen: &'a [Region],
-    /// What was counted in the original pictures.
+    /// Counts of special values in the original pictures.
     pub counts: Counts,
-    /// Pixels that tell nothing, by index; empty if all do.
+    /// One flag per pixel, true for pixels to leave out; empty if all pixels count.
     pub mask: &'a [bool],
-    /// The same render with fewer samples, the suspect itself included.
+    /// The same render with different numbers of samples per pixel, including the suspect itself.
     pub by_samples: &'a [(u32, Pictures)],
-    /// The same scene scaled by a factor, rendered by the suspect.
+    /// The same scene scaled by a factor, rendered by the renderer under test.
     pub scaled: Option<(f64, &'a Pictures)>,
-    /// Candidates, if the scene is known.
+    /// Candidates for simulation, if the scene is known.
     pub candidates: Option<&'a dyn Simulate>,
-    /// Chance that a correct renderer is called wrong, and that a true explanation is struck off.
+    /// Probability of an error: that a correct renderer is called wrong, and that the true cause is removed from the list.
     pub alpha: f64,
-    /// How much may be simulated.
+    /// Limits on the work of simulation.
     pub effort: Effort,
 }
 
 impl Case<'_> {
-    /// A prediction at the brightness of the suspect where its exposure is unknown.
+    /// Scales a prediction to the brightness of the suspect, if the exposure of the suspect is unknown.
     fn brightened(&self, predicted: Pictures, regions: &[Region]) -> Pictures {
         if self.effort.any_gain { elimination::same_brightness(self.suspect, predicted, regions) } else { predicted }
     }
 }
 
-/// Finds out what is wrong, if anything.
+/// Tests whether the suspect is correct, and if not, looks for the cause.
 pub fn diagnose(case: &Case, progress: Progress<'_>) -> Diagnosis {
     let grid = regions::lit(regions::without(regions::grid(case.suspect.size), case.mask), case.reference);
     let all = grid.iter().chain(case.seen).cloned().collect();
@@ -152,7 +158,7 @@ pub fn diagnose(case: &Case, progress: Progress<'_>) -> Diagnosis {
     };
     let named: Vec<Suspicion> = rules::RULES.iter().flat_map(|rule| rule(&facts)).collect();
     let alone = named.iter().any(|s| s.name == "same-numbers" && s.basis == Basis::Points);
-    // numbers that are none, and noise that is shared, leave nothing that a simulation could be compared with
+    // with non-finite values or shared noise there is nothing with which a simulation could be compared
     let tried = match case.candidates {
         Some(candidates) if rejected && !broken && !alone => {
             elimination::eliminate(case.suspect, candidates, &all, case.alpha, case.effort, progress)
@@ -182,14 +188,15 @@ pub fn diagnose(case: &Case, progress: Progress<'_>) -> Diagnosis {
     }
 }
 
-/// Whether the means differ by more than neighbouring pixels scatter.
+/// Returns true if the means differ by more than the scatter of neighbouring pixels allows.
 fn beyond_scatter(case: &Case, regions: &[Region]) -> bool {
     let mut plain = case.suspect.clone();
     plain.layers.iter_mut().for_each(|l| l.std_error = None);
     compare(&plain, case.reference, regions).p < case.alpha
 }
 
-/// The patterns that describe the suspect within its noise: those without a constant first, then the best fit first.
+/// The patterns that describe the suspect within its noise. Patterns without a fitted constant come first, then the better
+/// fits.
 fn patterns(case: &Case, grid: &[Region], all: &[Region]) -> Vec<(Pattern, Option<Constant>, f64, f64)> {
     let slots: Vec<Slot> = case.suspect.layers.iter().map(|l| l.slot).filter(|s| *s != Slot::Tail).collect();
     let suspect = case.suspect.only(|s| s != Slot::Tail);
@@ -210,7 +217,7 @@ fn patterns(case: &Case, grid: &[Region], all: &[Region]) -> Vec<(Pattern, Optio
         let predicted = pattern.predict(case.reference, &slots, constant.map_or(1.0, |c| c.value));
         let predicted = case.brightened(predicted, grid);
         let fit = compare(&suspect, &predicted, all);
-        // a shift has nothing to show for the last slot; all others must explain everything
+        // a shift cannot predict the last slot; all other patterns must explain every slot
         let compared = predicted.layers.len() + usize::from(matches!(pattern, Pattern::Shift(_)));
         if fit.p >= case.alpha && compared >= slots.len() && !fit.gaps.is_empty() {
             found.push((pattern, constant, fit.p, fit.misfit));
@@ -220,7 +227,8 @@ fn patterns(case: &Case, grid: &[Region], all: &[Region]) -> Vec<(Pattern, Optio
     found
 }
 
-/// Simulations that stayed, then patterns; pieces of evidence only where neither explains it.
+/// The short list: simulations that were not rejected, then patterns. Single pieces of evidence are listed only if neither
+/// explains the suspect.
 fn short_list(named: Vec<Suspicion>, tried: &[Tried], evidence: &Evidence, certain: bool) -> Vec<Suspicion> {
     if certain {
         return named.into_iter().filter(|s| s.basis == Basis::Points).take(1).collect();
@@ -244,7 +252,7 @@ fn short_list(named: Vec<Suspicion>, tried: &[Tried], evidence: &Evidence, certa
     let patterns: Vec<Suspicion> = patterns.cloned().collect();
     let (fitted, exact): (Vec<Suspicion>, Vec<Suspicion>) = patterns.into_iter().partition(|s| s.fitted.is_some());
     list.extend(exact);
-    // a number that is free and has no name explains less than a simulation, in which there is nothing to fit
+    // a fitted constant without a known value explains less than a simulation, which has nothing to fit
     if simulated && fitted.len() > 1 {
         let why = &mut list[0].why;
         *why = [why.as_str(), &rules::one_constant(&fitted)]
@@ -256,7 +264,7 @@ fn short_list(named: Vec<Suspicion>, tried: &[Tried], evidence: &Evidence, certa
         list.extend(fitted);
     }
     if list.is_empty() {
-        // what was simulated without success is not suggested again, but where the simulation had a number of its own
+        // do not suggest again what was simulated and rejected, unless the simulation depends on a constant of its own
         let has_a_number = |name: &str| ["clamped", "gamma-before-mean"].contains(&name);
         let struck = |s: &Suspicion| tried.iter().any(|t| t.rejected && t.name == s.name) && !has_a_number(&s.name);
         list = named.into_iter().filter(|s| s.basis == Basis::Points && !struck(s)).collect();
@@ -264,7 +272,7 @@ fn short_list(named: Vec<Suspicion>, tried: &[Tried], evidence: &Evidence, certa
     list
 }
 
-/// The r_k that a simulation predicts.
+/// The r_k that a simulation predicts, as pairs (k, r_k).
 fn curve(fit: &gap::Fit, evidence: &Evidence) -> Vec<[f64; 2]> {
     let term = |r: &evidence::Ratio| {
         let Slot::Term(k) = r.slot else { return None };
@@ -275,12 +283,12 @@ fn curve(fit: &gap::Fit, evidence: &Evidence) -> Vec<[f64; 2]> {
     evidence.ratios.iter().filter_map(term).collect()
 }
 
-/// The comparison that says most, in words.
+/// Description of the most significant comparison.
 fn worst(fit: &gap::Fit, regions: &[Region]) -> String {
     let Some(g) = fit.worst() else { return String::new() };
     let channel = CHANNELS[g.channel];
     format!(
-        "{} in {} ({channel}): {:.4} where {:.4} is right, {:.1} standard errors",
+        "{} in {} ({channel}): {:.4} instead of {:.4}, {:.1} standard errors",
         g.slot,
         regions[g.region].name,
         g.suspect,
@@ -289,12 +297,12 @@ fn worst(fit: &gap::Fit, regions: &[Region]) -> String {
     )
 }
 
-/// The pictures that are off by more than a visible bias, though nothing follows from that: too few pixels carry their noise, or
-/// they would look suspicious alone (p < 5 %) and are one of many.
+/// The pictures that are off by more than a visible bias without a significant result. Either too few pixels carry their
+/// noise, or the p-value of this comparison alone is below 5 % but not small enough among so many comparisons.
 fn undecided(fit: &gap::Fit, evidence: &Evidence, visible: f64) -> Vec<Slot> {
     let of = |slot: Slot| fit.gaps.iter().filter(move |g| g.region == 0 && g.slot == slot);
     let doubtful = |slot: Slot| of(slot).all(|g| g.few) || of(slot).any(|g| g.p < 0.05);
-    // less than a twentieth is no news
+    // differences below a twentieth are not reported
     let least = if visible.is_finite() { visible.max(0.05) } else { 0.05 };
     let off = evidence.ratios.iter().filter(|r| r.slot != Slot::Tail && (r.value - 1.0).abs() > least);
     off.map(|r| r.slot).filter(|slot| doubtful(*slot)).collect()

@@ -1,4 +1,4 @@
-//! Explanations that are a rule for the ratios r_k: no rendering, one free number, fitted.
+//! Patterns: explanations of the ratios r_k by a rule with one fitted constant. They need no simulation.
 //!
 //! ```text
 //! S_k = m_k(c) T_k        S = Σ_k m_k(c) T_k        c = argmin Σ ((S − P(c))/σ)² over slots × regions
@@ -6,37 +6,38 @@
 //!
 //! | pattern | m_k | what is wrong |
 //! |---|---|---|
-//! | [`Pattern::Everything`] | c | units, exposure |
-//! | [`Pattern::Connection`] | 1, c, c, c, … | the connection to the light: a constant in it |
-//! | [`Pattern::Bounce`] from v | c^max(0, k − v) | the bounce: its density, roulette without its weight; from v = 0 on the BSDF |
+//! | [`Pattern::Everything`] | c | units or exposure |
+//! | [`Pattern::Connection`] | 1, c, c, c, … | a constant in the connection to the light |
+//! | [`Pattern::Bounce`] from v | c^max(0, k − v) | the bounce: its density, or roulette without its weight. For v = 0, the BSDF |
 //! | [`Pattern::Cut`] after n | 1 to n, then 0 | truncation |
-//! | [`Pattern::Shift`] | S_k = T_{k+1} or T_{k−1} | the numbering |
+//! | [`Pattern::Shift`] | S_k = T_{k+1} or T_{k−1} | the numbering of terms |
 //!
-//! On a whole image alone the terms still tell themselves apart by where their light is. The fitted number is then compared
-//! with those that have a name ([`name_of`]): π where 1/π was forgotten, 2 where something counts twice.
+//! If only the whole image is given, the terms can still be separated, because each has its light in different places. The
+//! fitted constant is then compared with well-known values ([`name_of`]): π where 1/π was forgotten, 2 where something is
+//! counted twice.
 
 use super::gap::ratio;
 use super::picture::{Layer, Pictures, Slot};
 use super::regions::Region;
 use std::f64::consts::PI;
 
-/// A rule for the ratios.
+/// A rule for the ratios r_k.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pattern {
-    /// The same factor everywhere, also on what emits.
+    /// The same factor on all light, including emission.
     Everything,
-    /// The same factor on all that is reflected.
+    /// The same factor on all reflected light.
     Connection,
-    /// One factor more at every bounce after this many.
+    /// One more factor at every bounce after the given number of bounces.
     Bounce(usize),
-    /// Nothing after this term.
+    /// No light after the given term.
     Cut(usize),
-    /// Term k shows what is term k + this.
+    /// Slot k shows the term k + n, where n is the given number.
     Shift(i8),
 }
 
 impl Pattern {
-    /// All that are tried, for terms up to `last`.
+    /// All patterns that are tried, for terms up to `last`.
     pub fn all(last: usize) -> Vec<Self> {
         let mut all = vec![Self::Everything, Self::Connection];
         all.extend((0..4).map(Self::Bounce));
@@ -45,12 +46,12 @@ impl Pattern {
         all
     }
 
-    /// Whether a number is fitted.
+    /// Returns true if the pattern has a constant to fit.
     pub fn has_constant(self) -> bool {
         matches!(self, Self::Everything | Self::Connection | Self::Bounce(_))
     }
 
-    /// m_k.
+    /// The factor m_k of term k with constant c.
     pub fn factor(self, k: usize, c: f64) -> f64 {
         match self {
             Self::Everything => c,
@@ -73,13 +74,13 @@ impl Pattern {
         }
     }
 
-    /// The term that slot k shows, if there is one.
+    /// The number of the correct term that slot k shows, if there is one.
     fn source(self, k: usize) -> Option<usize> {
         if let Self::Shift(by) = self { k.checked_add_signed(by.into()) } else { Some(k) }
     }
 
-    /// What this rule makes of the right terms. The errors of terms are added, as if they came from the same paths; the tail
-    /// is taken as its first term. A term that the reference does not have is left out.
+    /// Applies the pattern to the correct terms. Errors of terms are added linearly, as if all terms came from the same
+    /// paths. The whole tail is treated as term K + 1. Terms that the reference does not have are left out.
     pub fn predict(self, reference: &Pictures, slots: &[Slot], c: f64) -> Pictures {
         let last = reference.last_term().unwrap_or(0);
         let part = |k: usize| reference.layer(if k > last { Slot::Tail } else { Slot::Term(k) });
@@ -116,7 +117,7 @@ impl Pattern {
         Pictures { size: reference.size, layers: slots.iter().filter_map(layer).collect(), code: reference.code }
     }
 
-    /// The constant that fits best, with its standard error; nothing if there is none in [1/40, 40].
+    /// The constant that fits best, with its standard error. None if there is no minimum inside [1/40, 40].
     pub fn fit(self, suspect: &Pictures, reference: &Pictures, regions: &[Region]) -> Option<Constant> {
         if !self.has_constant() {
             return None;
@@ -137,7 +138,7 @@ impl Pattern {
             if misfit(a) < misfit(b) { hi = b } else { lo = a }
         }
         let ln = 0.5 * (lo + hi);
-        // χ² rises by 1 one standard error away; a misfit of the model widens it
+        // χ² rises by 1 at one standard error; if the model does not fit, the error is widened
         let h = 1e-3;
         let bend = (misfit(ln + h) + misfit(ln - h) - 2.0 * misfit(ln)) / (h * h);
         let excess = (misfit(ln) / cells.count().max(1) as f64).max(1.0);
@@ -146,26 +147,26 @@ impl Pattern {
     }
 }
 
-/// A fitted number.
+/// A fitted constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant {
-    /// c.
+    /// The constant c.
     pub value: f64,
     /// Standard error of ln c.
     pub relative_error: f64,
 }
 
-/// Region means with weights, for the fit.
+/// Region means with their weights, as used by the fit.
 struct Cells {
-    /// Per slot and region: S and σ.
+    /// Slot, region, mean S of the suspect, and its σ.
     seen: Vec<(Slot, usize, f64, f64)>,
-    /// Per region: T_k, and last the tail.
+    /// For each region: the means of T_k, and last of the tail.
     terms: Vec<Vec<f64>>,
 }
 
 impl Cells {
     fn new(suspect: &Pictures, reference: &Pictures, regions: &[Region]) -> Self {
-        // the regions of the image without the image itself, where there are any: they do not overlap
+        // use the regions of the grid without the image as a whole, if there are any, because they do not overlap
         let regions = if regions.len() > 1 { &regions[1..] } else { regions };
         let mean = |l: &Layer, r: &Region| {
             r.pixels.iter().map(|&p| f64::from(l.mean[p].iter().sum::<f32>()) / 3.0).sum::<f64>()
@@ -225,7 +226,8 @@ const NAMED: [(f64, &str); 12] = [
     (2.0 / PI, "2/π"),
 ];
 
-/// The known number that a fitted one is: within three standard errors (at least 0.5 %), if these are at most 5 %.
+/// The name of the well-known value that a fitted constant matches. It must lie within three standard errors, or within 0.5
+/// % if that is more. None if three standard errors exceed 5 %.
 ///
 /// ```
 /// use fredholm::diagnosis::pattern::{Constant, name_of};

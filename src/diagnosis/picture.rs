@@ -1,21 +1,21 @@
-//! What is handed in: pictures of terms, of their sum, and what is known about their noise.
+//! The input pictures: terms, their sum, and the standard errors of their pixels.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | S_k | picture of T^k E by whoever is under suspicion | [`Slot::Term`] |
-//! | S | the whole image, Σ_k S_k with the tail | [`Slot::Whole`] |
-//! | s | standard error of a pixel, where the file has it | [`Layer::std_error`] |
+//! | S_k | picture of T^k E by the renderer under test | [`Slot::Term`] |
+//! | S | the whole image, Σ_k S_k including the tail | [`Slot::Whole`] |
+//! | s | standard error of a pixel, if the file contains it | [`Layer::std_error`] |
 
 use crate::engine::by_rays::Sampled;
 use crate::terms::TermImage;
 use serde::Serialize;
 
-/// Which part of L = Σ T^k E a picture shows.
+/// The part of L = Σ T^k E that a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub enum Slot {
-    /// T^k E.
+    /// The term T^k E.
     Term(usize),
-    /// Everything longer than the last term.
+    /// The sum of all terms after the last one given.
     Tail,
     /// The whole image.
     Whole,
@@ -31,31 +31,31 @@ impl std::fmt::Display for Slot {
     }
 }
 
-/// One picture, linear RGB, row by row from the top.
+/// One picture: linear RGB, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// What it shows.
+    /// The part it shows.
     pub slot: Slot,
-    /// Radiance.
+    /// Radiance of each pixel.
     pub mean: Vec<[f32; 3]>,
-    /// Standard error of each pixel; nothing where it is not known.
+    /// Standard error of each pixel; none if not known.
     pub std_error: Option<Vec<[f32; 3]>>,
 }
 
-/// How numbers were stored: what their rounding hides.
+/// Number format of the file. It determines the rounding error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Code {
     /// 32-bit floating point.
     Float,
-    /// 16-bit floating point, also where it was widened afterwards.
+    /// 16-bit floating point, even if it was converted to 32 bits afterwards.
     Half,
-    /// 8 bits by the sRGB curve.
+    /// 8 bits, encoded with the sRGB curve.
     EightBit,
 }
 
 impl Code {
-    /// Relative differences of means up to this are rounding.
+    /// Relative differences of means up to this value are attributed to rounding.
     pub fn rounding(self) -> f64 {
         match self {
             Self::Float => 1e-5,
@@ -70,14 +70,14 @@ impl Code {
 pub struct Pictures {
     /// Width and height in pixels.
     pub size: [usize; 2],
-    /// One or more; no slot twice.
+    /// One or more layers, each slot at most once.
     pub layers: Vec<Layer>,
-    /// How the numbers were stored.
+    /// Number format of the file.
     pub code: Code,
 }
 
 impl Pictures {
-    /// The layers of a render of this program.
+    /// The layers of a render by this program.
     pub fn of(sampled: &Sampled, size: [u32; 2]) -> Self {
         let layer = |slot, image: &TermImage| Layer {
             slot,
@@ -93,7 +93,7 @@ impl Pictures {
         Self { size: size.map(|s| s as usize), layers, code: Code::Float }
     }
 
-    /// The layer of a slot.
+    /// The layer of a slot, if there is one.
     pub fn layer(&self, slot: Slot) -> Option<&Layer> {
         self.layers.iter().find(|l| l.slot == slot)
     }
@@ -104,14 +104,14 @@ impl Pictures {
         self.layers.iter().filter_map(k).max()
     }
 
-    /// The same with only these slots.
+    /// The same pictures with only the slots that `keep` selects.
     #[must_use]
     pub fn only(&self, keep: impl Fn(Slot) -> bool) -> Self {
         let layers = self.layers.iter().filter(|l| keep(l.slot)).cloned().collect();
         Self { layers, ..self.clone() }
     }
 
-    /// Every value times `gain`.
+    /// Multiplies every value by `gain`.
     #[must_use]
     pub fn times(mut self, gain: f64) -> Self {
         let scale = |pixels: &mut Vec<[f32; 3]>| pixels.iter_mut().flatten().for_each(|v| *v *= gain as f32);
@@ -122,7 +122,7 @@ impl Pictures {
         self
     }
 
-    /// Blocks of `factor × factor` pixels averaged; pixels are taken as independent. `factor` must divide both sides.
+    /// Averages blocks of `factor × factor` pixels. Pixels are treated as independent. `factor` must divide both sides.
     #[must_use]
     pub fn shrunk(&self, factor: usize) -> Self {
         if factor == 1 {
@@ -150,7 +150,7 @@ impl Pictures {
     }
 }
 
-/// Whether all values fit in 16-bit floating point: then they probably came from there.
+/// Returns true if all values fit in 16-bit floating point; the file then probably had this format.
 pub fn is_half(pixels: &[[f32; 3]]) -> bool {
     // a half has 10 bits of mantissa, a float 23
     pixels.iter().flatten().all(|v| v.to_bits() & 0x1fff == 0) && pixels.iter().flatten().any(|v| v.fract() != 0.0)

@@ -1,4 +1,4 @@
-//! Too much or too little light where few pixels carry all the noise, and no t-test can be trusted.
+//! Tests for too much or too little light in regions where few pixels carry all the noise, so that a t-test is not valid.
 //!
 //! ```text
 //! too much:    W = mean over λ of Π_i (1 + λ (S_i/μ_i − 1)),   S_i ≥ 0, E S_i ≤ μ_i   ⟹   E W ≤ 1,   P(W ≥ 1/p) ≤ p
@@ -7,29 +7,34 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | S_i | a pixel of the suspect | argument |
-//! | P_i, s_i | what an explanation predicts for it, with its standard error | argument |
-//! | μ_i | P_i + 3 s_i, and a fiftieth of the mean of the region: no pixel is thought darker than it may be | [`excess`] |
-//! | λ | what is staked on a pixel | [`STAKES`] |
-//! | ν | variance of the suspect over that of the prediction, the median of the regions | argument of [`deficit`] |
+//! | S_i | value of pixel i of the suspect | argument |
+//! | P_i, s_i | prediction for pixel i, with its standard error | argument |
+//! | μ_i | upper bound of the expected value: P_i + 3 s_i plus 2 % of the mean of the region | [`excess`] |
+//! | λ | fraction of the wealth that is bet on one pixel | [`STAKES`] |
+//! | ν | variance of the suspect divided by that of the prediction: the median over the regions | argument of [`deficit`] |
 //!
-//! Too much is judged by betting on it: radiance is not negative, so that no law of its noise is needed, and the rarest firefly of
-//! a right renderer is paid for by all the pixels without one (Markov's inequality; Shafer 2021, *Testing by betting*). Too little
-//! does not show in the suspect's own scatter: what it misses has no noise. Its variance is taken from the prediction instead,
-//! four times over, since two ways of sampling are not equally noisy everywhere; the lower tail of a sum that cannot be negative is
-//! no heavier than that of a normal one (Maurer 2003). Both ask for a prediction that is itself well known.
+//! Too much light is tested by betting. W is the wealth of a gambler who bets on every pixel that it is brighter than μ_i;
+//! if the renderer is correct, W is rarely large (Markov's inequality; Shafer 2021, *Testing by betting*). The test needs no
+//! assumption on the distribution of the noise, only that radiance is not negative. A rare firefly of a correct renderer is
+//! balanced by all the pixels without one.
+//!
+//! Too little light cannot be tested with the scatter of the suspect itself, because light that is missing causes no
+//! scatter. The variance of the prediction is used instead, times four, because two ways of sampling are not equally noisy
+//! everywhere. The lower tail of a sum of non-negative values is no heavier than that of a normal distribution (Maurer
+//! 2003). Both tests need a prediction with small errors.
 
-/// λ.
+/// The values of λ.
 const STAKES: [f64; 4] = [0.003, 0.02, 0.1, 0.4];
-/// A pixel of the prediction is known if its error is at most this part of it.
+/// A pixel of the prediction counts as known if its error is at most this fraction of its value.
 const KNOWN: f64 = 0.2;
-/// Fewer known pixels are no ground to stand on.
+/// Smallest number of known pixels for a test.
 const LEAST: usize = 4;
 
-/// A pixel: S, P, s.
+/// A pixel: S, P and s.
 pub(super) type Pixel = [f64; 3];
 
-/// p-value of a suspect that is no brighter than predicted; 1 if a value is negative or the prediction is not known.
+/// p-value of the hypothesis that the suspect is not brighter than predicted. It is 1 if a value is negative or the
+/// prediction is not known well enough.
 pub(super) fn excess(pixels: &[Pixel]) -> f64 {
     let mean = pixels.iter().map(|x| x[1]).sum::<f64>() / pixels.len() as f64;
     if pixels.iter().any(|x| x[0] < 0.0 || x[0].is_nan()) {
@@ -46,11 +51,12 @@ pub(super) fn excess(pixels: &[Pixel]) -> f64 {
     }
     let wealth = |stake: f64| known.iter().map(|x| (stake * (x - 1.0)).ln_1p()).sum::<f64>().exp();
     let wealth = STAKES.into_iter().map(wealth).sum::<f64>() / STAKES.len() as f64;
-    // beside the t-test, that is used where it can be: two tests, one chance of error
+    // factor 2 because this test is used in addition to a t-test: two tests share one probability of error
     (2.0 / wealth).min(1.0)
 }
 
-/// p-value of a suspect that is no darker than predicted, whose variance is `noise` times that of the prediction.
+/// p-value of the hypothesis that the suspect is not darker than predicted. `noise` is the variance of the suspect divided
+/// by that of the prediction.
 pub(super) fn deficit(pixels: &[Pixel], noise: f64) -> f64 {
     let (t, v) = pixels.iter().fold((0.0, 0.0), |a, [suspect, p, s]| (a.0 + p - suspect, a.1 + s * s));
     if t.is_nan() || t <= 0.0 || !noise.is_finite() || v == 0.0 {
@@ -64,7 +70,7 @@ mod tests {
     use super::*;
     use crate::math::{Key, Purpose, Rng};
 
-    /// Pixels whose samples are 1000 with probability `rare` and else what is left of a mean of 1.
+    /// Pixels whose value is 1000 with probability `rare`, and otherwise such that the mean is 1.
     fn spiky(seed: u64, rare: f64, factor: f64) -> Vec<Pixel> {
         let key = Key::new(seed, "spikes");
         let left = (1.0 - 1000.0 * rare) / (1.0 - rare);
@@ -74,17 +80,17 @@ mod tests {
 
     #[test]
     fn fireflies_of_a_right_renderer_are_no_excess_and_others_are() {
-        // about one picture in five has a firefly that makes it five times as bright
+        // about one picture in five has a firefly, which makes it five times as bright
         let level = 0.05;
         let alarms = (0..400).filter(|s| excess(&spiky(*s, 8e-4, 1.0)) < level).count();
         assert!(alarms <= 20, "{alarms}");
-        // eight fireflies that nothing pays for
+        // eight fireflies that no dark pixels balance
         let mut wrong = spiky(1, 0.0, 1.0);
         (0..8).for_each(|i| wrong[32 * i][0] = 1000.0);
         assert!(excess(&wrong) < 1e-9);
         wrong[3][0] = -1.0;
         assert_eq!(excess(&wrong), 1.0);
-        // a prediction that is not known forbids nothing
+        // a prediction with large errors gives no evidence
         let vague: Vec<Pixel> = wrong.iter().map(|x| [x[0].abs(), 1.0, 0.5]).collect();
         assert_eq!(excess(&vague), 1.0);
     }
@@ -95,7 +101,7 @@ mod tests {
         assert!(deficit(&lamp(0.0, 0.2), 8.0) < 1e-9);
         assert_eq!(deficit(&lamp(10.0, 0.2), 8.0), 1.0);
         assert_eq!(deficit(&lamp(12.0, 0.2), 8.0), 1.0);
-        // one that the prediction itself met once
+        // a lamp that the prediction itself hit only once
         assert!(deficit(&lamp(0.0, 10.0), 1.0) > 0.1);
     }
 }

@@ -1,13 +1,13 @@
-//! Where to look: the whole image, sixteen regions, and what the camera sees there.
+//! Regions of the image that are compared: the whole image, a grid of sixteen, and regions defined by what the camera sees.
 //!
 //! | region | pixels |
 //! |---|---|
-//! | image | all |
+//! | image | all pixels |
 //! | region r,c | a quarter of the rows times a quarter of the columns |
-//! | lamps | whose centre sees an emitter |
-//! | mirrors and glass | whose centre sees a surface with a delta part |
-//! | grazing | whose centre sees a surface at cos θ < 0.25 |
-//! | beside lamps | within an eighth of the image of a lamp, and not a lamp |
+//! | lamps | pixels whose centre ray hits an emitter |
+//! | mirrors and glass | pixels whose centre ray hits a surface with a delta component |
+//! | grazing | pixels whose centre ray hits a surface at cos θ < 0.25 |
+//! | beside lamps | pixels within an eighth of the image width of a lamp that show no lamp themselves |
 
 use super::picture::{Pictures, Slot};
 use crate::math::Rgb;
@@ -16,20 +16,21 @@ use crate::scene::Scene;
 /// A set of pixels with a name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    /// In words.
+    /// Name of the region.
     pub name: String,
-    /// Indices, ascending.
+    /// Indices of its pixels, ascending.
     pub pixels: Vec<usize>,
-    /// Those of them whose light is mostly emitted towards the eye, ascending; see [`lit`].
+    /// Pixels of the region whose light is mostly emission seen directly, ascending; see [`lit`].
     pub lamps: Vec<usize>,
 }
 
-/// Regions with fewer pixels are not tested: their noise is not known well enough.
+/// Smallest number of pixels of a region. Smaller regions are not tested, because their noise cannot be estimated well
+/// enough.
 pub const FEWEST: usize = 30;
 /// Regions per side of the image.
 pub const SIDE: usize = 4;
 
-/// The whole image first, then the sixteen regions, of which small images have fewer.
+/// The whole image, then the sixteen regions of the grid. Regions with too few pixels are left out.
 pub fn grid([w, h]: [usize; 2]) -> Vec<Region> {
     let mut regions = vec![Region { name: "image".into(), pixels: (0..w * h).collect(), lamps: vec![] }];
     for (row, column) in (0..SIDE).flat_map(|r| (0..SIDE).map(move |c| (r, c))) {
@@ -41,7 +42,7 @@ pub fn grid([w, h]: [usize; 2]) -> Vec<Region> {
     regions
 }
 
-/// The regions without the pixels of a mask (empty: none); the first one stays whatever is left of it.
+/// Removes the pixels of a mask (empty: no mask). Regions that become too small are left out, except the first.
 pub fn without(regions: Vec<Region>, mask: &[bool]) -> Vec<Region> {
     let left = |r: Region| Region {
         pixels: r.pixels.into_iter().filter(|&p| !mask.get(p).copied().unwrap_or(false)).collect(),
@@ -56,7 +57,7 @@ pub fn without(regions: Vec<Region>, mask: &[bool]) -> Vec<Region> {
     all
 }
 
-/// The regions with their lamps, from what is emitted and what is seen in all.
+/// Finds the lamps of each region: pixels of the reference where emission is more than half of the whole.
 pub fn lit(regions: Vec<Region>, reference: &Pictures) -> Vec<Region> {
     let (Some(emitted), Some(whole)) = (reference.layer(Slot::Term(0)), reference.layer(Slot::Whole)) else {
         return regions;
@@ -67,7 +68,7 @@ pub fn lit(regions: Vec<Region>, reference: &Pictures) -> Vec<Region> {
     regions.into_iter().map(with).collect()
 }
 
-/// What the camera of a scene sees, as sets of pixels; those with too few pixels are left out.
+/// Regions defined by what the camera of a scene sees. Regions with too few pixels are left out.
 pub fn seen(scene: &Scene) -> Vec<Region> {
     let [w, h] = scene.camera.size.map(|s| s as usize);
     let looks: Vec<_> =
@@ -98,7 +99,7 @@ pub fn seen(scene: &Scene) -> Vec<Region> {
     regions
 }
 
-/// The name of the region of mirrors and glass.
+/// Name of the region of mirrors and glass.
 pub const MIRRORS: &str = "mirrors and glass";
 
 #[cfg(test)]

@@ -1,20 +1,20 @@
-//! The decision procedure as data: an ordered list of small rules, each from evidence to a named suspicion or to nothing.
+//! The decision rules: an ordered list of functions, each from evidence to named suspicions (or none).
 //!
-//! | order | looks at | names |
+//! | order | evidence | suspicion |
 //! |---|---|---|
-//! | 1 | values that are no numbers | division by a density of 0 |
-//! | 2 | likeness with the mirrored reference | a picture that is turned |
-//! | 3 | scatter against the `_se` layers | the same random numbers |
-//! | 4 | the mean against samples per pixel | display, accumulator |
-//! | 5 | the whole against the sum of its terms | something that is not linear |
+//! | 1 | values that are not finite | division by a density of 0 |
+//! | 2 | correlation with the mirrored reference | a mirrored or inverted picture |
+//! | 3 | scatter compared with the `_se` layers | repeated random numbers |
+//! | 4 | mean against samples per pixel | encoding for display, accumulation |
+//! | 5 | whole image against the sum of its terms | a nonlinear operation |
 //! | 6 | r_k by [`pattern`](super::pattern) | numbering, truncation, connection, bounce, BSDF, roulette |
-//! | 7 | r_k flat in k, not in space | the density of light points |
-//! | 8 | mirrors and glass against the rest | the emission rule |
-//! | 9 | brightest values | a clamp |
-//! | 10 | scale × 10 against scale × 1 | measures |
+//! | 7 | r_k the same for all k, but not over the image | the density of light points |
+//! | 8 | mirrors and glass against the rest of the image | the rule for counting emission |
+//! | 9 | the brightest values | a clamp |
+//! | 10 | the scene scaled by 10 against the original | densities in the wrong measure |
 //!
-//! A rule names a family, with its evidence and the next experiment. Where candidates can be simulated, they decide
-//! between its members.
+//! A rule names a family of mistakes, the evidence for it, and the next experiment. If candidates can be simulated, the
+//! simulation decides between the members of the family.
 
 use super::evidence::Evidence;
 use super::pattern::{Constant, Pattern, name_of};
@@ -22,56 +22,57 @@ use super::picture::Slot;
 use super::regions::MIRRORS;
 use super::series::BySamples;
 
-/// How much a suspicion rests on.
+/// Strength of the reason for a suspicion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Basis {
-    /// A simulation of it cannot be told from the suspect.
+    /// A simulation of the mistake cannot be distinguished from the suspect.
     Simulated,
     /// A rule for the ratios r_k describes every picture and region within its noise.
     Pattern,
-    /// Single pieces of evidence point to it.
+    /// Single observations point to it.
     Points,
 }
 
-/// A named suspect.
+/// A possible cause.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Suspicion {
-    /// The name, as in the zoo where it has a member.
+    /// Name of the cause; the name of a member of the zoo where there is one.
     pub name: String,
-    /// What it rests on.
+    /// Kind of reason.
     pub basis: Basis,
-    /// What was seen, in words.
+    /// Description of the evidence.
     pub why: String,
-    /// What would decide.
+    /// Description of the next experiment.
     pub next: String,
-    /// p-value of the explanation; NaN where there is no test.
+    /// p-value of the explanation; NaN if it was not tested.
     pub p: f64,
-    /// Mean squared deviation in standard errors.
+    /// Mean squared deviation, in squared standard errors.
     pub misfit: f64,
-    /// k and the r_k that it predicts, where it predicts any.
+    /// Pairs (k, r_k) that the explanation predicts; empty if it predicts none.
     pub curve: Vec<[f64; 2]>,
-    /// A number that was fitted and is no known one.
+    /// The fitted constant, if it has no well-known value.
     pub fitted: Option<f64>,
 }
 
-/// What a rule may look at.
+/// The input of a rule.
 pub struct Facts<'a> {
-    /// Evidence of the suspect.
+    /// Evidence about the suspect.
     pub evidence: &'a Evidence,
-    /// Patterns that describe it, with their constants.
+    /// Patterns that describe the suspect, with their constant, p-value and misfit.
     pub patterns: &'a [(Pattern, Option<Constant>, f64, f64)],
-    /// How its mean changes with the samples per pixel.
+    /// Change of its mean with the samples per pixel.
     pub samples: Option<&'a BySamples>,
-    /// Evidence of the same scene at another scale, with the scale.
+    /// Scale factor, and evidence from the same scene at that scale.
     pub scaled: Option<(f64, &'a Evidence)>,
-    /// Whether it is certain that something is wrong.
+    /// True if the suspect differs significantly from the reference.
     pub rejected: bool,
-    /// Whether that is still so if errors are those that neighbouring pixels show, and not those that are claimed.
+    /// True if the difference is still significant with errors from the scatter of neighbouring pixels instead of the `_se`
+    /// layers.
     pub beyond_scatter: bool,
 }
 
-/// The rules in their order.
+/// The rules in the order of the table above.
 pub const RULES: [fn(&Facts) -> Vec<Suspicion>; 10] = [
     not_a_number,
     turned,
@@ -99,11 +100,11 @@ fn points(name: &str, why: String, next: &str) -> Vec<Suspicion> {
     }]
 }
 
-/// Several rules with a free number each, in words: where the number belongs the data does not say.
+/// Describes several patterns with one fitted constant each. The data cannot decide between them.
 pub(super) fn one_constant(fitted: &[Suspicion]) -> String {
     let each = fitted.iter().map(|s| format!("{} {:.4}", s.name, s.fitted.unwrap_or(f64::NAN)));
     let each = each.collect::<Vec<_>>().join(", or ");
-    format!("one number that is no known one fits as well, but it was free to fit: {each}")
+    format!("a pattern with one fitted constant, which has no well-known value, fits as well: {each}")
 }
 
 fn not_a_number(f: &Facts) -> Vec<Suspicion> {
@@ -113,8 +114,8 @@ fn not_a_number(f: &Facts) -> Vec<Suspicion> {
     }
     points(
         "not-a-number",
-        format!("{n} values are not finite: somewhere a density of 0 was divided by, and the sum kept it"),
-        "find the pixel, and print the density of the sample that first gives no number",
+        format!("{n} values are not finite: probably a value was divided by a density of 0 and added to the image"),
+        "find such a pixel, and print the density of the first sample in it that is not finite",
     )
 }
 
@@ -124,32 +125,34 @@ fn turned(f: &Facts) -> Vec<Suspicion> {
     if !(f.rejected && other > here + 0.05 && other > 0.8) {
         return vec![];
     }
-    let why = format!("it is more like the reference {how} (correlation {other:.3}) than as it stands ({here:.3})");
-    points("another-view", why, "turn the picture, or compare the cameras")
+    let why = format!(
+        "it is more similar to the reference {how} (correlation {other:.3}) than to the reference itself ({here:.3})"
+    );
+    points("another-view", why, "flip the picture, or compare the cameras")
 }
 
 fn same_numbers(f: &Facts) -> Vec<Suspicion> {
     let v = f.evidence.noise;
-    // a wrong shape scatters, too: too much of it counts only where the means agree but for the errors that are claimed
+    // a wrong spatial shape also increases the scatter, so that large scatter counts only if the means agree within it
     let repeats = v >= 2.5 && f.rejected && !f.beyond_scatter;
     if !(v < 0.4 || repeats) {
         return vec![];
     }
     let why = if v < 1.0 {
         format!(
-            "neighbouring pixels scatter with {v:.2} of the variance that their errors claim: they share random numbers"
+            "the scatter of neighbouring pixels is {v:.2} of the variance in the _se layers: pixels share random numbers"
         )
     } else {
-        format!("neighbouring pixels scatter with {v:.1} times the variance that their errors claim: samples repeat")
+        format!("the scatter of neighbouring pixels is {v:.1} times the variance in the _se layers: samples repeat")
     };
-    points("same-numbers", why, "render it with two seeds: the mean of the difference must fall as 1/√samples")
+    points("same-numbers", why, "render it with two seeds: the mean difference must fall as 1/√samples")
 }
 
 fn changes_with_samples(f: &Facts) -> Vec<Suspicion> {
     let Some(s) = f.samples else { return vec![] };
     if s.p_constant < 1e-3 && s.largest_change > 5e-3 {
         let why = format!(
-            "the mean changes with the samples per pixel, {} (p = {:.1e}): no estimator of a mean does that",
+            "the mean changes with the samples per pixel, {} (p = {:.1e}): the mean of an unbiased estimator does not change",
             s.means.iter().map(|m| format!("{:.4} at {}", m[1], m[0])).collect::<Vec<_>>().join(", "),
             s.p_constant
         );
@@ -161,10 +164,10 @@ fn changes_with_samples(f: &Facts) -> Vec<Suspicion> {
     }
     if s.renewed < 0.3 && !f.rejected {
         let why = format!(
-            "further samples replace {:.1} % of the error that the first ones leave, where new ones would replace nearly all",
+            "further samples replace {:.1} % of the error of the first ones; independent samples would replace nearly all of it",
             100.0 * s.renewed
         );
-        return points("same-numbers", why, "give every sample numbers of its own");
+        return points("same-numbers", why, "give every sample its own random numbers");
     }
     vec![]
 }
@@ -175,10 +178,9 @@ fn no_sum_of_its_terms(f: &Facts) -> Vec<Suspicion> {
     if off.is_nan() || off <= (2.5 * half).max(5e-3) {
         return vec![];
     }
-    let why =
-        format!("the whole image is {sum:.4} ± {half:.4} of the sum of its own layers, where {right:.4} is right");
+    let why = format!("the whole image is {sum:.4} ± {half:.4} times the sum of its own layers; correct is {right:.4}");
     let name = if sum < right { "gamma-before-mean" } else { "emission-missing" };
-    let next = "look for what is not linear (clamp, gamma, 8 bits), or for a term that the layers leave out";
+    let next = "look for a nonlinear step (clamp, gamma, 8 bits), or for a term that the layers do not contain";
     points(name, why, next)
 }
 
@@ -193,7 +195,7 @@ fn patterns(f: &Facts) -> Vec<Suspicion> {
     all.flat_map(|(list, curve)| list.into_iter().map(move |s| Suspicion { curve: curve.clone(), ..s })).collect()
 }
 
-/// What a pattern with its constant is called; several where it does not tell.
+/// Names of a pattern with its constant. There are several if the pattern fits several mistakes.
 // long, because it is a table: one line for each pattern and constant
 fn named(pattern: Pattern, c: Option<Constant>, p: f64, misfit: f64) -> Vec<Suspicion> {
     let value = c.map_or(1.0, |c| c.value);
@@ -212,15 +214,15 @@ fn named(pattern: Pattern, c: Option<Constant>, p: f64, misfit: f64) -> Vec<Susp
         curve: vec![],
         fitted: c.filter(|c| name_of(*c).is_none()).map(|c| c.value),
     };
-    let apart = "render it with connections only, and with hits only: which of the two is wrong?";
+    let apart = "render with next-event estimation only, and with BSDF sampling only, to see which of the two is wrong";
     match pattern {
         Pattern::Everything => {
-            let why = format!("every term, emission too, is {number} times the right one");
-            vec![make("exposure", why, "compare the units of the lamp and the gain of the display")]
+            let why = format!("every term, including emission, is {number} times the correct one");
+            vec![make("exposure", why, "compare the units of the emission and the exposure")]
         }
         Pattern::Connection => {
             let why = format!(
-                "r_k = {number} for every k ≥ 1, everywhere: what is wrong happens once per path, where light is found"
+                "r_k = {number} for every k ≥ 1, everywhere: the mistake occurs once per path, in the connection to the light"
             );
             match known {
                 "2" => vec![make("double-emission", why, apart)],
@@ -240,7 +242,7 @@ fn named(pattern: Pattern, c: Option<Constant>, p: f64, misfit: f64) -> Vec<Susp
         }
         Pattern::Bounce(from) => {
             let why = format!(
-                "r_k = c^(k−{from}) for k ≥ {from} with c = {number}: direct light is right, every bounce is not"
+                "r_k = c^(k−{from}) for k ≥ {from} with c = {number}: direct light is correct, but every later bounce has a wrong factor"
             );
             match known {
                 "1/2" => vec![
@@ -261,13 +263,17 @@ fn named(pattern: Pattern, c: Option<Constant>, p: f64, misfit: f64) -> Vec<Susp
                     vec![make("roulette-weighted-twice", why, "render it without roulette")]
                 }
                 _ => {
-                    vec![make("constant-in-the-bounce", why, "divide by the density that the direction was drawn with")]
+                    vec![make(
+                        "constant-in-the-bounce",
+                        why,
+                        "divide by the density with which the direction was sampled",
+                    )]
                 }
             }
         }
         Pattern::Cut(n) => {
-            let why = format!("T0 to T{n} are right, and nothing longer is there");
-            vec![make("truncated", why, "raise its number of bounces: the sum must rise")]
+            let why = format!("T0 to T{n} are correct, and all longer terms are missing");
+            vec![make("truncated", why, "increase the number of bounces: the sum must increase")]
         }
         Pattern::Shift(by) => {
             let why = if by > 0 { "slot k shows T^(k+1) E" } else { "slot k shows T^(k−1) E" };
@@ -285,9 +291,14 @@ fn varies_in_space(f: &Facts) -> Vec<Suspicion> {
     }
     let known: Vec<f64> = direct.regions.iter().copied().filter(|r| r.is_finite()).collect();
     let (lo, hi) = known.iter().fold((f64::INFINITY, 0.0f64), |a, &r| (a.0.min(r), a.1.max(r)));
-    let why =
-        format!("direct light itself is wrong, and not by a constant: r_1 = {lo:.2} to {hi:.2} from region to region");
-    points("area-density", why, "scale the scene by 10: light of surfaces must not change (--scale 10=FILE)")
+    let why = format!(
+        "direct light is wrong, and not by a constant factor: r_1 varies from {lo:.2} to {hi:.2} between regions"
+    );
+    points(
+        "area-density",
+        why,
+        "scale the scene by 10: direct light from area lights must not change (--scale 10=FILE)",
+    )
 }
 
 fn behind_mirrors(f: &Facts) -> Vec<Suspicion> {
@@ -299,10 +310,14 @@ fn behind_mirrors(f: &Facts) -> Vec<Suspicion> {
         return vec![];
     }
     let why = format!(
-        "{} is {:.3} of the right one in mirrors and glass, {:.3} over the image",
+        "{} is {:.3} times the correct one in mirrors and glass, {:.3} times over the whole image",
         r.slot, r.regions[at], r.value
     );
-    points("no-emission-after-mirror", why, "count emission that is hit after a mirror: no connection can find it")
+    points(
+        "no-emission-after-mirror",
+        why,
+        "count emission that a path hits after a mirror, because no connection can find it",
+    )
 }
 
 fn cut_at_the_top(f: &Facts) -> Vec<Suspicion> {
@@ -311,8 +326,11 @@ fn cut_at_the_top(f: &Facts) -> Vec<Suspicion> {
     if !(f.rejected && e.brightest < 0.8 && low && e.ratios.iter().any(|r| r.flat < 1e-3)) {
         return vec![];
     }
-    let why = format!("the brightest value is {:.3} of the right one, and what is dimmer is nearer to it", e.brightest);
-    points("clamped", why, "remove the clamp: noise will rise, and the mean with it")
+    let why = format!(
+        "the brightest value is {:.3} times the correct one, and dimmer values are closer to correct",
+        e.brightest
+    );
+    points("clamped", why, "remove the clamp: the noise and the mean will increase")
 }
 
 fn changes_with_scale(f: &Facts) -> Vec<Suspicion> {
@@ -324,7 +342,7 @@ fn changes_with_scale(f: &Facts) -> Vec<Suspicion> {
     });
     let Some((here, there)) = moved else { return vec![] };
     let why = format!(
-        "{} is {:.4} ± {:.4} of the right one, and {:.4} ± {:.4} in the scene scaled by {scale}: lengths enter where they must cancel",
+        "{} is {:.4} ± {:.4} times the correct one, and {:.4} ± {:.4} times in the scene scaled by {scale}: lengths do not cancel as they must",
         here.slot, here.value, here.half_width, there.value, there.half_width
     );
     let name = if (here.value - 1.0).abs() < 0.05 { "mixed-measures" } else { "area-density" };

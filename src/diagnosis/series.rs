@@ -1,4 +1,4 @@
-//! One render at growing numbers of samples: does its mean stay, and does its error fall?
+//! One render with growing numbers of samples: does its mean stay constant, and does its error fall?
 //!
 //! ```text
 //! mean(n) is constant           mean over pixels of (S_n − T)² = v n^b + …,   b = −1 for independent samples
@@ -7,9 +7,9 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | n | samples per pixel | [`BySamples::means`] |
-//! | b | slope of log error² against log n, by least squares | [`BySamples::slope`] |
-//! | – | how much of the first error the further samples replace | [`BySamples::renewed`] |
-//! | p | p-value of a constant mean | [`BySamples::p_constant`] |
+//! | b | slope of log squared error against log n, by least squares | [`BySamples::slope`] |
+//! | – | fraction of the first error that further samples have replaced | [`BySamples::renewed`] |
+//! | p | p-value of the hypothesis that the mean is constant | [`BySamples::p_constant`] |
 
 use super::gap::ratio;
 use super::picture::{Pictures, Slot};
@@ -17,22 +17,24 @@ use super::regions::Region;
 use crate::stats::{Measured, difference, holm, two_sided_p};
 use serde::Serialize;
 
-/// What happens to a render as its samples grow.
+/// Changes of a render as its number of samples grows.
 #[derive(Clone, Debug, Serialize)]
 pub struct BySamples {
-    /// n and mean over the reference's mean.
+    /// n, and the mean divided by the mean of the reference.
     pub means: Vec<[f64; 2]>,
-    /// Smallest p-value of equal means, adjusted, each n against the largest.
+    /// Smallest p-value of the hypothesis that the means at n and at the largest n are equal, adjusted for the number of
+    /// tests.
     pub p_constant: f64,
     /// Largest relative change of the mean.
     pub largest_change: f64,
-    /// b; NaN with fewer than two n. The noise of the reference is taken off.
+    /// The slope b; NaN with fewer than two values of n. The noise of the reference is subtracted.
     pub slope: f64,
-    /// Mean of (S_first − S_last)² over the squared error of the first: about 1 for samples that are new, 0 where they repeat.
+    /// Mean of (S_first − S_last)² divided by the squared error of S_first. It is about 1 if later samples are independent
+    /// of the first ones, and 0 if they repeat them.
     pub renewed: f64,
 }
 
-/// Looks at the whole image (or the first picture) of renders with growing n.
+/// Analyses the whole image (or else the first picture) of renders with growing n.
 pub fn by_samples(renders: &[(u32, Pictures)], reference: &Pictures, image: &Region) -> Option<BySamples> {
     let pick = |p: &Pictures| p.layer(Slot::Whole).or(p.layers.first()).map(|l| l.slot);
     let slot = pick(&renders.first()?.1)?;

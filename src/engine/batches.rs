@@ -1,7 +1,8 @@
-//! One way of rendering, batch by batch: what a watch over two of them compares.
+//! One side of a comparison batch by batch: a way of rendering, one batch at a time.
 //!
-//! Batch i is a whole image of `settings.spp` samples per pixel from stream i of that way and seed, so that batches are
-//! independent and identically distributed. Errors come from their scatter; a batch has none of its own.
+//! Batch i is a complete image of `settings.spp` samples per pixel. It uses stream i of its way of rendering and its seed,
+//! so batches are independent and identically distributed. Errors come from the scatter of the batches, because a single
+//! batch has none.
 
 use crate::engine::Settings;
 use crate::engine::by_rays::{Estimator, Passes, film, variance};
@@ -19,13 +20,13 @@ use crate::terms::{Cost, Estimate, Functional, Series, World};
 /// One way of rendering.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Side {
-    /// Which estimator of the terms; none is the path tracer.
+    /// The estimator of the terms; None for the path tracer.
     pub estimator: Option<Estimator>,
-    /// How. `spp` is of one batch.
+    /// The settings; `spp` is the number of samples per pixel of one batch.
     pub settings: Settings,
 }
 
-/// What one batch gave.
+/// Result of one batch.
 #[derive(Clone, Debug)]
 pub struct Batch {
     /// Image mean, regions, projections.
@@ -39,24 +40,24 @@ pub struct Batch {
 }
 
 impl Side {
-    /// Its words in tables: `prefix, mis`.
+    /// Label for tables, which begins with the estimator and the technique: `prefix, mis`.
     pub fn label(&self) -> String {
         let Settings { technique, roulette, path_roulette, max_bounces, .. } = &self.settings;
         let cut = |ends: bool| if ends { String::new() } else { format!(", k ≤ {max_bounces} only") };
         match self.estimator {
-            // a walk from the light has no use for a technique
+            // walks from the light ignore the technique
             Some(Estimator::Light) => format!("light{}", cut(roulette.ends())),
             Some(e) => format!("{e}, {technique}, roulette {roulette}{}", cut(roulette.ends())),
             None => format!("path tracer, {technique}, roulette {path_roulette}{}", cut(path_roulette.ends())),
         }
     }
 
-    /// Whether paths end by roulette: otherwise nothing longer than K is estimated.
+    /// Returns true if paths end by roulette. Otherwise nothing longer than K is estimated.
     fn ends(&self) -> bool {
         if self.estimator.is_some() { self.settings.roulette.ends() } else { self.settings.path_roulette.ends() }
     }
 
-    /// Batch `index`. `name` keeps the streams of two sides apart that are rendered in the same way.
+    /// Renders batch `index`. `name` separates the random streams of two sides that render in the same way.
     pub fn batch(&self, scene: &Scene, name: &str, index: u32) -> Batch {
         let settings = &self.settings;
         let stream = self.estimator.map_or("path".into(), |e| e.to_string());
@@ -84,8 +85,8 @@ impl Side {
         }
     }
 
-    /// A result without numbers that says what this way cannot see in a scene, and what its samples cannot know; its cost is that of one
-    /// batch.
+    /// A result without numbers. It lists the paths that this way of rendering cannot find in a scene, and the doubts about
+    /// its samples. Its cost is that of one batch.
     pub fn limits(&self, scene: &Scene) -> Series {
         let unsampled = unsampled(scene, self.estimator, self.settings.technique);
         let [w, h] = scene.camera.size.map(u64::from);

@@ -1,7 +1,9 @@
-//! The discrete world: patches, form factors, terms, solve, and the picture of them through the camera.
+//! The discrete world: patches, form factors, terms, the solution, and their images through the camera.
 //!
-//! `T_h = diag(ρ) F` as a matrix or as stored rays ([`discretisation`](crate::engine::discretisation)), `L_h = (I − T_h)⁻¹ E`. A second mesh with a quarter of the patches, twice as coarse, read along the
-//! same camera rays, gives the discretisation error |R_h − R_2h| that stands beside the Monte Carlo error in every verdict.
+//! `T_h = diag(ρ) F` is a matrix or a set of stored rays ([`discretisation`](crate::engine::discretisation)), and
+//! `L_h = (I − T_h)⁻¹ E`. A second mesh has a quarter of the patches and is twice as coarse. Seen along the same camera
+//! rays, it gives the discretisation error |R_h − R_2h| of a result R. Every verdict adds this error to the Monte Carlo
+//! error.
 
 use crate::engine::Settings;
 use crate::engine::by_rays;
@@ -24,38 +26,39 @@ use crate::solver::{Radiosity, Solution, residual, settle};
 use crate::terms::{TermImage, World};
 use glam::DVec3;
 
-/// A scene as a matrix, with everything that is printed about it.
+/// A scene as a matrix, with everything that is reported about it.
 pub struct Matrix<R = Discretisation> {
-    /// Patches and form factors.
+    /// T_h with its patches.
     pub radiosity: R,
-    /// `T_h^k E` per patch, k = 0..=K.
+    /// `T_h^k E` per patch, for k = 0..=K.
     pub terms: Vec<Vec<DVec3>>,
     /// `L_h` per patch, with its residual.
     pub solution: Solution,
-    /// Closure, reciprocity, bounds of F.
+    /// Checks of F: closure, reciprocity, bounds.
     pub invariants: Invariants,
     /// Spectral radius per channel.
     pub spectral: [Spectral; 3],
-    /// The same with its width and noise; of many stored rays before it on unions of up to 16 and up to 4 patches.
+    /// Spectral radius with its mesh width and noise. If there are many stored rays, the radii on unions of up to 16 and up
+    /// to 4 patches come before it.
     pub radii: Vec<Radius>,
-    /// ‖T_h‖₁ and ‖T_h‖∞ per channel of a dense matrix; columns of stored rays are too noisy for the first.
+    /// ‖T_h‖₁ and ‖T_h‖∞ per channel. None for stored rays, whose columns are too noisy for the first norm.
     pub norms: Option<[(f64, f64); 3]>,
-    /// The error bar of stored rays.
+    /// Error bar of stored rays; None for a dense matrix.
     pub sampling: Option<SampledRows>,
     /// Surface means `Σ A_i (T_h^k E)_i / A`.
     pub surface: Vec<DVec3>,
-    /// What light never reaches, and what all of the above leaves out.
+    /// Sides that light never reaches. All fields above leave them out.
     pub unlit: Vec<Unlit>,
 }
 
-/// From this spectral radius on a channel keeps all its light, as far as form factors can tell.
+/// A channel with at least this spectral radius loses no light, as far as form factors can show.
 const KEEPS_ALL: f64 = 1.0 - 1e-6;
 
-/// The Neumann series of stored rays ends when what is left is this small against the sum.
+/// The Neumann series of stored rays ends when the remainder is this small compared with the sum.
 const LEFT: f64 = 1e-7;
-/// Or after so many steps; GMRES takes over then.
+/// It also ends after this number of steps, and GMRES takes over.
 const MOST_STEPS: usize = 2000;
-/// What GMRES must bring the residual below, as [`settle`] has it.
+/// GMRES must bring the residual below this value, as in [`settle`].
 const SETTLED: f64 = 1e-8;
 
 /// Meshes a scene into about `patches` patches and solves it.
@@ -80,7 +83,7 @@ pub fn matrix(
     })
 }
 
-/// The same as a dense matrix, for what asks for its entries.
+/// Like [`matrix`], but always as a dense matrix, for callers that need its entries.
 ///
 /// # Errors
 /// See [`MatrixError`].
@@ -95,7 +98,7 @@ pub fn dense_matrix(
     dense(Patches::graded(description, patches, grading)?, scene, max_bounces, progress)
 }
 
-/// A coarse one without terms, where the scene has one that costs little.
+/// A coarse dense matrix without terms; None if the scene has no cheap one.
 pub fn coarse(description: &Description, scene: &Scene) -> Option<Matrix<Radiosity>> {
     if scene.sides() > 400 || description.radiosity_suits().is_err() {
         return None;
@@ -103,7 +106,7 @@ pub fn coarse(description: &Description, scene: &Scene) -> Option<Matrix<Radiosi
     dense_matrix(description, scene, 150, 1.0, 0, Progress::NONE).ok()
 }
 
-/// The same as `per_row` stored rays, for what applies T once more.
+/// Like [`matrix`], but as `per_row` stored rays per patch, for callers that apply T once more.
 ///
 /// # Errors
 /// See [`MatrixError`].
@@ -134,12 +137,12 @@ fn dense(
     let lit = radiosity.reached();
     let unlit = unlit(&radiosity.patches, &lit);
     radiosity.patches.darken(&lit);
-    // where nothing leaves, no light may be lost or made by errors of F
+    // in a closed region errors of F must neither lose nor create light
     let inside: Vec<bool> = lit.iter().map(|l| l.contains(&true)).collect();
     if closed(&radiosity.patches, scene, &inside, progress)? {
         radiosity.factors.close(&inside);
     }
-    // LU of a matrix that is singular but for rounding succeeds, and means nothing
+    // LU succeeds for a matrix that is singular up to rounding, but its result is meaningless
     let spectral = radiosity.spectral_radius();
     loses(&radiosity.patches, &spectral)?;
     let terms = radiosity.terms(max_bounces);
@@ -150,7 +153,8 @@ fn dense(
     Ok(Matrix { spectral, radii, norms, radiosity, terms, solution, invariants, sampling: None, surface, unlit })
 }
 
-/// Whether no ray from these patches leaves the scene, or meets what takes no part: 64 are tried from each.
+/// Returns true if no ray from these patches leaves the scene or hits a side that takes no part in transport. 64 rays per patch
+/// are tried.
 fn closed(patches: &Patches, scene: &Scene, inside: &[bool], progress: Progress<'_>) -> Result<bool, MatrixError> {
     if scene.has_environment() || patches.len() > Hit::MOST {
         return Ok(false);
@@ -161,7 +165,7 @@ fn closed(patches: &Patches, scene: &Scene, inside: &[bool], progress: Progress<
     Ok((0..patches.len()).filter(|&i| inside[i]).map(gone).sum::<u64>() <= rays.lost)
 }
 
-/// Refuses what keeps all its light, or seems to.
+/// Returns an error if a channel loses no light, or seems to lose none.
 fn loses(patches: &Patches, spectral: &[Spectral; 3]) -> Result<(), MatrixError> {
     let Some((c, s)) = spectral.iter().enumerate().find(|(_, s)| s.radius >= KEEPS_ALL) else { return Ok(()) };
     let albedo = patches.iter().map(|p| p.reflectance[c]).fold(0.0, f64::max);
@@ -176,8 +180,12 @@ fn trace(
     progress: Progress<'_>,
 ) -> Result<Rays, MatrixError> {
     if patches.len() > Hit::MOST {
-        let e = SceneError::new(format!("{} patches, and rows of rays hold {} at most", patches.len(), Hit::MOST));
-        return Err(e.help("fewer --patches; of many triangles every side is one patch at least").into());
+        let e = SceneError::new(format!(
+            "{} patches are too many: stored rays can hold {} at most",
+            patches.len(),
+            Hit::MOST
+        ));
+        return Err(e.help("lower --patches; a mesh has at least one patch for each side of a triangle").into());
     }
     progress.begin(&format!("{per_row} rays from each of {} patches", patches.len()), patches.len() as u64);
     Rays::new(patches, scene, per_row as usize, seed, progress).map_err(|_| MatrixError::Stopped)
@@ -200,7 +208,7 @@ fn by_rays(mut stored: Stored, max_bounces: usize) -> Result<Matrix<Stored>, Mat
     };
     let noise = sampled_noise(&light, &spectral);
     let radii = radii(&stored.patches, &spectral, noise, |x| light.bounce(x, Half::Both));
-    // last, for they are most of the memory beside the rows
+    // last, because the terms need most of the memory besides the rows
     let terms = light.terms(max_bounces);
     let surface = terms.iter().map(|t| stored.patches.surface_mean(t)).collect();
     let sampling = Some(sampling);
@@ -220,7 +228,7 @@ fn by_rays(mut stored: Stored, max_bounces: usize) -> Result<Matrix<Stored>, Mat
 
 fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], SampledRows), MatrixError> {
     let solved = light.solve(LEFT, MOST_STEPS);
-    // the last term is close to the top mode; where the series has died out, start from ρ
+    // the last term is close to the eigenvector of the largest eigenvalue; if the series has died out, start from ρ
     let died = (0..3).any(|c| solved.last.iter().all(|x| x[c] == 0.0));
     let albedo = || light.patches.iter().map(|p| record(p.reflectance)).collect::<Vec<Record>>();
     let spectral = light.spectral_radius(&if died { albedo() } else { solved.last.clone() }, 1e-7, 500);
@@ -232,7 +240,7 @@ fn solve_by_rays(light: &Light<'_>) -> Result<(Solution, [Spectral; 3], SampledR
     Ok((Solution { radiance: solved.radiance, residual: solved.residual }, spectral, sampling))
 }
 
-/// The Neumann series if it has come to its end; where it is too long, the same system by GMRES, channel by channel.
+/// Returns the Neumann series if it has converged. If it was too long, solves the same system by GMRES, channel by channel.
 fn settled(light: &Light<'_>, mut solved: Solved) -> Result<Solved, MatrixError> {
     if solved.steps < MOST_STEPS {
         return Ok(solved);
@@ -253,7 +261,7 @@ fn settled(light: &Light<'_>, mut solved: Solved) -> Result<Solved, MatrixError>
 }
 
 impl Matrix {
-    /// The same mesh by stored rays, and how far the reflected light is from this one.
+    /// Solves the same mesh with stored rays, and returns how far the reflected light is from that of this matrix.
     ///
     /// # Errors
     /// See [`MatrixError`].
@@ -274,7 +282,7 @@ impl Matrix {
         Ok(Difference { of_u: light.norm(&apart) / light.norm(&u), spectral, sampling })
     }
 
-    /// The terms and the solution through the camera of the scene.
+    /// Renders the terms and the solution through the camera of the scene.
     pub fn through_camera(&self, scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
         let t = SceneTransport { scene, sampling: settings.sampling };
         let gather = Gather::new(self.radiosity.patches(), &self.terms, &self.solution.radiance, settings.read_patches);
@@ -292,8 +300,8 @@ impl Matrix {
 }
 
 impl Matrix<Radiosity> {
-    /// Functions on the patches through the camera, after one more bounce: the image i shows `T fields[i]`, in colours as
-    /// albedos are. A mode of eigenvalue λ is seen smooth, and λ times as bright.
+    /// Shows functions on the patches through the camera, after one more bounce: image i is `T fields[i]`, coloured by the
+    /// albedos. An eigenfunction with eigenvalue λ appears smooth, and λ times as bright.
     pub fn paint(
         &self,
         scene: &Scene,
@@ -304,7 +312,7 @@ impl Matrix<Radiosity> {
         let t = SceneTransport { scene, sampling: settings.sampling };
         let patches = &self.radiosity.patches;
         let nothing = vec![DVec3::ZERO; patches.len()];
-        // slot s gathers from what stands at s − 1; slots 0 and 1 are the scene's own light
+        // slot s gathers from entry s − 1 of `terms`; slots 0 and 1 are the scene's own light
         let mut terms = vec![nothing.clone()];
         terms.extend(fields.iter().map(|f| f.iter().map(|v| DVec3::splat(*v)).collect()));
         terms.push(nothing.clone());
@@ -316,7 +324,7 @@ impl Matrix<Radiosity> {
 }
 
 impl<R> Matrix<R> {
-    /// The same, with T held in another way.
+    /// The same result, with T stored in another form.
     fn held_as<S>(self, form: impl FnOnce(R) -> S) -> Matrix<S> {
         Matrix {
             radiosity: form(self.radiosity),
@@ -333,20 +341,20 @@ impl<R> Matrix<R> {
     }
 }
 
-/// The fine matrix and its picture, and the picture of the coarse one.
+/// The fine matrix with its image, and the image of the coarse matrix.
 pub struct Discrete {
-    /// The mesh asked for.
+    /// Matrix of the mesh that was asked for.
     pub matrix: Matrix,
-    /// Through the camera.
+    /// Image of that matrix through the camera.
     pub fine: Sampled,
-    /// The mesh twice as coarse, along the same rays.
+    /// Image of the mesh that is twice as coarse, along the same camera rays.
     pub coarse: Sampled,
-    /// Spectral radii, coarsest first: of this mesh and of two coarser ones, or of unions of its patches; of this one alone
-    /// where neither will do.
+    /// Spectral radii, coarsest first: of two coarser meshes and of this one, or of unions of its patches and of this one.
+    /// Only of this one if neither is possible.
     pub radii: Vec<Radius>,
 }
 
-/// The whole discrete world.
+/// Computes the whole discrete world: the fine and the coarse matrix, and their images.
 ///
 /// # Errors
 /// See [`MatrixError`].

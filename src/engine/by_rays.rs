@@ -1,4 +1,4 @@
-//! The continuous world: terms and path tracer, from rays to series and images.
+//! The continuous world: terms and path tracer by rays, from the scene to series and images.
 
 use crate::engine::Settings;
 pub use crate::engine::estimator::{Begins, Estimator};
@@ -21,49 +21,51 @@ use crate::terms::variance::{Snapshot, snapshot};
 use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, Variance, World};
 use std::time::{Duration, Instant};
 
-/// What rays gave: means with errors, images, and how the errors fell.
+/// Result of a render by rays: means with errors, images, and variances against samples.
 #[derive(Clone, Debug)]
 pub struct Sampled {
     /// Means and errors.
     pub series: Series,
-    /// Images of T^k E, k = 0..=K; none for the path tracer.
+    /// Images of T^k E, for k = 0..=K; empty for the path tracer.
     pub terms: Vec<TermImage>,
-    /// Image of everything longer.
+    /// Image of the tail: everything longer than K.
     pub tail: TermImage,
-    /// Image of Σ_{k≤K}.
+    /// Image of Σ_{k≤K} T^k E.
     pub sum: TermImage,
     /// The whole image.
     pub total: TermImage,
-    /// The image mean by replicate, for covariances between terms.
+    /// The image mean by replicate, from which covariances between terms follow.
     pub replicates: Replicates,
-    /// Rays asked for, by slot.
+    /// Rays requested, by slot.
     pub rays: Vec<u64>,
-    /// Events of the pixel in the middle: of every slot, of the sum over k ≤ K, of the whole.
+    /// Number of events behind the median pixel: of every slot, of the sum over k ≤ K, and of the whole.
     pub pixel_events: Vec<f64>,
     /// Variances at 1, 2, 4, … samples per replicate.
     pub snapshots: Vec<Snapshot>,
     /// Squared L2 norms of the term images; none with fewer than three replicates.
     pub norms: Vec<Option<SquaredNorm>>,
-    /// Least samples per pixel: fewer than asked for when interrupted.
+    /// Smallest number of samples of a pixel: fewer than requested if the render was interrupted.
     pub spp: u32,
-    /// Why the tail and the whole have no error bar, where their variance is not known to be finite.
+    /// Measured growth of the variance of long paths, if that variance is not known to be finite. The tail and the whole
+    /// then have no error bar.
     pub doubt: Option<Growth>,
 }
 
-/// Every term by its own estimator.
+/// Renders every term with the given estimator.
 pub fn terms(scene: &Scene, estimator: Estimator, settings: &Settings, progress: Progress<'_>) -> Sampled {
     watched(scene, Some(estimator), settings, progress, None)
 }
 
-/// The full path tracer.
+/// Renders with the full path tracer.
 pub fn path(scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
     watched(scene, None, settings, progress, None)
 }
 
-/// Looks at the film after a pass; the next number of samples per pixel at which to look, beside the usual ones.
+/// A callback that gets the film after a pass. It returns the next number of samples per pixel at which to be called, in
+/// addition to the usual ones.
 pub type Look<'a> = &'a mut dyn FnMut(&TermFilm) -> Option<u32>;
 
-/// The terms, or the path tracer where no estimator is given; somebody looks on.
+/// Renders the terms, or the path tracer if no estimator is given, with a callback after each pass.
 pub fn watched(
     scene: &Scene,
     estimator: Option<Estimator>,
@@ -82,7 +84,7 @@ pub fn watched(
     let result = match estimator {
         Some(estimator) => {
             let film = film(&t, camera, estimator, settings.plan(), amount, &mut passes);
-            // a walk from the light has no use for a technique
+            // walks from the light ignore the technique
             let technique =
                 if estimator.begins() == Begins::AtLight { String::new() } else { format!(", {technique}") };
             passes.finish(&film, World::Terms, format!("{estimator}{technique}{points}"))
@@ -97,12 +99,13 @@ pub fn watched(
     annotated(result, scene, estimator, settings).judged(doubt)
 }
 
-/// Whether what an estimator (`None` for the path tracer) says beyond its terms has a finite variance.
+/// Tells whether the tail and total of an estimator (`None` for the path tracer) have a finite variance.
 pub(crate) fn variance(t: &SceneTransport<'_>, estimator: Option<Estimator>, settings: &Settings) -> Variance {
     doubt(t, estimator, settings).map_or(Variance::Finite, |growth| growth.variance())
 }
 
-/// Why an estimator (`None` for the path tracer) has no error bar beyond its terms, if it has none.
+/// The growth that was measured, if the tail and total of an estimator (`None` for the path tracer) have no valid error bar;
+/// otherwise None.
 pub(crate) fn doubt(t: &SceneTransport<'_>, estimator: Option<Estimator>, settings: &Settings) -> Option<Growth> {
     let roulette = settings.roulette_of(estimator);
     if growth::proved(t.scene, t.sampling, roulette) {
@@ -117,7 +120,7 @@ pub(crate) fn doubt(t: &SceneTransport<'_>, estimator: Option<Estimator>, settin
 }
 
 impl Sampled {
-    /// The same without the error bars of the tail and of the whole, where there is a doubt.
+    /// Takes away the error bars of the tail and of the whole if there is a doubt about their variance.
     pub(crate) fn judged(mut self, doubt: Option<Growth>) -> Self {
         self.doubt = doubt;
         if let Some(d) = doubt {
@@ -126,7 +129,7 @@ impl Sampled {
         self
     }
 
-    /// Takes back the error bars of the tail and of the whole, in numbers and in images.
+    /// Replaces the error bars of the tail and of the whole by ∞ or NaN, in numbers and in images.
     pub fn distrust(&mut self, variance: Variance) {
         self.series.judge(variance);
         if let Some(instead) = variance.instead() {
@@ -138,13 +141,14 @@ impl Sampled {
 }
 
 impl Settings {
-    /// How the paths of an estimator (`None` for the path tracer) end.
+    /// Roulette schedule of an estimator (`None` for the path tracer).
     pub fn roulette_of(&self, estimator: Option<Estimator>) -> &Roulette {
         if estimator.is_some() { &self.roulette } else { &self.path_roulette }
     }
 }
 
-/// A result with what its estimator (`None` for the path tracer) cannot find in the scene, and where its paths are cut.
+/// Adds to a result which light its estimator (`None` for the path tracer) cannot find in the scene, its doubts, and whether
+/// its paths are cut at K.
 pub(crate) fn annotated(
     mut result: Sampled,
     scene: &Scene,
@@ -160,7 +164,7 @@ pub(crate) fn annotated(
     result
 }
 
-/// Any estimator of the terms over any transport, through any sensor.
+/// Renders any estimator of the terms over any transport, through any sensor.
 pub(crate) fn film<T: Adjoint>(
     t: &T,
     sensor: &impl Sensor<T>,
@@ -178,27 +182,27 @@ pub(crate) fn film<T: Adjoint>(
     }
 }
 
-/// Replicates of a render of many samples.
+/// Number of replicates of a render with many samples.
 const REPLICATES: u32 = 16;
 
-/// The usual amount, from the stream of that name.
+/// The usual amount of samples, with the random stream of that name.
 pub(crate) fn amount(settings: &Settings, stream: &str) -> Amount {
     let amount = Amount::new(settings.spp, settings.key(stream, 1));
     Amount { key: settings.key(stream, amount.replicates), ..amount }
 }
 
-/// What a label says of points that are not the usual ones.
+/// Words that a label gets for points other than the usual ones.
 pub(crate) fn spread(points: Points) -> &'static str {
     if points == Points::Sobol { ", Sobol points" } else { "" }
 }
 
-/// Paths that no roulette ends are cut at K: says so, and that nothing is known about what is longer.
+/// Marks a result whose paths are cut at K because no roulette ends them: its label says so, and its tail is not estimated.
 pub(crate) fn cut(series: &mut Series, settings: &Settings) {
     series.label += &format!(", k ≤ {} only", settings.max_bounces);
     series.functionals.iter_mut().for_each(|f| f.tail = Estimate::NONE);
 }
 
-/// Any estimator through any sensor.
+/// Renders any estimator through any sensor.
 pub(crate) fn sample<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
@@ -214,23 +218,23 @@ pub(crate) fn sample<T: Transport>(
     passes.finish(&film, world, label)
 }
 
-/// A render under way, pass by pass.
+/// A render in progress, pass by pass.
 pub(crate) struct Passes<'a, 'l> {
     progress: Progress<'a>,
     started: Instant,
     snapshots: Vec<Snapshot>,
     clock: Option<&'a Clock>,
-    /// Who else looks at the film.
+    /// The caller's callback.
     look_on: Option<Look<'l>>,
 }
 
 impl<'a> Passes<'a, '_> {
-    /// Passes that double, of which nothing is kept.
+    /// Passes that double, without a clock and without a callback.
     pub(crate) fn of(progress: Progress<'a>) -> Self {
         Self { progress, started: Instant::now(), snapshots: vec![], clock: None, look_on: None }
     }
 
-    /// The clock is for a render that may take so long.
+    /// Begins a render. The clock, if there is one, limits its time.
     pub(crate) fn begin(
         what: &str,
         size: [u32; 2],
@@ -292,7 +296,7 @@ impl Passes<'_, '_> {
         render_in_passes(t, sensor, estimator, amount, progress, &mut |film, planned| self.look(film, planned))
     }
 
-    /// After a pass: keeps what the film says, and decides how far the next one goes.
+    /// Called after a pass: stores a snapshot of the variances, and decides how far the next pass goes.
     fn look(&mut self, film: &TermFilm, planned: u32) -> u32 {
         self.progress.film(film);
         if film.shape.replicates > 1 {
@@ -304,12 +308,12 @@ impl Passes<'_, '_> {
         self.clock.map_or(planned, |clock| self.in_time(clock.time, done, planned))
     }
 
-    /// As many samples of whole replicates as fit into the time at the speed so far; the decision does not look at any value, so that
-    /// means stay unbiased, and every pixel gets the same number.
+    /// The number of samples that fits into the time at the speed so far, as a multiple of the number of replicates. The
+    /// decision looks at no value, so means stay unbiased, and every pixel gets the same number.
     fn in_time(&self, time: Duration, done: u32, planned: u32) -> u32 {
         let each = self.started.elapsed().as_secs_f64() / f64::from(done);
         let fits = (time.as_secs_f64() / each) as u32;
-        // a pass that would leave less than a quarter for the last one takes it along
+        // if a pass would leave less than a quarter of itself for the last one, the last one is included in it
         let until = if f64::from(fits) < 1.25 * f64::from(planned) { fits } else { planned };
         until / REPLICATES * REPLICATES
     }

@@ -2,10 +2,10 @@
 //!
 //! | | dense | rays |
 //! |---|---|---|
-//! | F | [`FormFactors`](crate::operator::form_factor::FormFactors), n² numbers | [`Rays`], N hits a row, let go once everything is solved |
-//! | good to | about 10⁴ patches | 10⁶ |
+//! | F | [`FormFactors`](crate::operator::form_factor::FormFactors), n² numbers | [`Rays`], N hits per row, freed after the solution |
+//! | practical up to | about 10⁴ patches | 10⁶ patches |
 //! | solve | LU | Neumann series |
-//! | error beside that of the mesh | visibility samples, not stated | the bar of the two halves, stated |
+//! | error in addition to that of the mesh | from visibility samples, not reported | from the difference of the two halves of each row, reported as an error bar |
 
 use crate::math::names::named;
 use crate::operator::matrix::Spectral;
@@ -16,29 +16,29 @@ use glam::DVec3;
 use std::fmt;
 use std::str::FromStr;
 
-/// Which form to use.
+/// Form in which T_h is stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Factors {
-    /// The matrix.
+    /// A dense matrix of form factors.
     #[default]
     Dense,
-    /// So many rays a row.
+    /// This number of stored rays per row.
     Rays(u32),
 }
 
-/// Which form is asked for.
+/// Form of T_h that the user requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// A matrix of deterministic form factors.
     Dense,
     /// Rows of stored rays, with an error bar.
     Rays,
-    /// The matrix, and how far rays on the same patches are from it.
+    /// The matrix, and the difference between it and stored rays on the same patches.
     Both,
 }
 
 impl Form {
-    /// All of them.
+    /// All forms.
     pub const ALL: [Self; 3] = [Self::Dense, Self::Rays, Self::Both];
 }
 
@@ -62,19 +62,19 @@ impl FromStr for Form {
 /// T_h with its mesh.
 #[derive(Clone, Debug)]
 pub enum Discretisation {
-    /// The matrix.
+    /// A dense matrix.
     Dense(Radiosity),
-    /// The mesh that rays were traced on, and how many. They are three quarters of the memory, and nothing reads them after
-    /// the solve.
+    /// The mesh on which rays were traced, and the number of these rays. The rays themselves are not kept: they need three
+    /// quarters of the memory, and nothing reads them after the solution.
     Rays(Patches, u64),
 }
 
-/// Stored rays with their mesh, for what applies T once more.
+/// Stored rays with their mesh, for callers that apply T once more.
 #[derive(Clone, Debug)]
 pub struct Stored {
     /// The mesh.
     pub patches: Patches,
-    /// Its rows.
+    /// The stored rays, one row per patch.
     pub rays: Rays,
 }
 
@@ -84,7 +84,7 @@ impl From<Radiosity> for Discretisation {
     }
 }
 
-/// Lets the rays go.
+/// Frees the rays.
 impl From<Stored> for Discretisation {
     fn from(Stored { patches, rays }: Stored) -> Self {
         Self::Rays(patches, (rays.n * rays.per_row) as u64)
@@ -100,7 +100,7 @@ impl Discretisation {
         }
     }
 
-    /// The matrix, if it is one.
+    /// The dense matrix, if T_h is stored as one.
     pub fn dense(&self) -> Option<&Radiosity> {
         match self {
             Self::Dense(r) => Some(r),
@@ -108,7 +108,7 @@ impl Discretisation {
         }
     }
 
-    /// Rays traced: for visibility, or all.
+    /// Number of rays traced: those for visibility, or all stored rays.
     pub fn rays(&self) -> u64 {
         match self {
             Self::Dense(r) => r.factors.rays,
@@ -117,26 +117,26 @@ impl Discretisation {
     }
 }
 
-/// What is known about the sampling of stored rays.
+/// Accuracy of the sampling of stored rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledRows {
-    /// N.
+    /// N, the number of rays per row.
     pub per_row: usize,
     /// Relative L² error bar of the reflected light u, per channel, from the halves of the rows.
     pub noise: DVec3,
-    /// What must hold, as measured.
+    /// Checks of properties that must hold.
     pub checks: RayChecks,
     /// Applications of T that the solve took.
     pub steps: usize,
 }
 
-/// Two realisations on one mesh, apart.
+/// Difference between two realisations of T on the same mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// ‖u_dense − u_rays‖ / ‖u_dense‖ over the patches by area, per channel.
     pub of_u: DVec3,
-    /// Spectral radii of the rays, per channel.
+    /// Spectral radii of the stored rays, per channel.
     pub spectral: [Spectral; 3],
-    /// The rays.
+    /// Accuracy of the stored rays.
     pub sampling: SampledRows,
 }

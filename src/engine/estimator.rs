@@ -4,16 +4,16 @@ use crate::math::names::list;
 use std::fmt;
 use std::str::FromStr;
 
-/// Which estimator of the terms.
+/// The estimators of the terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Estimator {
-    /// Each term from paths of its own.
+    /// Each term from its own paths.
     Single,
     /// All terms from the prefixes of one path.
     Prefix,
-    /// All terms from one particle, walked from the light.
+    /// All terms from one particle that starts at a light.
     Light,
-    /// All terms from walks from both ends.
+    /// All terms from two walks, one from each end.
     Bidirectional,
     /// A tree of paths.
     Branching {
@@ -22,19 +22,20 @@ pub enum Estimator {
     },
 }
 
-/// Where the walks of an estimator begin: what it can find, what it finds rarely, and what can be asked of it follow from that.
+/// The end at which the walks of an estimator begin. It decides what the estimator can find, what it finds rarely, and which
+/// settings it accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Begins {
     /// At the eye.
     AtEye,
-    /// At the lights; techniques and guides have no part in it.
+    /// At the lights; techniques and guides are then ignored.
     AtLight,
-    /// At both.
+    /// At both ends.
     AtBoth,
 }
 
 impl Estimator {
-    /// Where its walks begin.
+    /// The end at which its walks begin.
     pub fn begins(self) -> Begins {
         match self {
             Self::Single | Self::Prefix | Self::Branching { .. } => Begins::AtEye,
@@ -43,11 +44,11 @@ impl Estimator {
         }
     }
 
-    /// All of them; the tree with two children.
+    /// All estimators; the tree has two children.
     pub const ALL: [Self; 5] =
         [Self::Prefix, Self::Single, Self::Branching { children: 2 }, Self::Light, Self::Bidirectional];
 
-    /// Its name, however many children it has.
+    /// The name, without the number of children.
     pub fn name(self) -> &'static str {
         match self {
             Self::Single => "single",
@@ -58,7 +59,7 @@ impl Estimator {
         }
     }
 
-    /// The same with so many children of every vertex, if it is a tree.
+    /// The same estimator, with `children` children at every vertex if it is a tree.
     #[must_use]
     pub fn with_children(self, children: u32) -> Self {
         if let Self::Branching { .. } = self { Self::Branching { children } } else { self }

@@ -1,6 +1,8 @@
-//! The continuous world with the discrete one as its guide: the same terms, from directions that know where the light is.
+//! The continuous world with the discrete one as its guide: the same terms, but with more rays in directions from which much
+//! light comes.
 //!
-//! `L_h → p(ω) → T^k E`: the matrix of some hundred patches decides where rays look, the scene decides what they see.
+//! `L_h → p(ω) → T^k E`: the coarse matrix solution L_h gives the density p of directions. The scene alone decides what the
+//! rays hit, so the result stays unbiased.
 
 use crate::engine::Settings;
 use crate::engine::by_rays::{self, Estimator, Sampled, annotated, spread};
@@ -17,18 +19,18 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
-/// What tells rays where to look.
+/// Source of the density of directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Guiding {
-    /// The surface alone.
+    /// The BSDF of the surface alone.
     #[default]
     Bsdf,
-    /// The matrix over patches.
+    /// The matrix over patches, as a guide.
     Radiosity,
 }
 
 impl Guiding {
-    /// All of them.
+    /// All sources.
     pub const ALL: [Self; 2] = [Self::Bsdf, Self::Radiosity];
 }
 
@@ -45,21 +47,21 @@ impl FromStr for Guiding {
     }
 }
 
-/// Patches of a guide unless told otherwise.
+/// Default number of patches of a guide.
 pub const PATCHES: usize = 4000;
 
-/// A guide, and what it cost.
+/// A guide, with its settings and its cost.
 pub struct Prepared {
-    /// Where to look.
+    /// The guide.
     pub guide: Guide,
-    /// How it was made.
+    /// The settings from which it was built.
     pub recipe: Recipe,
-    /// How long that took.
+    /// The time that this took.
     pub time: Duration,
 }
 
-/// Makes the guide of a scene from about so many patches; nothing when stopped. Its numbers have a stream of their own, so it depends
-/// on the seed alone.
+/// Builds the guide of a scene from about `patches` patches; None if stopped. Its random numbers have a separate stream,
+/// which depends on the seed alone.
 ///
 /// # Errors
 /// If the scene cannot be meshed.
@@ -70,7 +72,7 @@ pub fn prepare(
     progress: Progress<'_>,
 ) -> Result<Option<Prepared>, SceneError> {
     let started = Instant::now();
-    // where nothing connects to the lamps, rays must find them
+    // if nothing connects to the lamps, rays must find them
     let recipe = Recipe { patches, emission: !settings.technique.connects(), ..Recipe::default() };
     let key = Key::new(settings.seed, "guide");
     let guide = Guide::new(description, recipe, key, progress)?;
@@ -78,7 +80,7 @@ pub fn prepare(
 }
 
 impl Prepared {
-    /// The guided walk in a scene.
+    /// The guided transport in a scene.
     pub fn transport<'a>(&'a self, scene: &'a Scene, settings: &Settings) -> GuidedTransport<'a> {
         GuidedTransport { scene: SceneTransport { scene, sampling: settings.sampling }, guide: &self.guide }
     }
@@ -93,7 +95,7 @@ impl Prepared {
         format!("{name}, {}{}, guided by {patches} patches", settings.technique, spread(settings.points))
     }
 
-    /// Every term by its own estimator; nothing for one that walks from the light.
+    /// Renders every term with the given estimator; None for an estimator that walks from the light.
     pub fn terms(
         &self,
         scene: &Scene,
@@ -124,7 +126,7 @@ impl Prepared {
         Some(annotated(result, scene, Some(estimator), settings).judged(doubt))
     }
 
-    /// The full path tracer.
+    /// Renders with the full path tracer.
     pub fn path(&self, scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
         let (t, settings) = (self.transport(scene, settings), &self.rest(settings));
         let (roulette, end) = (&settings.path_roulette, settings.by_expectation);
@@ -137,7 +139,7 @@ impl Prepared {
     }
 }
 
-/// A guide's weights are what they are: whether they grow is measured.
+/// Growth of the variance with a guide. It is always measured, because nothing is proved about the weights of a guide.
 fn doubt(
     t: &GuidedTransport<'_>,
     end: Option<ByExpectation>,

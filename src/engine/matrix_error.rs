@@ -1,37 +1,37 @@
-//! Why there is no matrix of a scene.
+//! Reasons why a scene has no matrix.
 
 use crate::scene::SceneError;
 
-/// Why there is no matrix.
+/// Reason why there is no matrix.
 #[derive(Debug, thiserror::Error)]
 pub enum MatrixError {
     /// The scene cannot be meshed.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// `I − T_h` is singular: a channel keeps all its light.
+    /// `I − T_h` is singular: a channel loses no light.
     #[error(
-        "error: a channel keeps all its light, so L = E + T L has no solution\nhelp: lower a reflectance below 1, or look at the first terms alone with --worlds terms,path --roulette none"
+        "error: one colour channel loses no light, so L = E + T L has no solution\nhelp: lower a reflectance below 1, or compute only the first terms with --worlds terms,path --roulette none"
     )]
     Singular,
-    /// r(T_h) is 1 or more, although every reflectance that light meets is below 1.
+    /// The spectral radius r(T_h) is 1 or more, although every reflectance that light meets is below 1.
     #[error(
-        "error: the form factors of this mesh are known too poorly: r(T_h) = {radius:.6}, although no reflectance is above {albedo:.6}\nhelp: raise --patches, or leave the radiosity world out: --worlds terms,path"
+        "error: the form factors of this mesh are too inaccurate: the spectral radius is {radius:.6}, although no reflectance is above {albedo:.6}\nhelp: raise --patches, or leave out the radiosity world: --worlds terms,path"
     )]
     Coarse {
-        /// r(T_h).
+        /// The spectral radius r(T_h).
         radius: f64,
         /// The largest reflectance that light meets.
         albedo: f64,
     },
-    /// The iteration over stored rays came to no end.
+    /// The iteration over stored rays did not converge.
     #[error(
-        "error: the solution by stored rays has not settled: its residual is {residual:.1e} of the direct light\nhelp: use --factors dense, or leave the radiosity world out: --worlds terms,path"
+        "error: the solution by stored rays has not converged: its residual is {residual:.1e} of the direct light\nhelp: use --factors dense, or leave out the radiosity world: --worlds terms,path"
     )]
     Unsettled {
         /// ‖D − (I − T) u‖ / ‖D‖ of the worst channel.
         residual: f64,
     },
-    /// Interrupted.
+    /// The user interrupted the computation.
     #[error("interrupted")]
     Stopped,
 }

@@ -1,14 +1,14 @@
-//! The ways to solve a scene: each takes it through one realisation of T, from paths or patches to a
-//! [`Series`](crate::terms::Series) with images.
+//! Engines: each solves a scene with one realisation of T, from paths or patches to a [`Series`](crate::terms::Series) with
+//! images.
 //!
-//! | engine | what is computed | place |
+//! | engine | result | place |
 //! |---|---|---|
-//! | by rays | every `T^k E` by its own estimator; Σ T^k E by the path tracer | [`by_rays::terms`], [`by_rays::path`] |
-//! | guided | both, with a matrix as a guide | [`guided`] |
-//! | by matrix | `T_h^k E` and the solve, through the same camera | [`by_matrix::radiosity`] |
-//! | batches | by rays, a little at a time, for what is watched while it grows | [`batches::Side`] |
+//! | by rays | every `T^k E` separately; Σ T^k E by the path tracer | [`by_rays::terms`], [`by_rays::path`] |
+//! | guided | both, with a matrix as a guide for the directions of rays | [`guided`] |
+//! | by matrix | `T_h^k E` and the solution of the linear system, through the same camera | [`by_matrix::radiosity`] |
+//! | batches | by rays in batches, for comparisons that are updated with every batch | [`batches::Side`] |
 //!
-//! All are told how by [`Settings`]. What can be said of a scene before any of them runs is [`known`].
+//! All engines read [`Settings`]. The module [`known`] examines a scene before any of them runs.
 
 pub mod batches;
 pub mod by_matrix;

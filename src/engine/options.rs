@@ -1,4 +1,4 @@
-//! What a run is made with, by name: `Display`, `FromStr` and `ALL` where the types themselves have them not.
+//! Names of options: `Display`, `FromStr` and `ALL` for types that do not define them themselves.
 
 use crate::estimator::Technique;
 use crate::math::names::named;
@@ -14,7 +14,7 @@ impl FromStr for Technique {
 }
 
 impl Selection {
-    /// All of them.
+    /// All selections.
     pub const ALL: [Self; 2] = [Self::Uniform, Self::Power];
 }
 
@@ -26,7 +26,7 @@ impl FromStr for Selection {
 }
 
 impl Sampling {
-    /// All of them.
+    /// All samplings.
     pub const ALL: [Self; 3] = [Self::Uniform, Self::Cosine, Self::Bsdf];
 }
 

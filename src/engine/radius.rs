@@ -1,4 +1,4 @@
-//! The spectral radius on a mesh, on two coarser ones made of its patches, and for h → 0.
+//! The spectral radius on a mesh, on two coarser meshes made of its patches, and in the limit h → 0.
 //!
 //! ```text
 //! r(T_h) = ⟨u, T u⟩_w/⟨u, u⟩_w        r(T_H) ≈ ⟨P R u, T P R u⟩_w/⟨P R u, P R u⟩_w        w = A/ρ
@@ -6,14 +6,16 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | u | top mode of T_h, T u = r u | [`Spectral::mode`] |
-//! | R, P | mean over each union of patches; its value on each of them | [`Patches::unions`] |
+//! | u | eigenvector of the largest eigenvalue of T_h, T u = r u | [`Spectral::mode`] |
+//! | R, P | R takes the mean over each union of patches; P gives this value to each patch of the union | [`Patches::unions`] |
+//! | w, A, ρ | weight of a patch, its area, its reflectance | |
 //! | h | √(area/patches), m | [`Radius::h`] |
 //!
-//! T_H = R T P is the operator of the unions, and R u so near its mode that the quotient is off by the square of the
-//! difference. It costs one product, and shares the sampling noise of stored rays with r(T_h): the noise stays out of the
-//! difference. Unions are less regular than a mesh, which matters where patches are few; dense matrices have coarser
-//! meshes of their own. From the last two values follows the limit ([`limit`]), an estimate; the first shows that meshes get finer.
+//! T_H = R T P is the operator of the unions. R u is close to its eigenvector, so the error of the quotient is only of
+//! second order in their difference. The quotient costs one product with T. It shares the sampling noise of stored rays with
+//! r(T_h), so this noise cancels in the difference of the two. Unions are less regular than a mesh, which matters if there
+//! are few patches. Dense matrices have separate coarser meshes. The limit ([`limit`]) is an estimate from the last two
+//! values; the first value shows that the meshes get finer.
 
 use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
@@ -24,23 +26,24 @@ use glam::DVec3;
 /// The spectral radius on one mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Radius {
-    /// √(area/patches), m.
+    /// Mesh width √(area/patches), m.
     pub h: f64,
     /// r per channel.
     pub value: DVec3,
-    /// Its standard error from the sampling of stored rays; 0 where there is none, or where it is that of the finest mesh.
+    /// Standard error from the sampling of stored rays; 0 if there is none, or if it is shared with the finest mesh.
     pub noise: DVec3,
-    /// Whether the mesh is fine enough for errors to fall like a power of h: three patches to a face, or 400 in all.
+    /// True if the mesh is fine enough for errors to fall like a power of h: three patches per face, or 400 in all.
     pub resolved: bool,
 }
 
-/// Where faces have fewer patches, limits were covered in 21 of 32 cases instead of 95 % (`tests/limits.rs`).
+/// Patches per face that a limit needs. With fewer, limits were covered in 21 of 32 cases instead of 95 %
+/// (`tests/limits.rs`).
 const TO_A_FACE: usize = 3;
-/// In a mesh of many triangles a face is no feature of its own.
+/// This many patches in all are enough, because in a mesh of many triangles a face is not a feature of the scene.
 const IN_ALL: usize = 400;
 
 impl Radius {
-    /// What was found on a mesh.
+    /// The spectral radius that was found on a mesh.
     pub fn of(patches: &Patches, spectral: &[Spectral; 3], noise: DVec3) -> Self {
         let area: f64 = patches.iter().map(|p| p.area).sum();
         let value = DVec3::from_array(spectral.each_ref().map(|s| s.radius));
@@ -49,16 +52,17 @@ impl Radius {
     }
 }
 
-/// Unions of up to so many patches.
+/// Maximum number of patches in a union, for the two coarser meshes.
 const UNIONS: [usize; 2] = [16, 4];
-/// On fewer patches unions are too unlike a mesh.
+/// With fewer patches than this, unions differ too much from a mesh.
 const LEAST: usize = 50_000;
-/// A mesh of which fewer than one in so many patches vanish into unions of four has no coarser one: most surfaces are curved,
-/// or have one patch.
+/// Unions of four must reduce the number of patches to less than this fraction. Otherwise most surfaces are curved or have
+/// one patch, and the mesh has no coarser one.
 const SHRINKS: f64 = 0.4;
 
-/// On unions of up to 16, unions of up to 4, and the patches themselves, coarsest first; only the last where patches are few
-/// or most of them stay alone. `bounce` is T, `noise` the standard error of the radius.
+/// The radii on unions of up to 16 patches, on unions of up to 4, and on the patches themselves, coarsest first. Only the
+/// last one if there are few patches, or if most of them are in no union. `bounce` applies T; `noise` is the standard error
+/// of the radius.
 pub fn radii(
     patches: &Patches,
     spectral: &[Spectral; 3],
@@ -92,7 +96,8 @@ pub fn radii(
     }
 }
 
-/// r for h → 0 per channel, from meshes, coarsest first; `None` with one mesh, or where the last but one does not resolve the scene.
+/// r for h → 0 per channel, from meshes with the coarsest first. None with one mesh, or if the second finest mesh does not
+/// resolve the scene.
 pub fn radius_limit(meshes: &[Radius]) -> Option<[Limit; 3]> {
     if !meshes.iter().nth_back(1).is_some_and(|m| m.resolved) {
         return None;
@@ -101,8 +106,8 @@ pub fn radius_limit(meshes: &[Radius]) -> Option<[Limit; 3]> {
     Some([of(0)?, of(1)?, of(2)?])
 }
 
-/// The standard error of r(T) of stored rays, to first order: rows are independent, and each has two halves. Halves share
-/// their scramble, so it is too large by about a third.
+/// The standard error of r(T) of stored rays, to first order: rows are independent, and each row has two halves. The halves
+/// share the random scramble of their points, so the error is too large by about a third.
 pub fn sampled_noise(light: &Light<'_>, spectral: &[Spectral; 3]) -> DVec3 {
     let u = mode(spectral);
     let [first, second] = [Half::First, Half::Second].map(|half| light.bounce(&u, half));

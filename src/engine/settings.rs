@@ -1,4 +1,4 @@
-//! What a run is made with.
+//! Settings of a run.
 
 use super::discretisation::Factors;
 use crate::estimator::{Plan, Roulette, Technique};
@@ -7,41 +7,44 @@ use crate::math::{Key, Points};
 use crate::scene::bsdf::Sampling;
 use std::time::Duration;
 
-/// What a run is made with.
+/// Settings of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Samples per pixel.
     pub spp: u32,
-    /// How long a sampled world may take: passes are added while the next one is expected to end in time, and `spp` is a limit.
+    /// Time limit of a sampled world. Passes are added as long as the next one is expected to end in time; `spp` remains an
+    /// upper limit.
     pub time: Option<Duration>,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// How the samples of a pixel lie to each other.
+    /// Point set of the samples of a pixel: independent, or a Sobol sequence.
     pub points: Points,
-    /// K.
+    /// K: the terms k = 0..=K are estimated separately.
     pub max_bounces: usize,
-    /// How light is found.
+    /// Technique that finds light.
     pub technique: Technique,
-    /// How directions are drawn.
+    /// Sampling of directions.
     pub sampling: Sampling,
-    /// How paths of the terms end; with [`Roulette::after`] K, the terms keep all their samples.
+    /// Roulette of the paths of the terms. With [`Roulette::after`] K, the terms keep all their samples.
     pub roulette: Roulette,
-    /// How paths of the path tracer end.
+    /// Roulette of the paths of the path tracer.
     pub path_roulette: Roulette,
-    /// How guided walks of [`Prefix`](crate::guide::Prefix) and of the path tracer end or split, in place of roulette.
+    /// If present, guided walks of [`Prefix`](crate::guide::Prefix) and of the path tracer end or split by the expected
+    /// light, in place of roulette.
     pub by_expectation: Option<ByExpectation>,
-    /// About how many patches the matrix has.
+    /// Approximate number of patches of the matrix.
     pub patches: usize,
-    /// How much narrower its patches get towards edges; 1: not at all ([`Patches::graded`](crate::operator::patches::Patches::graded)).
+    /// Factor by which patches get narrower towards edges; 1 means not at all
+    /// ([`Patches::graded`](crate::operator::patches::Patches::graded)).
     pub grading: f64,
-    /// How its form factors are held.
+    /// Form in which the form factors are stored.
     pub factors: Factors,
-    /// Read the patch under the pixel instead of gathering.
+    /// If true, a pixel shows the patch under it, without gathering.
     pub read_patches: bool,
 }
 
 impl Default for Settings {
-    /// What the command line does unless told otherwise.
+    /// The defaults of the command line.
     fn default() -> Self {
         let (max_bounces, end) = (8, Roulette::Albedo { from: 2 });
         Self {
@@ -64,7 +67,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The stream of that name, dealt to so many replicates.
+    /// Key of the random stream of that name, divided among `replicates` replicates.
     pub fn key(&self, stream: &str, replicates: usize) -> Key {
         Key::new(self.seed, stream).with_points(self.points, replicates)
     }

@@ -1,4 +1,4 @@
-//! What light never reaches, and T leaves out.
+//! Sides that light never reaches, and that T leaves out.
 
 use crate::operator::patches::Patches;
 
@@ -7,13 +7,13 @@ use crate::operator::patches::Patches;
 pub struct Unlit {
     /// Number of the primitive.
     pub primitive: usize,
-    /// The side of its normal.
+    /// True for the side to which the normal points.
     pub front: bool,
-    /// By channel: light reaches no patch of it, and something emits in that channel.
+    /// For each channel: true if light reaches no patch of the side, although something emits in that channel.
     pub channels: [bool; 3],
 }
 
-/// The sides of which no patch is reached, in channels in which something emits.
+/// The sides without any patch that light reaches, in channels in which something emits.
 pub(super) fn unlit(patches: &Patches, lit: &[[bool; 3]]) -> Vec<Unlit> {
     let any: [bool; 3] = [0, 1, 2].map(|c| patches.iter().any(|p| p.emission[c] > 0.0));
     let mut sides = std::collections::BTreeMap::new();

@@ -1,26 +1,28 @@
-//! The absorption estimator: a path scores once, where it ends.
+//! The absorption estimator: a path scores only at the vertex where it ends.
 //!
 //! ```text
 //! X = W_N E(x_N) / q_N        W_n = Π_{v<n} weight_v / (1 − q_v),    P(N = n) = q_n Π_{v<n} (1 − q_v)
 //! ```
 //!
-//! `E[X 1{N = k}] = (T^k E)(x_0)`, as for the collision estimator ([`Prefix`](super::Prefix) with `Technique::Scatter`), which
-//! scores E at every vertex on the way. A path that is absorbed or gone by itself scores nothing.
+//! `E[X 1{N = k}] = (T^k E)(x_0)`. The collision estimator ([`Prefix`](super::Prefix) with `Technique::Scatter`) has the
+//! same mean, but scores E at every vertex of the path. A path whose scattering step fails scores nothing: the surface
+//! absorbed it, or it left the scene.
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | q_v | probability to end at vertex v: the world's own, or else by roulette | [`Transport::absorption`], [`Roulette`](super::Roulette) |
+//! | q_v | probability to end at vertex v: the transport's own absorption probability if it has one, else roulette | [`Transport::absorption`], [`Roulette`](super::Roulette) |
 //! | N | the vertex where the path ends | |
 //!
-//! Where E = q, as in a closed room that emits 1 − ρ under roulette by albedo, X = 1 on every path: an estimator without variance.
-//! A vertex with q = 0 is never an end, and its term never scored: the schedule must have q > 0 wherever there is emission.
+//! Where E = q, every path has X = 1, so the estimator has no variance. An example is a closed room that emits 1 − ρ, with
+//! roulette by albedo. No path ends at a vertex with q = 0, so its term is never scored. The schedule must therefore have
+//! q > 0 wherever there is emission.
 //! Reference: von Neumann and Ulam, after Forsythe and Leibler (1950); Spanier and Gelbard, *Monte Carlo Principles* (1969).
 
 use super::{Job, Paths, Plan, TermEstimator, TermSink};
 use crate::math::{Purpose, Rng};
 use crate::operator::{Sensor, Transport};
 
-/// The absorption estimator; the plan's technique has no part in it.
+/// The absorption estimator. It ignores the technique of the plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Absorption(pub Plan);
 
@@ -40,7 +42,7 @@ impl<T: Transport> TermEstimator<T> for Absorption {
             let mut throughput = t.lit();
             for v in 0.. {
                 let here = t.absorption(&x);
-                // without roulette a path has no end at which it could score
+                // without roulette no path would ever end, and so none would score
                 if here.is_none() && !roulette.ends() && v > max_bounces {
                     break;
                 }

@@ -1,22 +1,24 @@
-//! Every way to find a path from both ends, weighted so that each path counts once.
+//! Bidirectional path tracing: every strategy that finds a path from both ends, weighted so that each path counts once.
 //!
-//! A path z_0 … z_k of term k can be found with s = 0, 1, …, k + 1 of its vertices walked from the light and t = k + 1 − s
-//! from the eye:
+//! A path z_0 … z_k of term k can be found with s = 0, 1, …, k + 1 of its vertices walked from the light. The other
+//! t = k + 1 − s vertices are walked from the eye:
 //!
-//! | s | how | |
+//! | s | strategy | |
 //! |---|---|---|
 //! | 0 | the eye's walk hits the light | `scatter` |
 //! | 1 | the eye's walk connects to the light | `connect` |
-//! | 2 … k | the two walks are linked | |
-//! | k + 1 | the light's walk connects to the eye | a splat: [`light_tracer`](super::light_tracer) |
+//! | 2 … k | a ray links the ends of the two walks | |
+//! | k + 1 | the light's walk connects to the eye | it may add to any pixel (a splat): [`light_tracer`](super::light_tracer) |
 //!
 //! ```text
 //! X_k = Σ_s w_s · α_{t−1} S(x_{t−1}) V S(y_{s−1}) β_{s−1}        w_s = p_s / Σ_r p_r,  the balance heuristic over all k + 2 ways
 //! ```
 //!
-//! The densities p_r are those of [`densities`](super::densities). Terms beyond K have paths of their own, walked from the eye.
-//! [`Pyramid`] keeps the strategies apart. Reference: Lafortune and Willems, *Bi-directional Path Tracing* (1993); Veach and
-//! Guibas, *Bidirectional Estimators for Light Transport* (1994); Veach (1997), ch. 10.
+//! Here α_{t−1} and β_{s−1} are the throughputs at the last vertices x_{t−1} and y_{s−1} of the eye's and the light's walk.
+//! S is the scattering at a vertex towards the other one, and V is the geometry factor with visibility. The densities p_r
+//! come from [`densities`](super::densities). Terms beyond K have their own paths, walked from the eye. [`Pyramid`] records
+//! each strategy separately. Reference: Lafortune and Willems, *Bi-directional Path Tracing* (1993); Veach and Guibas,
+//! *Bidirectional Estimators for Light Transport* (1994); Veach (1997), ch. 10.
 
 use super::densities::{Node, PathDensities};
 use super::light_tracer::LIGHT_STREAM;
@@ -24,29 +26,29 @@ use super::{Batch, Job, Paths, Plan, SingleTerm, Technique, TermEstimator, TermS
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
 use crate::operator::{Adjoint, Role, Sensor};
 
-/// The bidirectional estimator. It always hits, connects and links; of the techniques only `Power` matters: the weights are
-/// then those of squared densities.
+/// The bidirectional estimator. It always uses hits, connections and links. Of the plan's technique only `Power` matters: it
+/// weights by squared densities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bidirectional(pub Plan);
 
-/// One way to find one path.
+/// The contribution of one strategy that found one path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrategyValue {
     /// Vertices walked from the light.
     pub s: usize,
-    /// The term.
+    /// The term k of the path.
     pub k: usize,
-    /// Where it adds.
+    /// The pixel that receives the contribution.
     pub pixel: u32,
-    /// What it adds if it were the only way.
+    /// The contribution without its weight: as if this strategy were the only one.
     pub value: Rgb,
-    /// Its share.
+    /// The weight of this strategy in multiple importance sampling.
     pub weight: f32,
 }
 
 impl Bidirectional {
-    /// Everything that one pair of walks finds; `rays` gets the slot of each ray.
-    // long, because the ways to join two walks share all of their vertices and densities
+    /// Calls `found` for everything that one pair of walks finds, and `rays` with the slot of each ray.
+    // long, because all strategies share the vertices and densities of the two walks
     pub fn find<T: Adjoint>(
         &self,
         t: &T,
@@ -84,7 +86,7 @@ impl Bidirectional {
             );
         }
 
-        // s = 0: the eye's walk is on a light
+        // s = 0: the eye's walk hits a light
         for (k, x) in eye.iter().enumerate() {
             let e = t.emission(&x.state);
             if e != Rgb::ZERO {
@@ -92,7 +94,7 @@ impl Bidirectional {
                 found(StrategyValue { s: 0, k, pixel, value: x.throughput * e, weight });
             }
         }
-        // s = 1: it connects to a light, chosen anew
+        // s = 1: it connects to a newly chosen point on a light
         for (v, x) in eye.iter().take(last).enumerate() {
             rays(v + 1);
             if let Some(c) = t.connect(&x.state, &mut eye_numbers(v, Purpose::Connect)) {
@@ -140,7 +142,7 @@ impl Bidirectional {
         }
     }
 
-    /// Everything that a batch finds, with its sample; the rays of each term.
+    /// Calls `found` for everything that a batch finds, with the sample number. Returns the number of rays of each term.
     fn batch<T: Adjoint>(
         &self,
         t: &T,
@@ -175,31 +177,31 @@ impl<T: Adjoint> TermEstimator<T> for Bidirectional {
             sink.add(f.k, &[f.pixel], &[sample], &value);
         });
         rays.iter().enumerate().for_each(|(k, &n)| sink.rays(k, n));
-        // beyond K the eye's walks go on alone, and must find what has no area, too
+        // beyond K only walks from the eye go on, and they must also find lights without area
         let technique = if self.0.technique == Technique::Power { Technique::Power } else { Technique::Mis };
         SingleTerm(Plan { technique, ..self.0.clone() }).tail(job, paths, sink);
     }
 }
 
-/// The strategies of the bidirectional estimator kept apart, along the same walks. Slot (k, s) holds w_s times what strategy
-/// s found of term k, so that the slots of a term add up to it; behind all of these the same without weights: what the
-/// strategy would give alone.
+/// The bidirectional estimator with a separate slot for each strategy, along the same walks. Slot (k, s) holds w_s times
+/// what strategy s found of term k, so the slots of a term add up to it. The same number of slots follows without weights:
+/// what each strategy would give as the only one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pyramid(pub Plan);
 
 impl Pyramid {
-    /// The slot of strategy s of term k, weighted.
+    /// The weighted slot of strategy s of term k.
     pub fn slot(k: usize, s: usize) -> usize {
         // terms before k have 2 + 3 + … + (k + 1) strategies
         k * (k + 3) / 2 + s
     }
 
-    /// Number of strategies of all terms k ≤ K; slot i weighted is slot `len + i` alone.
+    /// Number of strategies of all terms k ≤ K. Slot i is weighted, slot `len + i` is the same without the weight.
     pub fn len(max_bounces: usize) -> usize {
         Self::slot(max_bounces + 1, 0)
     }
 
-    /// Every (k, s), in the order of the slots.
+    /// All pairs (k, s), in the order of the slots.
     pub fn strategies(max_bounces: usize) -> impl Iterator<Item = (usize, usize)> {
         (0..=max_bounces).flat_map(|k| (0..=k + 1).map(move |s| (k, s)))
     }

@@ -1,4 +1,4 @@
-//! With which density each strategy finds a path, and the weight of the one that did.
+//! The density with which each bidirectional strategy finds a path, and the weight of the strategy that found it.
 //!
 //! ```text
 //! p_s = Π_{i < t} p→(z_i) · Π_{i ≥ t} p←(z_i)          t = k + 1 − s
@@ -8,11 +8,12 @@
 //! |---|---|---|
 //! | p→(z_i) | density of z_i walked from the eye, given z_{i−1} and z_{i−2} | `from_eye` |
 //! | p←(z_i) | density of z_i walked from the light, given z_{i+1} and z_{i+2} | `from_light` |
-//! | c(z_k) | density of next-event estimation, which stands for p←(z_k) where s = 1 | `connect` |
+//! | c(z_k) | density of next-event estimation, which replaces p←(z_k) where s = 1 | `connect` |
 //!
-//! Three consecutive vertices fix a density, so a walk knows all of its own but the two next to the junction: [`Node`] keeps
-//! them, and `PathDensities::new` asks for the four that are missing. p_s = 0 where strategy s cannot find the path: at a
-//! delta vertex no two walks are linked, and a light without area is never hit.
+//! Strategy s walks s vertices from the light and t from the eye; the two walks meet at the junction. A density depends on
+//! three consecutive vertices. So a walk knows all of its own densities except the two next to the junction. [`Node`] stores
+//! the known ones, and `PathDensities::new` computes the four that are missing. p_s = 0 where strategy s cannot find the
+//! path: no link is possible at a delta vertex, and no walk hits a light without area.
 
 use crate::math::{Rgb, Rng};
 use crate::operator::{Adjoint, Role};
@@ -20,15 +21,15 @@ use crate::operator::{Adjoint, Role};
 /// A vertex of a walk.
 #[derive(Clone, Copy, Debug)]
 pub struct Node<S> {
-    /// Where, asked from its predecessor.
+    /// The state at this vertex; its direction points to the predecessor in the walk.
     pub state: S,
     /// Throughput before this vertex scatters.
     pub throughput: Rgb,
-    /// Density with which the walk came here.
+    /// Density with which the walk reached this vertex.
     pub forward: f32,
-    /// Density with which a walk from the other end would come here.
+    /// Density with which a walk from the other end would reach this vertex.
     pub reverse: f32,
-    /// Whether it scattered by a delta part, and the probability of that.
+    /// If the vertex scattered by a delta component (mirror or glass): the probability of choosing that component.
     pub delta: Option<f32>,
 }
 
@@ -39,8 +40,8 @@ impl<S> Node<S> {
     }
 }
 
-/// Continues a walk from its start to at most `last` steps; `first` is the role of the first vertex. `rays` gets the number
-/// of each step.
+/// Extends a walk from its start by at most `last` steps. `first` is the role of the first vertex. `rays` is called with the
+/// number of each step.
 pub fn walk<T: Adjoint>(
     t: &T,
     nodes: &mut Vec<Node<T::State>>,
@@ -66,12 +67,12 @@ pub fn walk<T: Adjoint>(
     }
 }
 
-/// The role of scattering in a walk, and in a walk from the other end.
+/// The role of scattering in this walk, and in a walk from the other end.
 fn opposite(first: Role) -> (Role, Role) {
     if first == Role::Radiance { (Role::Radiance, Role::Flux) } else { (Role::Flux, Role::Radiance) }
 }
 
-/// The densities of one path, by every strategy.
+/// The densities of one path under all strategies.
 #[derive(Clone, Debug)]
 pub struct PathDensities {
     from_eye: Vec<f64>,
@@ -83,8 +84,8 @@ pub struct PathDensities {
 }
 
 impl PathDensities {
-    /// A path of the vertices `eye` and then `light` backwards. Without any from the eye, `seen` stands for the eye, with the
-    /// density of the path's start there.
+    /// A path whose vertices are those of `eye`, followed by those of `light` in reverse order. If `eye` is empty, `seen`
+    /// gives the state of the eye and the density with which a walk from the eye starts at this path's first vertex.
     pub fn new<T: Adjoint>(
         t: &T,
         eye: &[Node<T::State>],
@@ -100,9 +101,9 @@ impl PathDensities {
         from_light.extend(light.iter().rev().map(|y| y.forward));
         let mut delta: Vec<bool> = nodes().map(|n| n.delta.is_some()).collect();
         let states: Vec<T::State> = nodes().map(|n| n.state).collect();
-        let ends = eye.len(); // the first vertex walked from the light
+        let ends = eye.len(); // index of the first vertex walked from the light
 
-        // the two beyond the junction, walked from the eye
+        // the two vertices beyond the junction, as if walked from the eye
         if s > 0 {
             let y = &states[ends];
             match (eye.last(), seen) {
@@ -117,7 +118,7 @@ impl PathDensities {
                     before.map_or(0.0, |before| t.density(&before, y, &states[ends + 1], Role::Radiance));
             }
         }
-        // the two before the junction, walked from the light
+        // the two vertices before the junction, as if walked from the light
         if let Some(x) = eye.last() {
             let i = ends - 1;
             delta[i] = false;
@@ -138,7 +139,7 @@ impl PathDensities {
         Self { from_eye: wide(from_eye), from_light: wide(from_light), connect, delta, s }
     }
 
-    /// Density of z_i by strategy s: p→ before the junction, p← behind it, c where s = 1.
+    /// Density of z_i under strategy s: p→ before the junction, p← behind it, and c instead of p← where s = 1.
     fn of_vertex(&self, i: usize, s: usize) -> f64 {
         let k = self.delta.len() - 1;
         if i + s <= k {
@@ -150,19 +151,19 @@ impl PathDensities {
         }
     }
 
-    /// Whether strategy s can find the path: at a delta vertex nothing is linked.
+    /// Returns true if strategy s can find the path. No link is possible at a delta vertex.
     fn links(&self, s: usize) -> bool {
         let t = self.delta.len() - s;
         s == 0 || !(self.delta[t] || t > 0 && self.delta[t - 1])
     }
 
-    /// p_s.
+    /// p_s: the density with which strategy s finds the path.
     pub fn density(&self, s: usize) -> f64 {
         if self.links(s) { (0..self.delta.len()).map(|i| self.of_vertex(i, s)).product() } else { 0.0 }
     }
 
-    /// p_s/p_r for the strategy r that found the path, vertex by vertex: of a long path the products themselves leave the
-    /// range of `f64` when lengths are in millimetres.
+    /// p_s/p_r for the strategy r that found the path, as a product of ratios at the vertices. The products p_s and p_r
+    /// themselves leave the range of `f64` on long paths when lengths are in millimetres.
     fn ratio(&self, s: usize) -> f64 {
         if self.links(s) {
             (0..self.delta.len()).map(|i| self.of_vertex(i, s) / self.of_vertex(i, self.s)).product()
@@ -171,7 +172,7 @@ impl PathDensities {
         }
     }
 
-    /// The share of the strategy that found the path: p_s/Σ p_r, or the same of squares.
+    /// Weight of the strategy that found the path: p_s/Σ p_r, or the same with squared densities.
     pub fn weight(&self, squared: bool) -> f32 {
         let ratio = |s: usize| if squared { self.ratio(s).powi(2) } else { self.ratio(s) };
         (1.0 / (0..=self.delta.len()).map(ratio).sum::<f64>()) as f32
@@ -182,8 +183,9 @@ impl PathDensities {
 mod tests {
     use super::*;
 
-    /// A path of 64 vertices whose densities per area are as small, or as large, as those of a room measured in micrometres
-    /// or in kilometres: its densities are 0 or infinite in `f64`, its weights are what the ratios say.
+    /// The densities per area of this path of 64 vertices are as small, or as large, as in a room measured in micrometres or
+    /// in kilometres. The densities of the whole path are then 0 or infinite in `f64`, but the weights follow from the
+    /// ratios.
     #[test]
     fn weights_survive_long_paths_in_any_unit() {
         for unit in [1e-12, 1.0, 1e12] {

@@ -1,22 +1,23 @@
-//! Both sides of the rendering equation, from independent paths.
+//! An estimator of both sides of the rendering equation, from independent paths.
 //!
 //! ```text
 //! X_0 = L(x)                             the path tracer from x
-//! X_1 = E(x) + weight · L(x')            one step of the walk by hand, then the path tracer from x' with other numbers
+//! X_1 = E(x) + weight · L(x')            one scattering step taken here, then the path tracer from x' with other numbers
 //! ```
 //!
-//! `L = E + T L` at x says that the two have one mean. They are different estimators: next-event estimation stands inside
-//! L only, so that light which L finds by connecting from x is found by X_1 where the step hits it.
+//! The equation `L = E + T L` at x means that X_0 and X_1 have the same mean. They are different estimators, because only L
+//! uses next-event estimation at x. Light that L finds by a connection from x is found by X_1 when the step hits the light.
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
 //! | x → x', weight | one factor of T | [`Transport::scatter`](crate::operator::Transport::scatter) |
 //! | L | the path tracer, roulette included | [`PathTracer`] |
-//! | c | factor on the weight; 1, or the equation is broken on purpose | [`Equilibrium::factor`] |
+//! | c | factor on the weight of the step: 1, or another value to break the equation on purpose | [`Equilibrium::factor`] |
 //!
-//! **Blind to:** an error in T that both sides share. A path tracer whose every step weighs 2 % too much solves an equation
-//! of its own, `L' = E + 1.02 T L'`; it is the step by hand, or the roulette or the connections inside L, that must be wrong to be seen.
-//! Needs a schedule that ends paths, and lights that have area: a step never hits a point.
+//! **Not detected:** an error in T that both sides share. If every step of the path tracer weighs 2 % too much, the path
+//! tracer solves another equation, `L' = E + 1.02 T L'`, and both sides still agree. An error is visible only in the step
+//! taken here, or in the roulette or the connections inside L. The estimator needs a schedule that ends paths, and lights
+//! with area, because a step never hits a point.
 
 use super::{Job, PathTracer, Paths, Plan, TermEstimator, TermSink};
 use crate::math::{Columns, Purpose, Rgb, Rng};
@@ -25,9 +26,9 @@ use crate::operator::{Kernel, Sensor};
 /// Estimates L in slot 0 and E + T L in slot 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibrium {
-    /// How L is estimated.
+    /// Plan of the path tracer that estimates L.
     pub plan: Plan,
-    /// On the weight of the step: 1 for the equation as it is.
+    /// Factor c on the weight of the step: 1 for the correct equation.
     pub factor: f32,
 }
 

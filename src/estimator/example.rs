@@ -1,4 +1,5 @@
-//! The worked example of `CONTRIBUTING.md`: emission and direct light alone, path by path; compiled and tested, not registered.
+//! The worked example of `CONTRIBUTING.md`: an estimator of emission and direct light only, one path at a time. It is
+//! compiled and tested, but not registered.
 //!
 //! ```text
 //! X_0 = E(x_0)        X_1 = weight · E(y),  y drawn on the emitters
@@ -8,7 +9,7 @@ use super::{Job, Paths, TermEstimator, TermSink};
 use crate::math::{Columns, Purpose, Rgb, Rng};
 use crate::operator::{Sensor, Transport};
 
-/// T⁰E and T¹E.
+/// Estimator of T⁰E and T¹E.
 struct Direct;
 
 impl<T: Transport> TermEstimator<T> for Direct {
@@ -20,7 +21,7 @@ impl<T: Transport> TermEstimator<T> for Direct {
         let &Job { t, sensor, batch } = job;
         for sample in batch.samples.clone() {
             for pixel in batch.pixels.clone() {
-                // random numbers have addresses: path, vertex, purpose
+                // the address of a random number: path, vertex, purpose
                 let numbers = |purpose| Rng::at(batch.key, pixel, sample, 0, purpose);
                 let mut add = |slot, value: Rgb| {
                     let mut column = Columns::new(1);
@@ -39,7 +40,8 @@ impl<T: Transport> TermEstimator<T> for Direct {
     }
 }
 
-/// On a matrix the terms are known. With one emitting row every connection is exact: no noise, an identity.
+/// On a matrix the terms are known exactly. With one emitting row every connection is exact, so the estimate has no noise
+/// and must equal the known terms.
 #[test]
 fn the_terms_are_those_of_the_matrix() {
     use super::render::{Amount, render};

@@ -1,31 +1,33 @@
-//! Light tracing: `⟨(T*)^k W, E⟩`, all terms from one particle.
+//! Light tracing: estimates `⟨W, T^k E⟩ = ⟨(T*)^k W, E⟩` for all k from one particle that starts at a light.
 //!
 //! ```text
 //! β_0 = 1/p(y_0)        β_{v+1} = β_v · weight_v / (1 − q_v)
 //! X_k = β_k · S(y_k → eye) · W(y_k)                        in the pixel that sees y_k
 //! ```
 //!
-//! y_0 is where light starts and S there is its emission, so that k = 0 is the light seen directly. Loop invariant: before
-//! the step at vertex v, every term k ≤ v has been splatted, and `throughput` is β_v.
+//! The particle starts at y_0, drawn with density p. S is the scattering at y_k towards the eye, and W the importance of the
+//! pixel. At y_0, S is the emission, so term 0 is the light seen directly. q is the probability of termination, and T* the
+//! adjoint of T. Loop invariant: before the step at vertex v, every term k ≤ v has been splatted, and `throughput` is β_v.
 //!
-//! There are as many particles as there are camera paths, one for each (pixel, sample), and each may add to any pixel:
-//! a splat is divided by the number of pixels, and errors come from whole replicates. What the eye sees in a mirror or
-//! through glass no particle can reach, because no connection to the eye passes a delta vertex there: `engine::known::unsampled`.
+//! There are as many particles as camera paths: one for each (pixel, sample). A particle may add to any pixel, so each splat
+//! is divided by the number of pixels, and errors come from whole replicates. No particle contributes to what the eye sees
+//! in a mirror or through glass, because a delta vertex cannot be connected to the eye: see `engine::known::unsampled`.
 //! Reference: Arvo, *Backward Ray Tracing* (1986); Dutré, Lafortune, Willems, *Monte Carlo Light Tracing* (1993).
 
 use super::{Job, Paths, Plan, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
 use crate::operator::{Adjoint, Role, Sensor};
 
-/// The light tracer. [`Plan::technique`] has no part in it.
+/// The light tracer. It ignores [`Plan::technique`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightTracer(pub Plan);
 
-/// Index of the stream that light is followed with.
+/// Index of the random stream for walks from the light.
 pub(super) const LIGHT_STREAM: u32 = 0x4c49_4748;
 
 impl LightTracer {
-    /// One particle; gives each splat's slot, pixel and value to `splat`, and each ray's slot to `rays`.
+    /// Follows one particle. Calls `splat` with the slot, pixel and value of each splat, and `rays` with the slot of each
+    /// ray.
     fn particle<T: Adjoint>(
         &self,
         t: &T,
@@ -39,7 +41,7 @@ impl LightTracer {
         let Some((mut y, density)) = t.emit(&mut numbers(0, Purpose::Start)) else { return };
         let (mut throughput, mut relative, mut role) = (Rgb::splat(1.0 / density), t.lit(), Role::Emission);
         for v in 0.. {
-            // term v, seen by the eye
+            // connect vertex v to the eye: term v
             let slot = v.min(max_bounces + 1);
             if let Some(seen) = sensor.project(t, &y) {
                 let value = t.toward(&y, &seen.eye, role).value;
@@ -53,7 +55,7 @@ impl LightTracer {
             if v == max_bounces && !roulette.ends() {
                 break;
             }
-            // roulette, once vertex v has been scored; light that has just started is never stopped
+            // roulette, once vertex v has been scored; a particle never ends at its start
             let q = if v == 0 { 0.0 } else { roulette.termination(v, relative, t.albedo(&y)) };
             if q > 0.0 {
                 if numbers(v, Purpose::Roulette).one() < q {

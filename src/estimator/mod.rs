@@ -1,22 +1,22 @@
-//! Random `T^k E`: estimators, written once over [`Transport`].
+//! Estimators of the terms `T^k E` by random paths, written once over the trait [`Transport`].
 //!
-//! `E[X_k] = (T^k E)(x_0)` for every k, and the tail has mean `Σ_{k>K} (T^k E)(x_0)`, so that terms + tail is the whole
-//! radiance: truncation is never hidden.
+//! The sample X_k of term k has the mean `E[X_k] = (T^k E)(x_0)`, and the sample of the tail has the mean
+//! `Σ_{k>K} (T^k E)(x_0)`. So terms plus tail give the whole radiance: no part of it is cut off silently.
 //!
-//! | estimator | what one sample is | place |
+//! | estimator | one sample | place |
 //! |---|---|---|
-//! | single | each X_k from a path of its own | [`single_term`] |
+//! | single | each X_k from its own path | [`single_term`] |
 //! | prefix | all X_k from one path, by its prefixes | [`prefix`] |
-//! | vertices | the same, hits and connections of every vertex apart | [`vertices`] |
-//! | light | all X_k from one particle, walked from the light | [`light_tracer`] |
-//! | bidirectional | every way to find each path from both ends, weighted | [`bidirectional`] |
+//! | vertices | as prefix, with separate slots for the hit and the connection of each vertex | [`vertices`] |
+//! | light | all X_k from one particle that starts at a light | [`light_tracer`] |
+//! | bidirectional | every strategy that finds a path from both ends, weighted | [`bidirectional`] |
 //! | branching | a tree of paths, N children at every vertex | [`branching`] |
-//! | path tracer | the sum alone, independent code | [`path_tracer`] |
-//! | absorption | one term from one path: the one where it ends | [`absorption`] |
+//! | path tracer | only the sum of all terms, by independent code | [`path_tracer`] |
+//! | absorption | one term per path: term k, if the path ends at vertex k | [`absorption`] |
 //! | equilibrium | both sides of L = E + T L, from independent paths | [`equilibrium`] |
-//! | gather | the matrix solution, read through one sampled application of T | [`gather`] |
+//! | gather | the matrix solution, seen through one sampled application of T | [`gather`] |
 //!
-//! Slots of the result: k = 0..=K for the terms, K + 1 for the tail; the path tracer has one slot.
+//! A result has one slot for each term k = 0..=K and slot K + 1 for the tail. The path tracer has a single slot.
 
 pub mod absorption;
 pub mod bidirectional;
@@ -54,33 +54,33 @@ pub use vertices::Vertices;
 use crate::math::Columns;
 use crate::operator::{Sensor, Transport};
 
-/// Where samples go: slot by slot, wave by wave.
+/// Receiver of the samples. An estimator adds the values of many paths (a wave) to one slot at a time.
 pub trait TermSink {
     /// Adds `value[i]` to `slot` of path (`pixel[i]`, `sample[i]`). A path may add to a slot more than once.
     fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns);
-    /// Counts rays asked for on behalf of `slot`.
+    /// Counts rays that were requested for `slot`.
     fn rays(&mut self, _slot: usize, _rays: usize) {}
 }
 
-/// How far terms are kept, how light is found, how paths end.
+/// Plan of an estimator: the number of terms, the technique that finds light, and the schedule that ends paths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// K: the terms k = 0..=K are kept.
+    /// K: the terms k = 0..=K are estimated separately, everything longer is the tail.
     pub max_bounces: usize,
-    /// How light is found.
+    /// Technique that finds light: hits, connections, or both.
     pub technique: Technique,
-    /// How paths end.
+    /// Schedule of termination probabilities.
     pub roulette: Roulette,
 }
 
-/// What a sample is asked for: of which operator, through which sensor, which paths.
+/// Input of an estimator: the operator, the sensor, and the paths to sample.
 #[derive(Debug)]
 pub struct Job<'a, T, S> {
-    /// T.
+    /// The transport operator T.
     pub t: &'a T,
-    /// Where paths start.
+    /// The sensor at which paths start.
     pub sensor: &'a S,
-    /// Which paths.
+    /// The paths to sample.
     pub batch: &'a Batch,
 }
 
@@ -88,10 +88,10 @@ pub struct Job<'a, T, S> {
 pub trait TermEstimator<T: Transport>: Sync {
     /// Number of slots a sample has.
     fn slots(&self) -> usize;
-    /// Whether samples add to pixels other than their own.
+    /// Returns true if samples may add to pixels other than their own.
     fn splats(&self) -> bool {
         false
     }
-    /// One sample per path of the batch into the sink.
+    /// Takes one sample of each path of the batch and adds it to the sink.
     fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, paths: &mut Paths<T::Wave>, sink: &mut impl TermSink);
 }

@@ -1,4 +1,4 @@
-//! The full path tracer, as the lecture writes it: one colour, one throughput, no terms.
+//! The full path tracer, as the lecture writes it: one colour, one throughput, no separate terms.
 //!
 //! ```text
 //! colour ← 0, α ← 1, x ← what the eye sees
@@ -14,23 +14,24 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | α | throughput: what the radiance that is found from here on is multiplied with | `throughput` |
-//! | f, cos θ, p | factors of T; on a matrix the row's entry, 1, and its probability | [`Factors`](crate::operator::Factors) |
+//! | α | throughput: the factor on all radiance that is found from here on | `throughput` |
+//! | f, cos θ, p | factors of T; on a matrix: the row's entry, 1, and its probability | [`Factors`](crate::operator::Factors) |
 //! | q | probability of termination | [`Roulette::q`](super::Roulette::q) |
 //! | w_c, w_s | weights of the techniques | [`Technique`](super::Technique) |
 //!
-//! **Invariants**, before every round. α: its mean over all that was drawn is the measurement's product of f cos θ/p, so that
-//! `E[α · L(x)]` is the part of the pixel that paths of this length and longer bring. colour: its mean is Σ T^k E over all shorter
-//! paths. So E\[colour + α · (T L)(x)\] is the pixel, before every round.
+//! **Invariants**, before every round. α is an unbiased sample of the product of all f cos θ so far, so `E[α · L(x)]` is the
+//! part of the pixel's value that comes from paths of this length and longer. The mean of colour is Σ T^k E over all shorter
+//! paths. So E\[colour + α · (T L)(x)\] is the pixel's value before every round.
 //!
-//! **What it shares with [`Prefix`](super::Prefix)**: the random numbers, by their addresses; where rays and connections go, which
-//! light and which direction is drawn; E, the albedo that q looks at, and the table of the technique's weights. **What it does not
-//! share**: weights. `Prefix` multiplies the closed product f cos θ/p of [`Transport`], often in packets and
-//! lanes; here the factors come apart from [`Kernel`] and are multiplied. It knows nothing of waves, terms or slots. So "sum of the
-//! terms = path tracer" compares two programs: with the same stream, technique and schedule, sample by sample, to rounding.
+//! **Shared with [`Prefix`](super::Prefix)**: the random numbers, by their addresses; the rays and connections, and the
+//! lights and directions that are drawn; E; the albedo that q depends on; the table of technique weights. **Not shared**:
+//! the weights of the steps. `Prefix` multiplies the finished product f cos θ/p of [`Transport`], often in packets and SIMD
+//! lanes. The path tracer takes the separate factors from [`Kernel`] and multiplies them itself. It has no waves, terms or
+//! slots. So the test "sum of the terms = path tracer" compares two programs. With the same stream, technique and schedule
+//! they agree sample by sample, up to rounding.
 //!
-//! With a schedule that never ends paths, it stops after `max_bounces` applications of T. Reference: Kajiya, *The Rendering Equation*
-//! (1986).
+//! With a schedule that never ends paths, the path tracer stops after `max_bounces` applications of T. Reference: Kajiya,
+//! *The Rendering Equation* (1986).
 
 use super::{Job, Paths, Plan, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Purpose, Rgb, Rng};
@@ -41,7 +42,8 @@ use crate::operator::{Kernel, Sensor, Transport};
 pub struct PathTracer(pub Plan);
 
 impl PathTracer {
-    /// Radiance estimated by one path from what the eye sees, and the rays it took.
+    /// Follows one path from the state that the eye sees. Returns the radiance that it estimates there, and its number of
+    /// rays.
     pub fn radiance<T: Kernel>(&self, t: &T, eye: T::State, key: Key, pixel: u32, sample: u32) -> (Rgb, u64) {
         let Plan { max_bounces, technique, ref roulette } = self.0;
         let numbers = |v: usize, purpose: Purpose| Rng::at(key, pixel, sample, v, purpose);
@@ -61,7 +63,7 @@ impl PathTracer {
                         throughput * y.f * (y.cos / y.pdf) * t.emission(&y.state) * technique.connection(p, other);
                 }
             }
-            // the last connection has been made, and hits do not count
+            // after the last connection nothing is left to score if hits do not count
             if v + 1 == longest && !technique.hits(t) {
                 break;
             }
@@ -78,7 +80,7 @@ impl PathTracer {
             let Some(next) = t.sample_direction(&x, &mut numbers(v, Purpose::Scatter)) else { break };
             throughput *= next.f * (next.cos / next.pdf);
             x = next.state;
-            // emission counts on hits, as far as connections have not found it
+            // emission counts on hits, weighted by the technique
             if technique.hits(t) {
                 let [p, other] = next.pair;
                 colour += throughput * t.emission(&x) * technique.hit(p, other);
@@ -98,7 +100,7 @@ impl<T: Kernel> TermEstimator<T> for PathTracer {
     }
 }
 
-/// Into the only slot of a sink: what `radiance` finds from the start of every path of a job, and the rays it took.
+/// Calls `radiance` for the start of every path of a job. Adds the value and the rays to the only slot of the sink.
 pub(crate) fn each_path<T: Transport, S: Sensor<T>>(
     job: &Job<'_, T, S>,
     sink: &mut impl TermSink,

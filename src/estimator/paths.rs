@@ -1,12 +1,12 @@
-//! A wave of paths: what each carries besides its state.
+//! A wave of paths: many paths that advance together, one vertex at a time, each with its throughput and its name.
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
 //! | x_v | state at vertex v | `state` |
 //! | α | throughput: the product of the weights so far | `throughput` |
-//! | (pixel, sample) | the path's name, and its address for random numbers | `pixel`, `sample` |
+//! | (pixel, sample) | name of the path, and address of its random numbers | `pixel`, `sample` |
 //!
-//! Paths that end are compacted away; the order of those that stay never changes, so sums do not depend on the wave size.
+//! Paths that end are removed, and the others move up without changing their order. So sums do not depend on the wave size.
 
 use super::roulette::Roulette;
 use super::technique::Technique;
@@ -15,14 +15,14 @@ use crate::math::{Columns, Key, Purpose, Rgb, Streams, columns};
 use crate::operator::{Samples, Sensor, Transport, Wave};
 use std::ops::Range;
 
-/// The block of paths that a wave starts as: every sample of every pixel.
+/// The paths with which a wave starts: every sample of every pixel of a block.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    /// The run's stream.
+    /// Key of the run's random stream.
     pub key: Key,
-    /// Pixels, by number.
+    /// Range of pixel numbers.
     pub pixels: Range<u32>,
-    /// Samples of each.
+    /// Range of sample numbers of each pixel.
     pub samples: Range<u32>,
 }
 
@@ -32,7 +32,7 @@ impl Batch {
         self.pixels.len() * self.samples.len()
     }
 
-    /// Whether there is none.
+    /// Returns true if the batch has no paths.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -41,17 +41,17 @@ impl Batch {
 /// A wave of paths.
 #[derive(Clone, Debug, Default)]
 pub struct Paths<W> {
-    /// Paths alive.
+    /// Number of paths that have not ended.
     pub n: usize,
-    /// Their states.
+    /// States of the paths.
     pub state: W,
-    /// Their throughputs α.
+    /// Throughputs α of the paths.
     pub throughput: Columns,
-    /// Their pixels.
+    /// Pixels of the paths.
     pub pixel: Vec<u32>,
-    /// Their sample numbers.
+    /// Sample numbers of the paths.
     pub sample: Vec<u32>,
-    /// What the last batched call gave back.
+    /// Results of the last batched call.
     pub samples: Samples,
     key: Option<Key>,
     alive: Vec<u32>,
@@ -63,7 +63,7 @@ impl<W> Paths<W> {
         W: Wave<S>,
     {
         if self.pixel.len() < n {
-            // whole packets, so that batched methods may run past the end
+            // whole packets, so that batched methods may write past the end
             let n = n.next_multiple_of(64);
             self.state.resize(n);
             (self.throughput, self.samples) = (Columns::new(n), Samples::new(n));
@@ -71,7 +71,8 @@ impl<W> Paths<W> {
         }
     }
 
-    /// Starts the paths of a batch at the sensor, with throughput 1. Paths that see nothing are dropped: all their terms are 0.
+    /// Starts the paths of a batch at the sensor, with throughput 1. Paths that see nothing are dropped, because all their
+    /// terms are 0.
     pub fn start<T: Transport<Wave = W>, S: Sensor<T>>(&mut self, job: &Job<'_, T, S>)
     where
         W: Wave<T::State>,
@@ -89,7 +90,8 @@ impl<W> Paths<W> {
         self.compact();
     }
 
-    /// Copies of some paths of a wave, which go on with the numbers of another stream and throughput α · `share`.
+    /// Copies some paths of another wave. The copies go on with the random numbers of another stream and with throughput α ·
+    /// `share`.
     pub(crate) fn descend_from<S: Copy>(
         &mut self,
         parents: &Self,
@@ -108,12 +110,12 @@ impl<W> Paths<W> {
         }
     }
 
-    /// `samples.value[i] = E(x_v)`, emission where the paths are.
+    /// `samples.value[i] = E(x_v)`: the emission at the current vertex of path i.
     pub fn emission<T: Transport<Wave = W>>(&mut self, t: &T) {
         t.emission_wave(&mut self.state, self.n, &mut self.samples.value);
     }
 
-    /// `samples[i]` = one sample of (T E)(x_v) from every path, which stays where it is.
+    /// `samples[i]` = one sample of (T E)(x_v) for path i. The paths do not move.
     pub fn connect<T: Transport<Wave = W>>(&mut self, t: &T, v: usize) {
         if let Some(key) = self.key {
             let streams = streams(key, &self.pixel[..self.n], &self.sample[..self.n], v, Purpose::Connect);
@@ -121,7 +123,8 @@ impl<W> Paths<W> {
         }
     }
 
-    /// x_v → x_{v+1}; the throughputs take up the weights, and paths that are absorbed or gone end.
+    /// Moves the paths from x_v to x_{v+1} and multiplies their throughputs by the weights. Paths that are absorbed or leave
+    /// the scene end.
     pub fn scatter<T: Transport<Wave = W>>(&mut self, t: &T, v: usize)
     where
         W: Wave<T::State>,
@@ -147,7 +150,8 @@ impl<W> Paths<W> {
         }
     }
 
-    /// The throughput with which each path goes on, given its state and a uniform number; nothing: it ends.
+    /// Roulette with any rule. `throughput` gets the states, the index of a path, its throughput and a uniform number. It
+    /// returns the throughput with which the path goes on, or nothing if the path ends.
     pub(crate) fn survive<S>(&mut self, v: usize, mut throughput: impl FnMut(&mut W, usize, Rgb, f32) -> Option<Rgb>)
     where
         W: Wave<S>,
@@ -164,26 +168,26 @@ impl<W> Paths<W> {
         self.compact();
     }
 
-    /// The stream that the paths go on with.
+    /// The random stream with which the paths go on.
     pub(crate) fn key(&self) -> Option<Key> {
         self.key
     }
 
-    /// Scores emission on arrival: weighted by the technique and by the throughput, into a slot.
+    /// Adds the emission at the vertices that the paths have hit to a slot, weighted by the technique and the throughput.
     pub fn score_hits(&mut self, technique: Technique, slot: usize, sink: &mut impl TermSink) {
         technique.weigh_hits(&mut self.samples, self.n);
         self.samples.value.multiply(&self.throughput, self.n);
         self.add(slot, sink);
     }
 
-    /// Scores connections: weighted by the technique and by the throughput, into a slot.
+    /// Adds the connections to a slot, weighted by the technique and the throughput.
     pub fn score_connections(&mut self, technique: Technique, slot: usize, sink: &mut impl TermSink) {
         technique.weigh_connections(&mut self.samples, self.n);
         self.samples.value.multiply(&self.throughput, self.n);
         self.add(slot, sink);
     }
 
-    /// Adds the samples as they are to a slot.
+    /// Adds `samples` to a slot without any weight.
     pub fn add(&self, slot: usize, sink: &mut impl TermSink) {
         sink.add(slot, &self.pixel[..self.n], &self.sample[..self.n], &self.samples.value);
     }

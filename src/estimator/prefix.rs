@@ -5,10 +5,10 @@
 //! X_k = α_{k−1} · w_c · (sample of T E at x_{k−1})  +  α_k · w_s · E(x_k)        α_k = Π_{v<k} weight_v / (1 − q_v)
 //! ```
 //!
-//! with w_c, w_s from the [`Technique`]. Loop invariant: before the step at vertex v, every term k ≤ v has
-//! been scored, and `throughput` is α_v.
+//! The weights w_c of the connection and w_s of the hit come from the [`Technique`]; q_v is the probability of termination
+//! at vertex v. Loop invariant: before the step at vertex v, every term k ≤ v has been scored, and `throughput` is α_v.
 //!
-//! Terms of one path share their prefix, so they are correlated; fits over k must use their covariance.
+//! The terms of one path share its prefixes, so they are correlated. Fits over k must use their covariance.
 //! Reference: Kajiya, *The Rendering Equation* (1986); Veach (1997), ch. 10.
 
 use super::{Job, Paths, Plan, Technique, TermEstimator, TermSink};
@@ -41,7 +41,7 @@ pub(crate) fn start<T: Transport, S: Sensor<T>>(
     sink.rays(0, job.batch.len());
 }
 
-/// Follows paths that stand at vertex `first`, scoring every term beyond it; terms beyond K go to the tail's slot.
+/// Follows paths from vertex `first` on and scores every later term. Terms beyond K go to the slot of the tail.
 pub(super) fn follow<T: Transport>(
     t: &T,
     plan: &Plan,
@@ -51,7 +51,7 @@ pub(super) fn follow<T: Transport>(
 ) {
     let tail = plan.max_bounces + 1;
     for v in first.. {
-        // the next term, or the tail; without roulette the tail would never end, and is left out
+        // the next term, or the tail; without roulette the tail would never end, so it is left out
         let slot = (v + 1).min(tail);
         if paths.n == 0 || slot == tail && !plan.roulette.ends() {
             break;
@@ -62,8 +62,8 @@ pub(super) fn follow<T: Transport>(
     }
 }
 
-/// Scores term v + 1 from paths that stand at vertex v, which move on to v + 1: the connection goes to one slot, the hit to
-/// another. Where nothing is left to be found beyond the last connection, the paths stay, and the answer is false.
+/// Scores term v + 1 from paths at vertex v and moves the paths to vertex v + 1. The connection goes to one slot, the hit to
+/// another. If nothing is left to find after the last connection, the paths stay and the function returns false.
 pub(super) fn step<T: Transport>(
     t: &T,
     plan: &Plan,
@@ -82,7 +82,7 @@ pub(super) fn step<T: Transport>(
     more
 }
 
-/// Next-event estimation of term v + 1.
+/// Scores term v + 1 by next-event estimation from vertex v.
 pub(crate) fn connect<T: Transport>(
     t: &T,
     technique: Technique,
@@ -98,7 +98,7 @@ pub(crate) fn connect<T: Transport>(
     }
 }
 
-/// x_v → x_{v+1}, and its emission if hits count.
+/// Moves the paths from x_v to x_{v+1}, and scores the emission there if hits count.
 pub(crate) fn scatter<T: Transport>(
     t: &T,
     technique: Technique,

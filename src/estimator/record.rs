@@ -1,8 +1,9 @@
-//! From an estimator and a sensor to [cross moments](crate::terms::cross_moments): every path as a vector of slots.
+//! Runs an estimator and records the [cross moments](crate::terms::cross_moments) of its slots: each path gives one vector
+//! of slot values.
 //!
-//! A block of pixels is one job: it takes all samples of its pixels, a replicate after the other, and adds the products of
-//! every path. Blocks are added up in their order, so the sums are the same bits for any number of threads. Memory does not
-//! grow with the image: what is kept is `R · slots²`, not an image per slot.
+//! A block of pixels is one job. It takes all samples of its pixels, one replicate after the other, and adds the products of
+//! the slot values of every path. Blocks are added in their order, so the sums have the same bits for any number of threads.
+//! Memory does not grow with the image, because `R · slots²` sums are kept (R replicates), not an image per slot.
 
 use super::render::Amount;
 use super::{Batch, Job, Paths, TermEstimator, TermSink};
@@ -14,12 +15,12 @@ use crate::terms::film::BLOCK;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Samples of each pixel of a block that walk together.
+/// Samples of each pixel of a block that walk together as one wave.
 const AT_ONCE: u32 = 8;
-/// Blocks whose sums are held at once.
+/// Blocks whose sums are held in memory at once.
 const SIDE_BY_SIDE: usize = 16;
 
-/// The slots of the paths of one batch: `values[(path · 3 + channel) · slots + slot]`.
+/// The slot values of the paths of one batch: `values[(path · 3 + channel) · slots + slot]`.
 struct Wave {
     first: u32,
     pixels: u32,
@@ -44,9 +45,10 @@ impl TermSink for Wave {
     }
 }
 
-/// The moments of what one path of an estimator scores, from a key with independent points: products of two samples of a pixel
-/// are those of the means only then. Samples are dealt to the replicates in runs. Nothing if `stop` is set before all is done, because half
-/// an image has other moments; nothing for estimators that splat, whose paths have no pixel.
+/// Records the moments of the slot values of one path. The key must give independent points, because only then is the mean
+/// of the product of two samples the product of their means. Each replicate gets a contiguous range of the samples. Returns
+/// nothing if `progress` is stopped before the end, because half an image has other moments. Also returns nothing for
+/// estimators that splat, because their paths belong to no pixel.
 pub fn record<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
@@ -67,7 +69,7 @@ pub fn record<T: Transport>(
         let pixels = first..(first + BLOCK as u32).min(w * h);
         let count = pixels.len();
         let mut sums = Sums::new(slots, counts.clone());
-        // S_a by pixel, channel, replicate
+        // S_a, the sum of slot a, by pixel, channel, replicate
         let per_channel = counts.len() * slots;
         let mut pixel_sums = vec![0.0; count * 3 * per_channel];
         let mut wave = Wave { first, pixels: count as u32, sample: 0, slots, values: vec![], rays: vec![0; slots] };

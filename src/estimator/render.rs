@@ -1,8 +1,9 @@
-//! From an estimator and a sensor to a film: every pixel, every sample, in passes that double.
+//! Renders an estimator through a sensor into a film: every pixel and every sample, in passes that double.
 //!
-//! Passes end at 1, 2, 4, … samples per replicate, and where somebody asks for it: there the film is complete, a preview can be shown, and the variance
-//! curve has a point. Inside a pass blocks of pixels are independent jobs. A pixel's samples are added in order by one
-//! thread, so the sums are the same bits for any number of threads.
+//! Passes end at 1, 2, 4, … samples per replicate, and at other numbers if the caller asks for them. At the end of a pass
+//! the film is complete: a preview can be shown, and the variance curve gets a point. Within a pass, blocks of pixels are
+//! independent jobs. The samples of a pixel are added in order by one thread, so the sums have the same bits for any number
+//! of threads.
 
 use super::{Batch, Job, Paths, TermEstimator, TermSink};
 use crate::math::{Columns, Key, Rgb};
@@ -12,25 +13,25 @@ use crate::terms::film::{BLOCK, FilmBlock, Shape, TermFilm};
 use crate::terms::largest::Largest;
 use rayon::prelude::*;
 
-/// How much to render.
+/// Amount of samples to render.
 #[derive(Clone, Copy, Debug)]
 pub struct Amount {
     /// Samples per pixel.
     pub spp: u32,
     /// Independent replicates; `min(16, spp)` is usual.
     pub replicates: usize,
-    /// The stream.
+    /// Key of the random stream.
     pub key: Key,
 }
 
 impl Amount {
-    /// The usual number of replicates.
+    /// An amount with the usual number of replicates.
     pub fn new(spp: u32, key: Key) -> Self {
         Self { spp, replicates: spp.clamp(1, 16) as usize, key }
     }
 }
 
-/// Paths of a wave.
+/// Number of paths of a wave.
 const WAVE: u32 = 1024;
 
 impl TermSink for FilmBlock<'_> {
@@ -43,8 +44,8 @@ impl TermSink for FilmBlock<'_> {
     }
 }
 
-/// Renders into a new film. When it is stopped, what has been done so far comes back: every pixel then holds some number of
-/// samples, and all means are still unbiased.
+/// Renders into a new film. If it is stopped, it returns what has been done so far. Pixels may then hold different numbers
+/// of samples, and all means are still unbiased.
 pub fn render<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
@@ -58,9 +59,10 @@ pub fn render<T: Transport>(
     })
 }
 
-/// The same, where somebody looks at the film after every complete pass, and says how many samples per pixel there shall be after the
-/// next one, given what is planned; no more than there are: the render ends. It is then the same, bit for bit, as one of the
-/// samples it has reached.
+/// Renders like [`render()`], and calls `look` after every complete pass. `look` gets the film and the planned number of
+/// samples per pixel after the next pass. It returns the number that the next pass shall reach. If that is no more than
+/// there already are, the render ends. The film is then the same, bit for bit, as that of a render with the number of
+/// samples reached.
 pub fn render_in_passes<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
@@ -82,7 +84,7 @@ pub fn render_in_passes<T: Transport>(
     film
 }
 
-/// What of the film one job fills: sums, squares, counts.
+/// The part of the film that one job fills: sums, squares, sample counts.
 type Part<'a> = ((&'a mut [f64], &'a mut [f64]), &'a mut [u32]);
 
 #[allow(clippy::too_many_arguments)] // one call site; a struct of them would only rename the list
@@ -99,9 +101,9 @@ fn pass<T: Transport>(
     let sums = film.sums.par_chunks_mut(BLOCK * shape.per_pixel());
     let squares = film.squares.par_chunks_mut(BLOCK * shape.slots);
     let counts = film.samples.par_chunks_mut(BLOCK);
-    // the first pass is always finished, so that every pixel holds something
+    // the first pass always finishes, so that every pixel holds samples
     let may_stop = samples.start > 0;
-    // what is larger than this is kept; every block that is done raises it for the others
+    // only contributions above these floors are kept; every finished block raises the floors for the others
     let floors = Largest::floors(&film.largest);
     let job = |paths: &mut Paths<T::Wave>, (i, ((sums, squares), counts)): (usize, Part)| {
         if may_stop && progress.stopped() {
@@ -133,7 +135,7 @@ fn pass<T: Transport>(
     film.non_finite += totals.non_finite;
 }
 
-/// What a job counts beside the film that it fills.
+/// Totals that a job counts besides the part of the film that it fills.
 struct Totals {
     rays: Vec<u64>,
     non_finite: u64,
@@ -145,7 +147,7 @@ impl Totals {
         Self { rays: vec![0; slots], non_finite: 0, largest: vec![Largest::default(); slots] }
     }
 
-    /// None of these depends on the order.
+    /// Adds two totals. The result does not depend on the order.
     fn plus(mut self, other: Self) -> Self {
         self.rays.iter_mut().zip(&other.rays).for_each(|(a, b)| *a += b);
         self.largest.iter_mut().zip(&other.largest).for_each(|(a, b)| a.merge(b));
@@ -154,7 +156,7 @@ impl Totals {
     }
 }
 
-/// What one job adds to the film, wherever.
+/// Contributions of one job to pixels anywhere on the film.
 #[derive(Default)]
 struct Splats {
     /// Slot, pixel, sample, value.
@@ -176,11 +178,12 @@ impl TermSink for Splats {
     }
 }
 
-/// Blocks whose splats are held at once.
+/// Blocks whose splats are held in memory at once.
 const AT_ONCE: usize = 32;
 
-/// A pass of an estimator that adds to any pixel: blocks run side by side, and their splats are added in the order of the blocks.
-#[allow(clippy::too_many_arguments)] // as its caller
+/// A pass of an estimator that adds to any pixel. Blocks run in parallel, and their splats are added in the order of the
+/// blocks.
+#[allow(clippy::too_many_arguments)] // for the same reason as `pass`
 fn splat<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
@@ -192,8 +195,8 @@ fn splat<T: Transport>(
 ) {
     let (shape, pixels) = (film.shape, film.shape.pixels() as u32);
     let blocks: Vec<u32> = (0..pixels).step_by(BLOCK).collect();
-    // a sample that is left half-way would darken every pixel, so that it is all or nothing; the first pass is always
-    // finished, so that every replicate holds something: of empty ones the errors would be 0
+    // a half-finished sample would darken every pixel, so each sample is done completely or not at all; the first pass
+    // always finishes, because replicates without samples would give errors of 0
     let may_stop = samples.start > 0;
     for sample in samples {
         if may_stop && progress.stopped() {

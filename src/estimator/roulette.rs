@@ -1,37 +1,39 @@
-//! Russian roulette as data: q is the probability of **termination**, the weight of survival is 1/(1 − q).
+//! Russian roulette as data: q is the probability of **termination**, and survivors get the weight 1/(1 − q).
 //!
-//! q\[v\] is tested at surface vertex v = 0, 1, … after that vertex is scored (its emission and its connection). The
-//! probability of reaching vertex v is `Q_v = Π_{i<v} (1 − q[i])`, and `E[ X·1{v reached}/Q_v ] = X`: unbiased term by term
-//! whatever the schedule.
+//! q\[v\] is applied at surface vertex v = 0, 1, … after that vertex is scored (its emission and its connection). The
+//! probability of reaching vertex v is `Q_v = Π_{i<v} (1 − q[i])`. Since `E[ X·1{v reached}/Q_v ] = X`, every schedule is
+//! unbiased term by term.
 //!
-//! How large q may be is another matter: with constant survival s the variance is finite only where the spectral radius of
-//! ρ²F/s is below 1 (`q < 1 − ρ²` in a furnace), and the *measured* variance can be trusted only where the fourth moment is
-//! finite (`ρ⁴ < (1 − q)³`). With s = ρ that operator is T itself. `engine::known::growth` measures the radius where it is not known.
+//! The variance limits how large q may be (ρ: reflectance, F: form factors). With constant survival probability s = 1 − q it
+//! is finite only where the spectral radius of ρ²F/s is below 1 (`q < 1 − ρ²` in a furnace). The *measured* variance can be
+//! trusted only where the fourth moment is finite (`ρ⁴ < (1 − q)³`). With s = ρ the operator ρ²F/s is T itself.
+//! `engine::known::growth` measures the spectral radius where it is not known.
 //!
-//! Roulette by albedo ends no path where the albedo is 1, or is only known to be at most 1. Two rules end those, and neither makes
-//! an infinite variance out of a finite one:
+//! Roulette by albedo never ends a path where the albedo is 1, or is only known to be at most 1. Two more rules end such
+//! paths. Neither makes a finite variance infinite:
 //!
 //! | rule | from vertex | why it is harmless |
 //! |---|---|---|
-//! | survive with α/τ where the throughput α is below τ = 1/16 | 128 | survivors weigh τ < 1: `E[X²] ≤ 2 max(α) Σ_k (k + 1) T^k`, finite where r(T) < 1 |
-//! | survive with 1 − 2/v | V = 16384 | weights grow like v², and `Σ_v v² r^v` is finite for every r < 1; 2V vertices in the mean |
+//! | survive with probability α/τ where the throughput α is below τ = 1/16 | 128 | survivors weigh τ < 1: `E[X²] ≤ 2 max(α) Σ_k (k + 1) T^k`, finite where r(T) < 1 |
+//! | survive with probability 1 − 2/v | V = 16384 | weights grow like v², and `Σ_v v² r^v` is finite for every r < 1; the mean length is 2V vertices |
 //!
-//! A constant q in their place needs r < 1 − q, and is used where that is known: [`Transport::last_resort`]. Channels in which nothing emits, or in which a path carries nothing any more,
-//! have no say.
+//! Here r = r(T) is the spectral radius. Where r < 1 − q is known for a constant q, that q is used instead of the two rules:
+//! [`Transport::last_resort`]. Channels in which nothing emits, or in which a path carries nothing any more, are ignored.
 //!
-//! Where somebody knows how much light is still to come, walks may end or split by that: `guide::expected`.
+//! Where a guide estimates how much light is still to come, walks may end or split by that estimate: `guide::expected`.
 
 use crate::math::Rgb;
 use crate::operator::Transport;
 use std::{fmt, str::FromStr};
 
-/// From this vertex on paths that carry less than this are brought up to it: an albedo may be a bound that is 1 where light is
-/// lost, as in a hollow ball of rough metal.
+/// From this vertex on, paths with a throughput below this value survive with exactly this value. The rule is needed because
+/// an albedo may be a bound that is 1 where light is lost, as in a hollow ball of rough metal.
 const FAINT: (usize, f32) = (128, 1.0 / 16.0);
-/// From this vertex V on paths survive with 1 − 2/v at most: V²/v² of them reach vertex v, 2V is their mean length.
+/// From this vertex V on, paths survive with probability at most 1 − 2/v. Then V²/v² of them reach vertex v, and their mean
+/// length is 2V.
 const LONG: usize = 16_384;
 
-/// The largest survival at vertex `v` that ends every path at last.
+/// The largest survival probability at vertex `v` with which every path still ends eventually.
 #[inline(always)]
 pub(crate) fn at_last(v: usize) -> f32 {
     if v < LONG { 1.0 } else { 1.0 - 2.0 / v as f32 }
@@ -42,7 +44,7 @@ pub(crate) fn at_last(v: usize) -> f32 {
 pub enum Roulette {
     /// Paths never end by roulette.
     Never,
-    /// 0 at vertices before `from`, then `q`. The lecture's is 0, 0, then 0.5.
+    /// q = 0 at vertices before `from`, then the constant `q`. The lecture's schedule is 0, 0, then 0.5.
     Constant {
         /// First vertex with roulette.
         from: usize,
@@ -51,13 +53,14 @@ pub enum Roulette {
     },
     /// q\[v\] as listed; the last entry holds for all later vertices.
     Table(Vec<f64>),
-    /// 0 before `from`, then q = 1 − the largest channel of the albedo: the analog walk, whose variance is finite where r(T) < 1 and
-    /// no weight exceeds the albedo. The [module](self) says what ends paths where the albedo is 1.
+    /// q = 0 before `from`, then q = 1 − the largest channel of the albedo. This is the analog walk. Its variance is finite
+    /// where r(T) < 1 and no weight exceeds the albedo. The [module](self) states the rules that end paths where the albedo
+    /// is 1.
     Albedo {
         /// First vertex with roulette.
         from: usize,
     },
-    /// 0 before `from`, then q = 1 − the largest channel of the throughput so far, at least 0.
+    /// q = 0 before `from`, then q = 1 − the largest channel of the throughput so far, at least 0.
     Throughput {
         /// First vertex with roulette.
         from: usize,
@@ -65,7 +68,7 @@ pub enum Roulette {
 }
 
 impl Roulette {
-    /// The lecture's schedule: none at the first two vertices, then 0.5.
+    /// The lecture's schedule: no roulette at the first two vertices, then q = 0.5.
     pub const LECTURE: Self = Self::Constant { from: 2, q: 0.5 };
 
     /// q at vertex `v` of a path with this throughput, at a surface with this albedo.
@@ -85,7 +88,7 @@ impl Roulette {
                 if v < *from {
                     return 0.0;
                 }
-                // a channel that carries nothing has no say
+                // a channel that carries nothing is ignored
                 let carried = Rgb::select(throughput.cmpgt(Rgb::ZERO), albedo, Rgb::ZERO);
                 let s = carried.max_element().clamp(0.0, 1.0);
                 if v < FAINT.0 {
@@ -103,7 +106,7 @@ impl Roulette {
         }
     }
 
-    /// q at vertex `v` where it is the same on every path; none where it follows the albedo or the throughput.
+    /// q at vertex `v` if it is the same on every path; None if it follows the albedo or the throughput.
     pub fn fixed(&self, v: usize) -> Option<f64> {
         match self {
             Self::Never => Some(0.0),
@@ -113,7 +116,7 @@ impl Roulette {
         }
     }
 
-    /// From this vertex on the schedule is the same everywhere.
+    /// The first vertex from which on the rule of the schedule does not change any more.
     pub fn settled(&self) -> usize {
         match self {
             Self::Never => 0,
@@ -122,13 +125,14 @@ impl Roulette {
         }
     }
 
-    /// The same q before vertex `v`, as a table, and `q` from there on; none where it is not the same on every path.
+    /// A table with the same q before vertex `v`, and `q` from there on. None if q before `v` is not the same on every path.
     pub fn then(&self, v: usize, q: f64) -> Option<Self> {
         let before: Option<Vec<f64>> = (0..v).map(|i| self.fixed(i)).collect();
         before.map(|table| Self::Table(table.into_iter().chain([q]).collect()))
     }
 
-    /// q at vertex `v` of a path that stands at a state with this throughput, after it has been scored there.
+    /// q at vertex `v` for a path at state `at` with this throughput, after the vertex has been scored. It includes the
+    /// transport's last resort.
     #[inline(always)]
     pub fn q<T: Transport>(&self, t: &T, v: usize, throughput: Rgb, at: &T::State) -> f32 {
         let q = self.termination(v, throughput, t.albedo(at));
@@ -138,7 +142,7 @@ impl Roulette {
         }
     }
 
-    /// Whether q is 0 at vertex `v` on every path: nothing to draw.
+    /// Returns true if q is 0 at vertex `v` on every path, so that no random number is needed.
     pub fn sleeps(&self, v: usize) -> bool {
         match self {
             Self::Never => true,
@@ -148,7 +152,7 @@ impl Roulette {
         }
     }
 
-    /// Whether paths end with probability 1. Where they do not, estimators stop at the last term and report no tail.
+    /// Returns true if paths end with probability 1. Otherwise estimators stop at the last term and report no tail.
     pub fn ends(&self) -> bool {
         match self {
             Self::Never => false,
@@ -158,7 +162,7 @@ impl Roulette {
         }
     }
 
-    /// The same schedule with no roulette before vertex `v`: terms k ≤ v keep all their samples.
+    /// The same schedule without roulette before vertex `v`: the terms k ≤ v keep all their samples.
     #[must_use]
     pub fn after(self, v: usize) -> Self {
         match self {
@@ -189,14 +193,16 @@ impl fmt::Display for Roulette {
     }
 }
 
-/// `none`, `lecture`, `constant:Q@V`, `table:q0,q1,…`, `albedo[@V]`, `throughput[@V]`.
+/// Grammar: `none`, `lecture`, `constant:Q@V`, `table:q0,q1,…`, `albedo[@V]`, `throughput[@V]`.
 impl FromStr for Roulette {
     type Err = String;
 
     fn from_str(s: &str) -> Result<Self, String> {
         let grammar = "none, lecture, constant:Q@V, table:q0,q1,…, albedo[@V] or throughput[@V]";
         let (head, from) = match s.split_once('@') {
-            Some((head, v)) => (head, Some(v.parse().map_err(|_| format!("`{v}` is not a vertex number; {grammar}"))?)),
+            Some((head, v)) => {
+                (head, Some(v.parse().map_err(|_| format!("`{v}` is not a vertex number; use {grammar}"))?))
+            }
             None => (s, None),
         };
         let q = |s: &str| match s.trim().parse::<f64>() {
@@ -209,13 +215,13 @@ impl FromStr for Roulette {
                 "lecture" => Ok(Self::LECTURE),
                 "albedo" => Ok(Self::Albedo { from: from.unwrap_or(2) }),
                 "throughput" => Ok(Self::Throughput { from: from.unwrap_or(2) }),
-                _ => Err(format!("unknown roulette `{s}`; {grammar}")),
+                _ => Err(format!("unknown roulette `{s}`; use {grammar}")),
             },
             Some(("constant", value)) => Ok(Self::Constant { from: from.unwrap_or(2), q: q(value)? }),
             Some(("table", values)) if from.is_none() => {
                 Ok(Self::Table(values.split(',').map(q).collect::<Result<_, _>>()?))
             }
-            Some(_) => Err(format!("unknown roulette `{s}`; {grammar}")),
+            Some(_) => Err(format!("unknown roulette `{s}`; use {grammar}")),
         }
     }
 }
@@ -234,23 +240,24 @@ mod tests {
         }
     }
 
-    /// Also where the albedo is only known to be at most 1; and weights grow more slowly than any geometric sequence.
+    /// Every path ends, also where the albedo is only known to be at most 1. Weights grow more slowly than any geometric
+    /// sequence.
     #[test]
     fn albedo_ends_every_path() {
         let r = Roulette::Albedo { from: 2 };
         assert_eq!(r.termination(1, Rgb::ONE, Rgb::ONE), 0.0);
         assert_eq!(r.termination(2, Rgb::ONE, Rgb::splat(0.25)), 0.75);
-        // full weight: nothing before V, then a survival whose product falls like 1/v²
+        // full weight: no roulette before V, then survival probabilities whose product falls like 1/v²
         assert_eq!(r.termination(LONG - 1, Rgb::ONE, Rgb::ONE), 0.0);
         let survival = |to: usize| (LONG..to).map(|v| 1.0 - f64::from(r.termination(v, Rgb::ONE, Rgb::ONE))).product();
         let (twice, eight): (f64, f64) = (survival(2 * LONG), survival(8 * LONG));
         assert!((twice - 1.0 / 4.0).abs() < 1e-3 && (eight - 1.0 / 64.0).abs() < 1e-3, "{twice} {eight}");
-        // the analog walk is left alone as long as it ends by itself
+        // the analog walk is unchanged as long as it ends by itself
         assert_eq!(r.termination(10_000, Rgb::ONE, Rgb::splat(0.999)), 1.0 - 0.999);
-        // what weighs little comes to weigh 1/16, no more
+        // paths with a small throughput are brought up to 1/16, no more
         assert_eq!(r.termination(127, Rgb::splat(1.0 / 64.0), Rgb::ONE), 0.0);
         assert_eq!(r.termination(128, Rgb::splat(1.0 / 64.0), Rgb::ONE), 0.75);
-        // channels that carry nothing keep no path alive
+        // a channel that carries nothing keeps no path alive
         assert_eq!(r.termination(2, Rgb::new(0.5, 0.0, 0.0), Rgb::new(0.25, 1.0, 1.0)), 0.75);
         assert_eq!(r.termination(2, Rgb::ZERO, Rgb::ONE), 1.0);
         let throughput = Roulette::Throughput { from: 2 };

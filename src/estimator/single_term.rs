@@ -1,20 +1,20 @@
-//! One integral per length, as in the lecture: each `T^k E` from paths of its own.
+//! One integral per path length, as in the lecture: each `T^k E` from its own paths.
 //!
-//! `X_k = α_{k−1} · (one factor of T applied to E at x_{k−1})`, with k − 1 scattering steps before it and fresh paths for
-//! every k. The terms are independent, at the price of `Σ k` rays where prefix reuse needs K.
+//! `X_k = α_{k−1} · (one factor of T applied to E at x_{k−1})`, with k − 1 scattering steps before it and new paths for
+//! every k. The terms are independent. The price is `Σ k` rays, where the prefix estimator needs K.
 //!
-//! The tail has paths of its own too: K steps without scoring, then everything beyond.
+//! The tail has its own paths too: K steps without scoring, then every later vertex scores.
 
 use super::{Batch, Job, Paths, Plan, TermEstimator, TermSink, prefix};
 use crate::math::Columns;
 use crate::operator::{Sensor, Transport};
 
-/// The estimator of single terms.
+/// The estimator with separate paths for each term.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SingleTerm(pub Plan);
 
 impl SingleTerm {
-    /// Fresh paths for slot `k`, walked to vertex `steps`.
+    /// Starts new paths for slot `k` and walks them to vertex `steps`.
     fn walk<T: Transport, S: Sensor<T>>(
         &self,
         job: &Job<'_, T, S>,
@@ -36,7 +36,7 @@ impl SingleTerm {
 }
 
 impl SingleTerm {
-    /// Term k ≤ K, from paths of its own.
+    /// Estimates term k ≤ K from its own paths.
     fn term<T: Transport, S: Sensor<T>>(
         &self,
         job: &Job<'_, T, S>,
@@ -66,7 +66,7 @@ impl SingleTerm {
         }
     }
 
-    /// Everything beyond K, from paths of its own; nothing where no roulette ends them.
+    /// Estimates everything beyond K from its own paths; nothing if no roulette ends them.
     pub(super) fn tail<T: Transport, S: Sensor<T>>(
         &self,
         job: &Job<'_, T, S>,
@@ -92,13 +92,13 @@ impl<T: Transport> TermEstimator<T> for SingleTerm {
     }
 }
 
-/// One slot of [`SingleTerm`] by itself, with the same numbers: k = 0..=K, or K + 1 for the tail. Its film has one slot, and
-/// so many samples as this term is worth.
+/// One slot of [`SingleTerm`] as a separate estimator with the same random numbers: k = 0..=K, or K + 1 for the tail. Its
+/// film has one slot, so each term can get its own number of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OneTerm {
-    /// What the terms are estimated with.
+    /// The estimator of all terms, of which one slot is used.
     pub single: SingleTerm,
-    /// The slot.
+    /// The slot to estimate.
     pub slot: usize,
 }
 
@@ -117,7 +117,7 @@ impl<T: Transport> TermEstimator<T> for OneTerm {
     }
 }
 
-/// Puts whatever slot into the only one.
+/// A sink that redirects every slot to slot 0.
 struct Alone<'a, S>(&'a mut S);
 
 impl<S: TermSink> TermSink for Alone<'_, S> {

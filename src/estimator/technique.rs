@@ -1,8 +1,8 @@
-//! How light is found: by hitting it, by connecting to it, or both. The emission rules of all estimators, in one place.
+//! Techniques that find light: by hits, by connections, or by both. All emission rules of the estimators are in this file.
 //!
-//! Each way a path can be found gets a weight, and the weights of one path sum to 1. p is the density of the way that found
-//! it, p° that of the other, in one measure; p° = 0 says that the other way cannot find it at all: after a delta vertex,
-//! or where the light has no area.
+//! Each technique that can find a path gets a weight, and the weights of one path sum to 1. p is the density of the
+//! technique that found the path, p° that of the other technique, in the same measure. p° = 0 means that the other technique
+//! cannot find the path at all: after a delta vertex, or where the light has no area.
 //!
 //! | emission counts | `Scatter` | `Connect` | `Mis` | `Power` |
 //! |---|---|---|---|---|
@@ -12,19 +12,20 @@
 //! | through a connection | 0 | 1 | p/(p + p°) | p²/(p² + p°²) |
 //! | through a connection, p° = 0 (a point light) | 0 | 1 | 1 | 1 |
 //!
-//! The fourth column is the balance heuristic, the fifth the power heuristic with exponent 2. `Scatter` alone breaks the rule, for
-//! lights without area: `engine::known::unsampled` says so, and nothing goes dark in silence.
+//! The fourth column is the balance heuristic, the fifth the power heuristic with exponent 2. Only `Scatter` breaks the rule
+//! that weights sum to 1: it misses lights without area. `engine::known::unsampled` reports that, so no light goes missing
+//! silently.
 //! Reference: Veach and Guibas, *Optimally Combining Sampling Techniques* (1995).
 
 use crate::math::Columns;
 use crate::operator::{Samples, Transport};
 
-/// How light is found.
+/// Technique that finds light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Technique {
-    /// Emission counts where the walk hits it.
+    /// Emission counts only where the walk hits it.
     Scatter,
-    /// Emission counts through next-event estimation, and on hits only where that cannot find it.
+    /// Emission counts through next-event estimation, and on hits only where next-event estimation cannot find it.
     Connect,
     /// Both, weighted by the balance heuristic.
     Mis,
@@ -33,20 +34,20 @@ pub enum Technique {
 }
 
 impl Technique {
-    /// All of them.
+    /// All techniques.
     pub const ALL: [Self; 4] = [Self::Scatter, Self::Connect, Self::Mis, Self::Power];
 
-    /// Whether there is next-event estimation.
+    /// Returns true if the technique uses next-event estimation.
     pub fn connects(self) -> bool {
         self != Self::Scatter
     }
 
-    /// Whether emission can count on hits in this world: always, unless connecting finds all of it.
+    /// Returns true if emission can count on hits with this transport: always, unless connections find all of it.
     pub fn hits<T: Transport>(self, t: &T) -> bool {
         self != Self::Connect || !t.connects_to_all()
     }
 
-    /// Weight of emission on a hit that was found with density `p`, where connecting would have density `other`.
+    /// Weight of emission on a hit that was found with density `p`; a connection would have found it with density `other`.
     #[inline(always)]
     pub fn hit(self, p: f32, other: f32) -> f32 {
         match self {
@@ -57,7 +58,7 @@ impl Technique {
         }
     }
 
-    /// Weight of a connection that was found with density `p`, where scattering would have density `other`.
+    /// Weight of a connection that was found with density `p`; scattering would have found it with density `other`.
     #[inline(always)]
     pub fn connection(self, p: f32, other: f32) -> f32 {
         match self {
@@ -68,14 +69,14 @@ impl Technique {
         }
     }
 
-    /// The weights of a wave of hits, multiplied onto its values.
+    /// Multiplies the values of a wave of hits by their weights.
     pub fn weigh_hits(self, samples: &mut Samples, n: usize) {
         if self != Self::Scatter {
             multiply(samples, n, |p, other| self.hit(p, other));
         }
     }
 
-    /// The weights of a wave of connections, multiplied onto its values.
+    /// Multiplies the values of a wave of connections by their weights.
     pub fn weigh_connections(self, samples: &mut Samples, n: usize) {
         if self != Self::Connect {
             multiply(samples, n, |p, other| self.connection(p, other));
@@ -88,7 +89,7 @@ fn balance(p: f32, other: f32) -> f32 {
     p / (p + other)
 }
 
-/// By way of the ratio, whose square overflows only where the weight is 0.
+/// The power heuristic, computed from the ratio of densities, whose square overflows only where the weight is 0.
 #[inline(always)]
 fn power(p: f32, other: f32) -> f32 {
     let ratio = other / p;
@@ -123,7 +124,7 @@ impl std::fmt::Display for Technique {
 mod tests {
     use super::*;
 
-    /// Whatever the densities, the weights of the two ways to find a path sum to 1, but for what `Scatter` cannot see.
+    /// For any densities, the weights of the two techniques that find a path sum to 1, except where `Scatter` finds nothing.
     #[test]
     fn weights_of_one_path_sum_to_one() {
         for technique in Technique::ALL {
@@ -131,7 +132,7 @@ mod tests {
                 let sum = technique.hit(hit, connect) + technique.connection(connect, hit);
                 assert!((sum - 1.0).abs() < 1e-6, "{technique} {hit} {connect}: {sum}");
             }
-            // after a mirror nobody connects, and to a point light nobody scatters
+            // after a mirror no connection is possible, and a point light is never hit by scattering
             assert_eq!(technique.hit(0.5, 0.0), 1.0);
             assert_eq!(technique.connection(0.5, 0.0), if technique == Technique::Scatter { 0.0 } else { 1.0 });
         }

@@ -1,4 +1,4 @@
-//! The prefix estimator with what every vertex scores kept apart: the slots of the [cross moments](crate::terms::cross_moments).
+//! The prefix estimator with separate slots for each vertex, as the [cross moments](crate::terms::cross_moments) need them.
 //!
 //! ```text
 //! slot 2v        the hit at vertex v,           v = 0..=K        scores term v
@@ -6,16 +6,16 @@
 //! slot 2K + 1    the tail: the connection at vertex K and all that follows
 //! ```
 //!
-//! so that slot a stands at vertex ⌊a/2⌋ and scores term ⌈a/2⌉. It reads the same random numbers as
-//! [`Prefix`](super::Prefix): hit and connection of one term add up to it, to rounding.
+//! So slot a belongs to vertex ⌊a/2⌋ and scores term ⌈a/2⌉. The estimator reads the same random numbers as
+//! [`Prefix`](super::Prefix): the hit and the connection of one term add up to that term of `Prefix`, up to rounding.
 //!
-//! The rays of a slot are those that are asked for once its vertex is reached: the ray that leads to a vertex counts there,
-//! because roulette has already spared the path when it is cast.
+//! The rays of a slot are those requested once its vertex is reached. The ray that leads to a vertex counts at that vertex,
+//! because the path has already survived roulette when this ray is traced.
 
 use super::{Job, Paths, Plan, TermEstimator, TermSink, prefix};
 use crate::operator::{Sensor, Transport};
 
-/// The prefix estimator, vertex by vertex.
+/// The prefix estimator with slots by vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vertices(pub Plan);
 

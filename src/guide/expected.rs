@@ -1,18 +1,18 @@
-//! Walks that end or split by how much light is still to come, where somebody knows about how much that is.
+//! Roulette and splitting by the light that a path is still expected to find. A guide supplies the expected value.
 //!
 //! ```text
 //! w = α · (light expected from here on) / (light expected of the path at its start)
 //! contribution:  q = 1 − min(w, 1)                        weight window:  w < ½: q = 1 − 2w     ½ ≤ w ≤ 1: q = 0     w > 1: q = 1 − w < 0
 //! ```
 //!
-//! A path goes on as n walks of weight 1/(1 − q) each, with E\[n\] = 1 − q. For q ≥ 0 that is Russian roulette, for q < 0 the path
-//! splits; both are unbiased whatever is expected.
+//! α is the throughput of the path. A path goes on as n walks of weight 1/(1 − q) each, with E\[n\] = 1 − q. For q ≥ 0 this
+//! is Russian roulette, for q < 0 the path splits. Both are unbiased for every expected value, right or wrong.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | u, T u | reflected light that is expected to leave a state: all, and without what connections find | [`Expected`] |
-//! | q | probability of termination, or minus the copies that are added | [`ByExpectation::q`] |
-//! | n | how many go on | [`ByExpectation::copies`] |
+//! | T L, T (L − E) | reflected radiance expected to leave a state: all of it, and without the light that connections find | [`Expected`] |
+//! | q | probability of termination; if negative, −q is the expected number of added copies | [`ByExpectation::q`] |
+//! | n | number of walks that go on | [`ByExpectation::copies`] |
 //!
 //! Reference: Vorba and Křivánek, *Adjoint-Driven Russian Roulette and Splitting in Light Transport Simulation* (2016).
 
@@ -22,58 +22,59 @@ use crate::math::Rgb;
 use crate::operator::{SceneTransport, Transport};
 use std::{fmt, str::FromStr};
 
-/// Reflected radiance that is expected to leave a state, mean of the channels.
+/// Reflected radiance expected to leave a state, as the mean of the channels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Expected {
-    /// T L: all of it.
+    /// T L: all reflected radiance.
     pub all: f32,
-    /// T (L − E): what connections from here do not find.
+    /// T (L − E): the reflected radiance that connections from this state do not find.
     pub indirect: f32,
 }
 
-/// A transport that knows about how much reflected light leaves a state.
+/// A transport that knows approximately how much reflected light leaves a state.
 pub trait Expecting: Transport {
-    /// Nothing where nobody knows.
+    /// The expected radiance at a state; `None` if it is unknown there.
     fn expected(&self, at: &Self::State) -> Option<Expected>;
 }
 
-/// Without a guide nobody knows.
+/// Without a guide the expected radiance is unknown everywhere.
 impl Expecting for SceneTransport<'_> {
     fn expected(&self, _: &Self::State) -> Option<Expected> {
         None
     }
 }
 
-/// How guided walks end, or split. Where nobody knows what to expect, they end by albedo.
+/// Rule by which guided walks end or split. Where the expected radiance is unknown, they end by albedo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ByExpectation {
-    /// 0 before vertex `from`, then q = 1 − w, at least 0 and at most 0.9: adjoint-driven roulette.
+    /// Adjoint-driven roulette: q = 0 before vertex `from`, then q = 1 − w, clamped to 0 … 0.9.
     Contribution {
         /// First vertex with roulette.
         from: usize,
     },
-    /// A weight window: below ½ a path survives with probability 2w, at least 0.1; above 1 it splits into w walks in the mean, at
-    /// most 8, which is a negative q = 1 − w.
+    /// A weight window. For w below ½ a path survives with probability 2w, at least 0.1. For w above 1 it splits into w
+    /// walks on average, at most 8; this is a negative q = 1 − w.
     Window {
         /// First vertex with roulette or splitting.
         from: usize,
     },
 }
 
-/// A path that is one of so many copies splits no more: unbiased, since it goes on with weight 1 for certain. Where weights still grow
-/// then, `engine::known::growth` sees it.
+/// A path that has split into this many copies does not split again. It goes on with certainty and unchanged weight, so the
+/// estimate stays unbiased. If weights keep growing after that, `engine::known::growth` detects it.
 const CROWD: u32 = 64;
-/// Survivors of roulette by contribution weigh no more than ten times what they did; what is lighter still is tested at every
-/// vertex, so that paths without a future end after a few.
+/// Lower bound on the survival probability: one roulette raises a weight at most tenfold. A path that is still lighter is
+/// tested at every vertex, so that a path without expected light ends after a few vertices.
 const LEAST_SURVIVAL: f32 = 0.1;
-/// Where less than this part of the pixel is expected of a path, roulette brings the survivors up to it. Between this and 1 nothing
-/// happens to a path: to end and to split have a price, too, and where light comes from everywhere ending at 1 costs more than it saves.
+/// A path whose w is below this share of the pixel's expected value plays roulette, and survivors get w equal to it. Between
+/// this share and 1 nothing happens to a path, because ending and splitting also have a price. Where light comes from
+/// everywhere, roulette that begins at w = 1 costs more than it saves.
 const LEAST_SHARE: f32 = 0.5;
 
 impl ByExpectation {
-    /// Into how many a path may split at one vertex.
+    /// Largest number of copies into which a path may split at one vertex.
     pub const MOST: u32 = 8;
-    /// The usual ones.
+    /// The default rules, one of each kind.
     pub const ALL: [Self; 2] = [Self::Contribution { from: 1 }, Self::Window { from: 0 }];
 
     /// The first vertex at which paths may end or split.
@@ -82,13 +83,14 @@ impl ByExpectation {
         from
     }
 
-    /// What ends paths where nobody knows what to expect.
+    /// The roulette used where the expected radiance is unknown.
     pub fn plain(self) -> Roulette {
         Roulette::Albedo { from: self.from() }
     }
 
-    /// q at vertex `v` of a path that stands at a state with this throughput, after it has been scored there; `start` is what was expected
-    /// of the path at its start, 0 if nobody knew. Below 0 it splits into 1 − q copies in the mean.
+    /// q at vertex `v` of a path at the state `at` with this throughput, after its contribution there has been added.
+    /// `start` is the radiance expected of the path at its start, 0 if unknown. If q is negative, the path splits into 1 − q
+    /// copies on average.
     #[inline(always)]
     pub fn q<T: Expecting>(self, t: &T, v: usize, throughput: Rgb, at: &T::State, start: f32) -> f32 {
         if v < self.from() {
@@ -103,7 +105,7 @@ impl ByExpectation {
             Self::Window { .. } if w < LEAST_SHARE => w / LEAST_SHARE,
             Self::Window { .. } => w.clamp(1.0, Self::MOST as f32),
         };
-        // what splits is heavy, and ends sooner or later by becoming light: only its survival is bounded
+        // a path that splits has a large weight; sooner or later its weight is small and it ends: only survival is bounded
         let q = 1.0 - if copies > 1.0 { copies } else { copies.max(LEAST_SURVIVAL).min(at_last(v)) };
         match t.last_resort() {
             Some((vertex, last)) if v >= vertex && q >= 0.0 => q.max(last),
@@ -111,7 +113,8 @@ impl ByExpectation {
         }
     }
 
-    /// How many go on with throughput α/(1 − q), for a uniform number u, of a path that is one of `siblings`; 1 − q in the mean.
+    /// The number of copies that go on, for a uniform number u, and the factor 1/(1 − q) for their throughput. The path is
+    /// one of `siblings` copies. The mean number of copies is 1 − q.
     #[inline(always)]
     pub fn copies(q: f32, u: f32, siblings: u32) -> (u32, f32) {
         match q {
@@ -143,7 +146,7 @@ impl FromStr for ByExpectation {
         match head {
             "contribution" => Ok(Self::Contribution { from: from.unwrap_or(1) }),
             "window" => Ok(Self::Window { from: from.unwrap_or(0) }),
-            _ => Err(format!("`{s}` is neither contribution[@V] nor window[@V]")),
+            _ => Err(format!("`{s}` is not a rule of termination; use contribution[@V] or window[@V]")),
         }
     }
 }
@@ -163,7 +166,7 @@ mod tests {
         }
     }
 
-    /// The mean of copies · weight over u is 1, whatever q; and a path that has split often enough goes on alone.
+    /// The mean of copies · weight over u is 1 for every q, and a path that has split often enough does not split again.
     #[test]
     fn copies_carry_the_weight_of_the_path() {
         for q in [0.9, 0.25, 0.0, -0.25, -1.0, -3.4, 1.0 - ByExpectation::MOST as f32] {

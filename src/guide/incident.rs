@@ -1,19 +1,20 @@
-//! What arrives at every patch, by direction: one set of stored rays is the matrix, and the guide.
+//! Incident light at every patch, by direction. One set of stored rays gives both the matrix and the guide.
 //!
 //! ```text
 //! T_ij = ρ_i · (rays of i that hit j)/(rays of i)        u = T E + T u        W_ic = mean of u over the rays of i in cell c
 //! ```
 //!
-//! Each patch sends the same number of rays through each of the M × M cells of the [cosine square](super::warp), so that all
-//! weigh the same in its row of T. Direct light T E is estimated by connections and split off: rays miss small lamps. u is
-//! light that has been reflected; where connections find the lamps it is all that a ray has to look for.
+//! ρ_i is the reflectance of patch i and E the emission. Each patch sends the same number of rays through each of the M × M
+//! cells of the [cosine square](super::warp), so that all rays have the same weight in its row of T. Direct light T E is
+//! estimated by connections and kept separate, because rays miss small lamps. u is reflected radiance: where connections
+//! find the lamps, rays need to find reflected light only.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | hits | the patch that each ray of a row meets, [`NOTHING`] if none | [`Incident::hits`] |
+//! | hits | the patch that each ray of a row hits, [`NOTHING`] if none | [`Incident::hits`] |
 //! | T E | direct light | [`Incident::direct`] |
 //! | u | reflected radiance | [`Incident::radiance`] |
-//! | W_ic | what cell c brings to patch i | [`Incident::weights`] |
+//! | W_ic | weight of cell c at patch i: the reflected radiance that arrives through it | [`Incident::weights`] |
 
 use super::warp::CELLS;
 use crate::math::direction::cosine_hemisphere;
@@ -25,34 +26,34 @@ use crate::scene::{Side, Vertex, offset_origin};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// A ray that meets no patch.
+/// Marks a ray that hits no patch.
 pub const NOTHING: u32 = u32::MAX;
 
-/// Rays of the fixed-point iteration's last step may change u by this much of its mean.
+/// The fixed-point iteration stops when a step changes u by no more than this fraction of its mean.
 const CHANGE: f32 = 1e-3;
 const STEPS: usize = 64;
 
-/// How fine.
+/// Number of rays and connections per patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fineness {
-    /// Rays in each cell.
+    /// Rays in each of the M × M cells.
     pub rays: usize,
-    /// Connections for the direct light.
+    /// Connections to lamps per patch, for the direct light.
     pub connections: usize,
 }
 
-/// Stored rays, and the light they carry.
+/// The stored rays of all patches, and the direct light at each patch.
 pub struct Incident {
     fineness: Fineness,
-    /// Patch by patch, cell by cell.
+    /// Hit patch of every ray, ordered by patch, then by cell.
     pub hits: Vec<u32>,
-    /// T E per patch.
+    /// T E: direct light of each patch.
     pub direct: Vec<Rgb>,
     reflectance: Vec<Rgb>,
 }
 
 impl Incident {
-    /// Sends the rays. `scene` must be the one that was meshed. Nothing when stopped.
+    /// Traces the rays. `scene` must be the scene from which `patches` were made. `None` if the run was stopped.
     pub fn new(
         scene: &SceneTransport<'_>,
         patches: &Patches,
@@ -96,7 +97,7 @@ impl Incident {
         self.direct.len()
     }
 
-    /// Whether there is none.
+    /// Returns true if there is no patch.
     pub fn is_empty(&self) -> bool {
         self.direct.is_empty()
     }
@@ -106,14 +107,15 @@ impl Incident {
         &self.hits[i * n..(i + 1) * n]
     }
 
-    /// (T u)_i.
+    /// (T u)_i: reflected radiance of patch i if the patches have the radiances `u`.
     fn gather(&self, i: usize, u: &[Rgb]) -> Rgb {
         let row = self.row(i);
         let sum: Rgb = row.iter().filter(|&&j| j != NOTHING).map(|&j| u[j as usize]).sum();
         self.reflectance[i] * sum / row.len() as f32
     }
 
-    /// u = T E + T u, as far as a guide needs it: until a step changes it by 10⁻³ of its mean, or 64 steps.
+    /// Solves u = T E + T u as accurately as a guide needs: until a step changes u by no more than 10⁻³ of its mean, or for
+    /// 64 steps.
     pub fn radiance(&self) -> Vec<Rgb> {
         let mut u = self.direct.clone();
         for _ in 0..STEPS {
@@ -128,8 +130,8 @@ impl Incident {
         u
     }
 
-    /// W_i over the cells: root mean square over the rays of a cell of the mean channel. The square, because a cell that is dark here
-    /// and bright there needs more samples than its mean says.
+    /// W_i, one weight per cell: the root mean square of u over the rays of the cell, with the channels averaged. The root
+    /// mean square is used because a cell that is partly dark and partly bright needs more samples than its mean suggests.
     pub fn weights(&self, i: usize, u: &[Rgb]) -> Vec<f64> {
         let value = |&j: &u32| if j == NOTHING { 0.0 } else { f64::from(u[j as usize].element_sum()) / 3.0 };
         let cell = |rays: &[u32]| (rays.iter().map(|j| value(j).powi(2)).sum::<f64>() / rays.len() as f64).sqrt();
@@ -137,12 +139,12 @@ impl Incident {
     }
 }
 
-/// The patch of a point of a surface.
+/// The number of the patch that contains the point `p` of a surface; `None` if no patch does.
 pub(super) fn locate(patches: &Patches, p: Vec3, side: Side) -> Option<usize> {
     patches.locate((side / 2) as usize, side & 1 == 0, p.as_dvec3())
 }
 
-/// A point of a patch, seen along the normal.
+/// A point of a patch, chosen by `u`, as a vertex whose direction is the normal.
 pub(super) fn vertex(patch: &Patch, u: [f32; 2]) -> Vertex {
     let (p, _) = polygon::at(&patch.polygon, f64::from(u[0]), f64::from(u[1]));
     let point = patch.lift(p);

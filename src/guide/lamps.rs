@@ -1,22 +1,24 @@
-//! Which lamp to connect to: in proportion to what each sends to the patch, as a few looks at each have found.
+//! Choice of a lamp for next-event estimation, separately for each patch: in proportion to the light that the lamp sends to
+//! the patch. A few test connections to each lamp estimate this light.
 //!
 //! ```text
 //! P_i(l) = 0.85 v_il/Σ v_il + 0.10 o_il/Σ o_il + 0.05/n        T E = E[ (weight under the scene's own choice 1/n) / (n P_i(l)) ]
 //! ```
 //!
-//! v is what arrives of lamp l at patch i, o what would arrive were nothing between: a lamp that all looks have missed behind an
-//! edge keeps its part. The table decides which number selects the lamp, so the point on it is chosen as ever, and the density of
-//! a connection is the scene's times n P_i(l): a property of the lamp and of the place that asks, and so exact.
+//! v_il is the light that arrives at patch i from lamp l; o_il is what would arrive if nothing were in between. The part
+//! with o keeps a lamp possible that every test connection has missed because an edge hides it. The table only decides which
+//! number selects the lamp, and the point on the lamp is chosen as without a guide. So the density of a connection is the
+//! scene's density times n P_i(l). This factor depends only on the lamp and on the patch, so it is known exactly.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | P_i(l) | probability of lamp l at patch i | [`Lamps::choose`] |
-//! | n P_i(l) | density over that of the scene's own choice | [`Lamps::ratio`] |
-//! | v, o | root mean squares over the looks, seen and unhidden | [`looks`] |
+//! | n P_i(l) | density divided by that of the scene's own choice | [`Lamps::ratio`] |
+//! | v, o | root mean squares over the test connections, with and without occlusion | [`looks`] |
 //!
-//! References: Shirley, Wang, Zimmerman, *Monte Carlo Techniques for Direct Lighting Calculations* (1996); Vévoda, Kondapaneni,
-//! Křivánek, *Bayesian online regression for adaptive direct illumination sampling* (2018), for tables per region that learn what
-//! is hidden.
+//! References: Shirley, Wang, Zimmerman, *Monte Carlo Techniques for Direct Lighting Calculations* (1996); Vévoda,
+//! Kondapaneni, Křivánek, *Bayesian online regression for adaptive direct illumination sampling* (2018), for tables per
+//! region that learn which lamps are hidden.
 
 use super::incident::vertex;
 use crate::math::distribution::Discrete;
@@ -25,21 +27,23 @@ use crate::operator::SceneTransport;
 use crate::operator::patches::{Patch, Patches};
 use rayon::prelude::*;
 
-/// Looks at all lamps together from a patch, at each of them within these bounds.
+/// Number of test connections from a patch to all lamps together, then the least and the largest number for each lamp.
 const LOOKS: (usize, usize, usize) = (512, 4, 32);
-/// Beyond so many lamps a table for every patch would take more memory than all else.
+/// Largest number of lamps with a table for every patch. With more lamps the tables would take more memory than everything
+/// else.
 const MANY: usize = 2048;
-/// Shares of what has been seen, of what would be seen if nothing hid it, and of all lamps alike.
+/// Shares of the three parts of P: visible light v, unoccluded light o, and the same probability for all lamps.
 const SHARES: [f64; 3] = [0.85, 0.1, 0.05];
 
-/// A choice among the lamps for every patch.
+/// For every patch a distribution over the lamps.
 pub(super) struct Lamps {
     choices: Vec<Option<Discrete>>,
     count: usize,
 }
 
 impl Lamps {
-    /// Looks at the lamps from every patch; nothing where there is no choice. `scene` must be the one that was meshed.
+    /// Makes test connections to the lamps from every patch. `None` if there are fewer than two lamps or more than `MANY`.
+    /// `scene` must be the scene from which `patches` were made.
     pub(super) fn new(scene: &SceneTransport<'_>, patches: &Patches, key: Key) -> Option<Self> {
         let count = scene.scene.lights.len();
         if !(2..=MANY).contains(&count) {
@@ -49,7 +53,8 @@ impl Lamps {
         Some(Self { choices: (0..patches.len()).into_par_iter().map(choice).collect(), count })
     }
 
-    /// The number that selects the lamp which u chooses, and the density over that of the scene's own choice.
+    /// The number that makes the scene select the lamp chosen by u, and the density of that lamp divided by that of the
+    /// scene's own choice.
     #[inline(always)]
     pub(super) fn choose(&self, patch: usize, u: f32) -> (f32, f32) {
         let Some(choice) = &self.choices[patch] else { return (u, 1.0) };
@@ -57,14 +62,14 @@ impl Lamps {
         ((lamp as f32 + 0.5) / self.count as f32, self.count as f32 * choice.probability(lamp))
     }
 
-    /// The density over that of the scene's own choice with which a patch chooses this lamp.
+    /// The density with which a patch chooses this lamp, divided by that of the scene's own choice.
     #[inline(always)]
     pub(super) fn ratio(&self, patch: usize, lamp: u32) -> f32 {
         self.choices[patch].as_ref().map_or(1.0, |choice| self.count as f32 * choice.probability(lamp as usize))
     }
 }
 
-/// [v_l, o_l] for every lamp.
+/// [v_l, o_l] of patch i for every lamp l, from test connections.
 fn looks(scene: &SceneTransport<'_>, patch: &Patch, i: usize, lamps: usize, key: Key) -> Vec<[f64; 2]> {
     let (all, least, most) = LOOKS;
     let each = (all / lamps).clamp(least, most);
@@ -86,7 +91,7 @@ fn looks(scene: &SceneTransport<'_>, patch: &Patch, i: usize, lamps: usize, key:
     (0..lamps).map(mean).collect()
 }
 
-/// P_i; nothing where no lamp would be seen.
+/// P_i for every lamp; `None` if no lamp would be visible even without occlusion.
 fn mixed(looks: &[[f64; 2]]) -> Option<Vec<f64>> {
     let [seen, unhidden] = [0, 1].map(|which| looks.iter().map(|look| look[which]).sum::<f64>());
     let part = |share: f64, value: f64, sum: f64| if sum > 0.0 { share * value / sum } else { 0.0 };
@@ -100,8 +105,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    /// Over all numbers every lamp is selected as often as its ratio says, also one that no look has found; a place that sees none
-    /// chooses as the scene does.
+    /// Over all numbers u every lamp is selected as often as its ratio says, including a lamp that no test connection has
+    /// found. A patch that sees no lamp chooses as the scene does.
     #[test]
     fn lamps_are_chosen_with_the_ratio_they_claim() {
         let looks = [[3.0, 4.0], [0.0, 2.0], [1e-6, 1e-6], [0.0, 0.0], [0.5, 0.5]];
@@ -112,7 +117,7 @@ mod tests {
         for j in 0..all {
             let u = (j as f32 + 0.5) / all as f32;
             let (number, ratio) = lamps.choose(0, u);
-            // as the scene selects
+            // the lamp that the scene selects with this number
             let lamp = (number * n) as usize;
             assert_eq!(ratio, lamps.ratio(0, lamp as u32));
             assert_eq!(lamps.choose(1, u), (u, 1.0));

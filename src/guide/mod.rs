@@ -1,32 +1,34 @@
-//! T sampled with the matrix as a guide: the continuous walk looks where the discrete solution is bright.
+//! Sampling of T guided by the radiosity matrix: walks prefer directions from which the discrete solution receives much
+//! light.
 //!
 //! ```text
 //! (T L)(x, ω) = E[ f cos θ · L / p ]        p(ω') = cos θ'/π · r_i(ω'),        r_i ≈ β + (1 − β) L_h(x_i, ω')/mean
 //! ```
 //!
-//! With p in proportion to f cos θ L the weight would be the same for every direction: the zero-variance walk. L_h is the
-//! radiosity solution seen from patch i, which knows where the light is but not how the surface shines; so the table
-//! replaces the cosine at Lambertian surfaces, and all others scatter by their BSDF as before. The density of a direction is
-//! a property of the direction alone, whatever patches lie along it, so p is exact and the estimate unbiased, however wrong
-//! L_h is.
+//! β is the share of plain BSDF sampling. If p were in proportion to f cos θ L, the weight would be the same for every
+//! direction: this is the zero-variance walk. L_h is the radiosity solution seen from patch i. It contains where the light
+//! is, but not how a glossy surface reflects it. So the table replaces the cosine only at Lambertian surfaces; all others
+//! scatter by their BSDF as before. The density of a direction depends on the direction alone, not on the patches that lie
+//! along it. So p is known exactly, and the estimate is unbiased however wrong L_h is.
 //!
-//! **Weights of the techniques.** p is a mixture, and β cos θ/π, the part of the BSDF, is the one that looks for lamps. Hits and
-//! connections are weighed by this part against the density of the connection: the two weights of a path add up to one, which is all
-//! that they have to do, the value of a hit stays bounded as r ≥ β, and a connection needs no table. So the densities of a
-//! [`Step`] are those of the parts that can find a lamp, while its weight is over the whole of p.
+//! **Weights of the techniques.** p is a mixture, and multiple importance sampling uses only its BSDF part β cos θ/π as the
+//! density that finds lamps. Hits and connections are weighed by this part against the density of the connection. The
+//! estimate stays unbiased, because the two weights of a path still add up to one. The value of a hit stays bounded, because
+//! r ≥ β, and a connection needs no look-up in the table. So the densities of a [`Step`] belong to the parts that can find a
+//! lamp, while its weight is divided by the whole of p.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | L_h | radiance of the patches, from stored rays | [`incident`] |
-//! | r_i, β | density over that of the cosine, share of the BSDF | [`warp`] |
-//! | P_i(l) | which lamp a connection chooses | `lamps` |
+//! | L_h | radiance of the patches, computed from stored rays | [`incident`] |
+//! | r_i, β | density at patch i divided by that of the cosine; share of the BSDF | [`warp`] |
+//! | P_i(l) | probability that a connection from patch i chooses lamp l | `lamps` |
 //! | i(x) | the patch of a point | [`Guide::at`] |
-//! | u, T u | reflected part of L_h, by which walks end and split | [`expected`] |
-//! | f → ρ | what stands for surfaces that are not Lambertian, in the guide only | [`stand_in()`] |
+//! | T L, T (L − E) | reflected radiance of a patch, by which walks end and split | [`expected`] |
+//! | f → ρ | Lambertian replacement of all other surfaces, used only to compute the guide | [`stand_in()`] |
 //!
-//! References: Lafortune and Willems, *A 5D tree to reduce the variance of Monte Carlo ray tracing* (1995); Vorba et al., *On-line
-//! learning of parametric mixture models for light transport simulation* (2014); Müller, Gross, Novák, *Practical Path
-//! Guiding* (2017): there the guide is learned from paths, here it is a matrix.
+//! References: Lafortune and Willems, *A 5D tree to reduce the variance of Monte Carlo ray tracing* (1995); Vorba et al.,
+//! *On-line learning of parametric mixture models for light transport simulation* (2014); Müller, Gross, Novák, *Practical
+//! Path Guiding* (2017). They learn the guide from paths; here it comes from a matrix.
 
 pub mod expected;
 pub mod incident;
@@ -56,16 +58,16 @@ use lamps::Lamps;
 use places::{Place, Places};
 use warp::Warp;
 
-/// How a guide is made.
+/// Settings from which a guide is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recipe {
-    /// About how many patches.
+    /// Approximate number of patches.
     pub patches: usize,
-    /// How many cells and rays each of them has.
+    /// Number of rays and connections per patch.
     pub fineness: Fineness,
-    /// β, the share of the BSDF; 1 is no guide.
+    /// β, the share of plain BSDF sampling; 1 means no guide.
     pub bsdf: f64,
-    /// Whether rays have to look for the lamps too: where nothing connects to them.
+    /// True if rays must find the lamps too, because no connections are made.
     pub emission: bool,
 }
 
@@ -76,13 +78,13 @@ impl Default for Recipe {
     }
 }
 
-/// No table.
+/// Marks a patch without a table.
 const NONE: u32 = u32::MAX;
 
-/// A density of directions for every patch.
+/// A guide: for every patch a density of directions, a choice of lamps and the expected reflected radiance.
 pub struct Guide {
     patches: Patches,
-    /// One for every patch whose table says anything, and which patch has which.
+    /// The tables of directions; `tables[i]` is the number of the table of patch i, or `NONE`.
     warps: Vec<Warp>,
     tables: Vec<u32>,
     places: Places,
@@ -93,7 +95,8 @@ pub struct Guide {
 }
 
 impl Guide {
-    /// Meshes the scene, sends the rays, solves, and makes the tables; nothing when stopped.
+    /// Meshes the scene, traces the rays, solves for the radiance of the patches and builds the tables. `None` if the run
+    /// was stopped.
     ///
     /// # Errors
     /// If the scene cannot be meshed ([`Patches::new`]).
@@ -113,7 +116,7 @@ impl Guide {
         };
         let mut light = incident.radiance();
         let mean = |u: Rgb| u.element_sum() / 3.0;
-        // what connections find is no longer expected of what follows them; where there are none, all is
+        // light that connections find is no longer expected from the rest of the path; without connections all of it is
         let indirect = |u: Rgb, d: Rgb| if recipe.emission { u } else { u - d };
         let expected = |(u, d): (&Rgb, &Rgb)| Expected { all: mean(*u), indirect: mean(indirect(*u, *d)) };
         let reflected = light.iter().zip(&incident.direct).map(expected).collect();
@@ -131,7 +134,7 @@ impl Guide {
         Ok(Some(Self { warps, tables, places, lamps, patches, reflected, bsdf: recipe.bsdf as f32 }))
     }
 
-    /// How many patches.
+    /// Number of patches.
     pub fn len(&self) -> usize {
         self.patches.len()
     }
@@ -141,7 +144,7 @@ impl Guide {
         self.patches.is_empty()
     }
 
-    /// The density at a point of a surface; nothing where the cosine is as good.
+    /// The density of directions at a point of a surface; `None` if plain cosine sampling is used there.
     #[inline(always)]
     pub fn at(&self, x: &Vertex) -> Option<&Warp> {
         self.warps.get(self.tables[self.patch(x)?] as usize)
@@ -162,17 +165,17 @@ impl Guide {
     }
 }
 
-/// A scene whose Lambertian surfaces scatter as a guide says.
+/// A scene whose Lambertian surfaces scatter into directions chosen by a guide.
 #[derive(Clone, Copy)]
 pub struct GuidedTransport<'a> {
-    /// The walk without a guide.
+    /// The transport without a guide.
     pub scene: SceneTransport<'a>,
-    /// Where to look.
+    /// The guide that chooses directions and lamps.
     pub guide: &'a Guide,
 }
 
 impl GuidedTransport<'_> {
-    /// The density at x, and the albedo there, where scattering is guided.
+    /// The albedo at a state and its density of directions; `None` if scattering is not guided there.
     #[inline(always)]
     fn warp(&self, at: &Vertex) -> Option<(Rgb, &Warp)> {
         match self.scene.scene.bsdf(at) {
@@ -185,21 +188,22 @@ impl GuidedTransport<'_> {
         }
     }
 
-    /// The part of the BSDF in the density of scattering.
+    /// Share of BSDF sampling in the density of scattering at a state: β where scattering is guided, 1 elsewhere.
     #[inline(always)]
     fn share(&self, at: &Vertex) -> f32 {
         let guided = self.scene.sampling != Sampling::Uniform && matches!(self.scene.scene.bsdf(at), Bsdf::Diffuse(_));
         if guided { self.guide.bsdf } else { 1.0 }
     }
 
-    /// The choice of lamps at x, if there is one.
+    /// The choice of lamps at a state and the number of its patch; `None` if the scene's own choice is used there.
     #[inline(always)]
     fn lamps(&self, at: &Vertex) -> Option<(&Lamps, usize)> {
         let lamps = self.guide.lamps.as_ref().filter(|_| self.scene.scene.lights.alike())?;
         Some((lamps, self.guide.patch(at)?))
     }
 
-    /// Density with which x connects to what a ray has found, over that of the scene's own choice.
+    /// Density with which a connection from `at` finds the light `found` that a ray has hit, divided by that of the scene's
+    /// own choice.
     #[inline(always)]
     fn lamp_ratio(&self, at: &Vertex, found: &Vertex) -> f32 {
         let ratio = || {
@@ -209,7 +213,7 @@ impl GuidedTransport<'_> {
         ratio().unwrap_or(1.0)
     }
 
-    /// Whether a wave goes in packets: one lamp, or none.
+    /// Returns true if waves are traced in packets of rays. Packets are used only without a choice of lamps in the guide.
     #[inline(always)]
     fn in_packets(&self) -> bool {
         self.scene.scene.in_packets() && self.guide.lamps.is_none()
@@ -280,7 +284,8 @@ impl Transport for GuidedTransport<'_> {
         self.scene.connect_packets(wave, streams.len(), out, self.guide.bsdf);
     }
 
-    /// The tables one by one, all else as without a guide; the same bits as the default.
+    /// Looks up the tables path by path and does everything else as without a guide. The result has the same bits as the
+    /// default.
     fn scatter_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
         if !self.in_packets() || self.scene.sampling == Sampling::Uniform {
             return transport::scatter_one_by_one(self, wave, streams, out, alive);
@@ -293,17 +298,19 @@ impl Transport for GuidedTransport<'_> {
 }
 
 impl Expecting for GuidedTransport<'_> {
-    /// What the matrix says of a Lambertian surface; of others it knows nothing.
+    /// The reflected radiance that the matrix solution gives for a Lambertian surface; `None` for all other surfaces.
     fn expected(&self, at: &Vertex) -> Option<Expected> {
         let lambertian = matches!(self.scene.scene.bsdf(at), Bsdf::Diffuse(_));
         Some(self.guide.reflected[self.guide.patch(at).filter(|_| lambertian)?])
     }
 }
 
-/// Paths that look up their tables together, step by step, so that they wait for memory together.
+/// Number of paths that look up their tables together. Each step is done for all of them before the next, so that their
+/// memory accesses overlap.
 const TOGETHER: usize = 32;
 
-/// The first two numbers of every path of a wave, warped where it stands, and the ratios.
+/// Warps the first two random numbers of every path of a wave by the table at its state, and writes the density ratios to
+/// `ratio`.
 #[pulp::with_simd(warped = pulp::Arch::new())]
 #[inline(always)]
 fn warped_with_simd<'a, S: pulp::Simd>(

@@ -1,12 +1,13 @@
-//! The path tracer of guided walks, which may split.
+//! A path tracer for guided walks, which may split.
 //!
 //! ```text
-//! α ← α · weight / (1 − q),    and for q < 0 the walk goes on as 1 − q copies in the mean: one here, the others when it has ended
+//! α ← α · weight / (1 − q),    and for q < 0 the walk goes on as 1 − q copies on average: one at once, the others after it has ended
 //! ```
 //!
-//! It shares no loop with [`guide::Prefix`](super::Prefix): walks are followed one by one, each to its end, instead of wave by wave. It
-//! reads the same addresses of random numbers, so that with the same stream the sum over the slots of the one is the sample of the other
-//! to rounding.
+//! α is the throughput and q the probability of termination. This program shares no loop with
+//! [`guide::Prefix`](super::Prefix): it follows walks one by one, each to its end, instead of wave by wave. It uses the same
+//! addresses of random numbers. With the same stream, the sum over the slots of the prefix estimator therefore equals the
+//! sample of the path tracer, up to rounding.
 
 use super::expected::{ByExpectation, Expecting};
 use crate::estimator::branching::lineage;
@@ -15,23 +16,23 @@ use crate::estimator::{Job, Paths, Plan, TermEstimator, TermSink};
 use crate::math::{Key, Purpose, Rgb, Rng};
 use crate::operator::Sensor;
 
-/// The path tracer of guided walks.
+/// A path tracer whose walks may be guided and may split.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathTracer {
-    /// How far, how light is found, and how walks end where `end` does not say.
+    /// Number of bounces, technique, and the roulette used if `end` is `None`.
     pub plan: Plan,
-    /// How walks end or split by what is expected of them.
+    /// Rule by which walks end or split according to the light expected of them.
     pub end: Option<ByExpectation>,
 }
 
 impl PathTracer {
-    /// Radiance estimated by one path, and the rays it took.
+    /// The radiance estimated by one path, and the number of rays it took.
     pub fn radiance<T: Expecting>(&self, t: &T, start: T::State, key: Key, pixel: u32, sample: u32) -> (Rgb, u64) {
         let expected = t.expected(&start).unwrap_or_default().all;
-        // emission counts at the eye, whatever the technique
+        // emission seen directly counts in full for every technique
         let mut colour = t.emission(&start);
         let mut rays = 0;
-        // the copies of a path that wait until it has ended
+        // the copies of a path that wait until the current walk has ended
         let mut waiting = vec![];
         let mut next = Some(Walker { vertex: 0, x: start, throughput: t.lit(), key, siblings: 1, scored: false });
         while let Some(walker) = next {
@@ -41,7 +42,7 @@ impl PathTracer {
         (colour, rays)
     }
 
-    /// One walk from where it stands until it ends; the copies that it leaves are added to `waiting`.
+    /// Follows one walk from its current vertex until it ends, and adds the copies that split off to `waiting`.
     fn follow<T: Expecting>(
         &self,
         t: &T,
@@ -60,7 +61,7 @@ impl PathTracer {
             if last(vertex) {
                 break;
             }
-            // the light is sampled
+            // next-event estimation
             if technique.connects() && !scored {
                 *rays += 1;
                 if let Some(light) = t.connect(&x, &mut numbers(vertex, Purpose::Connect)) {
@@ -73,7 +74,7 @@ impl PathTracer {
             if last(vertex + 1) && !technique.hits(t) {
                 break;
             }
-            // roulette: q is the probability of termination, and below 0 the walk splits
+            // roulette: q is the probability of termination; if q < 0 the walk splits
             let q = match self.end {
                 _ if scored => 0.0,
                 Some(end) => end.q(t, vertex, throughput, &x, expected),
@@ -97,7 +98,7 @@ impl PathTracer {
                 };
                 waiting.extend((1..copies).map(copy));
             }
-            // the next vertex, whose emission counts if hits do
+            // the next vertex; its emission counts if the technique uses hits
             *rays += 1;
             let Some(next) = t.scatter(&x, &mut numbers(vertex, Purpose::Scatter)) else { break };
             throughput *= next.weight;
@@ -109,15 +110,15 @@ impl PathTracer {
     }
 }
 
-/// A walk that stands at a vertex.
+/// A walk at one of its vertices.
 struct Walker<S> {
     vertex: usize,
     x: S,
     throughput: Rgb,
     key: Key,
-    /// Into how many its path has split.
+    /// Number of copies into which its path has split.
     siblings: u32,
-    /// Whether another copy has scored this vertex and gone through its roulette.
+    /// True if another copy has already added this vertex's contribution and played its roulette.
     scored: bool,
 }
 

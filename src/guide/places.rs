@@ -1,24 +1,25 @@
-//! Which patch a point of a flat primitive is in, quickly: a grid over its edges.
+//! Fast look-up of the patch that contains a point of a flat primitive, by a grid over the primitive.
 //!
 //! ```text
 //! (a, b) = ((x − o)·g_a, (x − o)·g_b) ∈ [0, 1]²        g_a·u = 1, g_a·v = 0, g_b·u = 0, g_b·v = 1
 //! ```
 //!
-//! with the corner o and the edges u, v. A cell of the grid has the patch of its centre, so that a point near an edge between two patches
-//! may be given the neighbour; which table a point uses is a function of the point all the same, and nothing else matters.
+//! x is the point, o a corner of the primitive, u and v its edges. A cell of the grid stores the patch that contains the
+//! cell's centre. A point near the edge between two patches may therefore be given the neighbouring patch. This does no
+//! harm: the table that a point uses is still a function of the point alone, which is all that unbiased estimates need.
 
 use super::incident::locate;
 use crate::operator::patches::Patches;
 use crate::scene::{Primitive, Side};
 use glam::{DVec3, Vec3};
 
-/// Grid cells per patch.
+/// Number of grid cells per patch.
 const FINER: f64 = 2.0;
 
-/// No patch.
+/// Marks a grid cell without a patch.
 const NOWHERE: u32 = u32::MAX;
 
-/// The grids of all primitives.
+/// The grids of all flat primitives.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
     grids: Vec<Option<Grid>>,
@@ -28,21 +29,21 @@ pub(super) struct Places {
 #[derive(Clone, Copy, Debug)]
 struct Grid {
     origin: Vec3,
-    /// g_a and g_b, times the number of columns and rows.
+    /// g_a and g_b, multiplied by the number of columns and rows.
     across: Vec3,
     down: Vec3,
     size: [u32; 2],
-    /// First cells of the front and of the back.
+    /// Number of the first cell of the front and of the back.
     first: [u32; 2],
 }
 
-/// What a grid says.
+/// Result of a look-up in a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     At(u32),
-    /// Covered, or a side that takes no part.
+    /// No patch: the point is covered, or this side has no patches.
     Nowhere,
-    /// A sphere or a disk: ask the mesh.
+    /// The primitive is a sphere or a disk and has no grid: search the mesh instead.
     Curved,
 }
 

@@ -1,11 +1,12 @@
-//! All terms from one path, which ends or splits by what is still expected of it.
+//! All terms from one path, which ends or splits according to the light still expected of it.
 //!
 //! ```text
 //! X_k = Σ over the walks of the path:  α_{k−1} · w_c · (sample of T E at x_{k−1})  +  α_k · w_s · E(x_k)
 //! ```
 //!
-//! The steps are those of [`Prefix`](crate::estimator::Prefix); between them stands [`ByExpectation`] in place of roulette. Where a wave
-//! splits, the copies are followed to the end first, so that memory is one wave for every vertex at which walks split.
+//! α_k is the throughput at vertex x_k; w_c and w_s are the MIS weights of connection and hit. The steps are those of
+//! [`Prefix`](crate::estimator::Prefix), with [`ByExpectation`] between them instead of roulette. If paths of a wave split,
+//! their copies are followed to the end first. So the memory needed is one wave for every vertex at which walks split.
 
 use super::expected::{ByExpectation, Expecting};
 use super::tracked::{Track, Tracked, TrackedWave};
@@ -18,9 +19,9 @@ use crate::operator::{Sensor, Wave};
 pub struct Prefix {
     /// K: the terms k = 0..=K are kept.
     pub max_bounces: usize,
-    /// How light is found.
+    /// Technique by which light is found.
     pub technique: Technique,
-    /// How walks end or split.
+    /// Rule by which walks end or split.
     pub end: ByExpectation,
 }
 
@@ -41,7 +42,8 @@ impl<'a, T: Expecting> TermEstimator<Tracked<'a, T>> for Prefix {
 }
 
 impl Prefix {
-    /// Follows paths that stand at vertex `first`, and what they split into; terms beyond K go to the tail's slot.
+    /// Follows paths from vertex `first` on, with all copies into which they split. Terms beyond K are added to the slot of
+    /// the tail.
     fn follow<T: Expecting>(
         &self,
         t: &Tracked<'_, T>,
@@ -66,7 +68,8 @@ impl Prefix {
         }
     }
 
-    /// Ends paths at vertex v, and tells which of those that go on do so as several: their numbers, and as how many.
+    /// Ends or splits paths at vertex v. Returns the paths that split: the number of each among the survivors, and its
+    /// number of copies.
     fn split<T: Expecting>(
         &self,
         t: &Tracked<'_, T>,
@@ -96,7 +99,8 @@ impl Prefix {
     }
 }
 
-/// Copy `copy` ≥ 1 of every path that has split into more than that at vertex v; nothing if there is none.
+/// Copy number `copy` ≥ 1 of every path that has split into more than `copy` copies at vertex v; `None` if there is no such
+/// path.
 fn copies<X: Copy, W: Wave<X>>(
     paths: &Paths<TrackedWave<W>>,
     splits: &[(usize, u32)],

@@ -1,24 +1,24 @@
-//! A transport whose states remember what a guide needs to know of their path.
+//! A transport whose states also store the facts about their path that roulette and splitting need.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | u(x_0) | what was expected of the path at its start, 0 where nobody knew | [`Track::start`] |
-//! | siblings | into how many walks the path has split | [`Track::siblings`] |
+//! | u(x_0) | radiance expected of the path at its start, 0 if unknown | [`Track::start`] |
+//! | siblings | number of walks into which the path has split | [`Track::siblings`] |
 //!
-//! All else is the transport's own: the same numbers, the same bits.
+//! Everything else is passed on to the wrapped transport, with the same random numbers and the same bits.
 
 use super::expected::Expecting;
 use crate::math::{Columns, Rgb, Rng, Streams, columns};
 use crate::operator::{Samples, Sensor, Step, Transport, Wave};
 
-/// A state and what is known of its path.
+/// A state together with facts about its path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Track<X> {
     /// The state.
     pub x: X,
-    /// What was expected of the path at its start.
+    /// Radiance expected of the path at its start, 0 if unknown.
     pub start: f32,
-    /// Into how many its path has split.
+    /// Number of walks into which its path has split.
     pub siblings: u32,
 }
 
@@ -26,14 +26,14 @@ pub struct Track<X> {
 #[derive(Clone, Copy, Debug)]
 pub struct Tracked<'a, T>(pub &'a T);
 
-/// Many tracked states.
+/// A wave of tracked states.
 #[derive(Clone, Debug, Default)]
 pub struct TrackedWave<W> {
     /// The states.
     pub states: W,
-    /// What was expected of each path at its start.
+    /// Radiance expected of each path at its start.
     pub start: Vec<f32>,
-    /// Into how many each has split.
+    /// Number of walks into which each path has split.
     pub siblings: Vec<u32>,
 }
 
@@ -94,19 +94,19 @@ impl<T: Expecting> Transport for Tracked<'_, T> {
 }
 
 impl<X> Track<X> {
-    /// The same path, one step further.
+    /// Carries the facts about the path over to the next state.
     fn then(&self, s: Step<X>) -> Step<Self> {
         let state = Self { x: s.state, start: self.start, siblings: self.siblings };
         Step { state, weight: s.weight, pdf: s.pdf, other_pdf: s.other_pdf }
     }
 
-    /// The start of a path.
+    /// The tracked state at the start of a path.
     fn begin<T: Expecting<State = X>>(t: &T, x: X) -> Self {
         Self { start: t.expected(&x).unwrap_or_default().all, siblings: 1, x }
     }
 }
 
-/// A sensor of tracked states.
+/// A sensor whose paths start with tracked states.
 pub struct TrackedSensor<'a, S>(pub &'a S);
 
 impl<'a, T: Expecting, S: Sensor<T>> Sensor<Tracked<'a, T>> for TrackedSensor<'_, S> {

@@ -1,13 +1,14 @@
-//! Directions about a normal by a table: the cosine map of numbers that have been warped.
+//! Directions about a normal with a tabulated density: a table warps two uniform numbers, then the cosine map turns them
+//! into a direction.
 //!
 //! ```text
 //! u ∈ [0, 1)²  —table→  u' ∈ cell c  —Malley→  ω        p(ω) = cos θ/π · r(ω)        r(ω) = M² P(c(ω))
 //! ```
 //!
-//! The table is a density on the square, constant in each of its M × M cells; the cosine map carries it to the hemisphere,
-//! where the square's own density 1 becomes cos θ/π. Every direction lies in one cell, so p is exact whatever stands behind
-//! the direction, and `∫ p dω = Σ_c P(c) = 1`. The BSDF's part of the mixture is in the table too: for a Lambertian surface its
-//! density is r = 1, and
+//! The table is a density on the unit square, constant in each of its M × M cells. The cosine map carries the square to the
+//! hemisphere, where the density 1 of the square becomes cos θ/π. Every direction lies in exactly one cell, so p is known
+//! exactly, whatever lies in this direction, and `∫ p dω = Σ_c P(c) = 1`. The table contains the BSDF part of the mixture
+//! too. For a Lambertian surface the density of this part is r = 1, and
 //!
 //! ```text
 //! P(c) ∝ β/M² + (1 − β) W_c / Σ W
@@ -15,10 +16,10 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | u' | (sin² θ, φ/2π) | [`Warp::sample`] |
-//! | r | density over that of the cosine | [`Warp::ratio`] |
-//! | β | share of the BSDF | argument of [`Warp::new`] |
-//! | W_c | what is expected from the directions of a cell | argument of [`Warp::new`] |
+//! | u' | warped numbers (sin² θ, φ/2π) | [`Warp::sample`] |
+//! | r | density divided by that of the cosine | [`Warp::ratio`] |
+//! | P(c), β | probability of cell c; share of the BSDF | `bsdf` of [`Warp::new`] |
+//! | W_c | light expected from the directions of cell c | `weights` of [`Warp::new`] |
 //! | M | cells along each axis | [`CELLS`] |
 //!
 //! References: Jensen, *Importance driven path tracing using the photon map* (1995), for the table over the square; Guo,
@@ -28,28 +29,29 @@
 use crate::math::direction::Frame;
 use glam::Vec3;
 
-/// M: cells along each axis.
+/// M: number of cells along each axis.
 pub const CELLS: usize = 16;
 
-/// How many numbers choose among the entries of a row: 2¹⁵, so that a row is half a line of the cache.
+/// Number of different values that choose among the entries of a row: 2¹⁵, so that a row takes half a cache line.
 const NUMBERS: u32 = 1 << 15;
 
-/// Numbers that choose an entry, by their partial sums.
+/// Partial sums of the numbers of values that choose each entry.
 type Ends = [u16; CELLS];
 
-/// A density of directions about a normal.
+/// A tabulated density of directions about a normal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[repr(C, align(32))]
 pub struct Warp {
-    /// φ.
+    /// Distribution over the rows, which divide φ.
     rows: Ends,
-    /// sin² θ, for each row.
+    /// For each row the distribution over its columns, which divide sin² θ.
     columns: [Ends; CELLS],
 }
 
 impl Warp {
-    /// A table of M × M weights, `weights[row · M + column]` with the column by sin² θ and the row by φ, mixed with the
-    /// share `bsdf` of the cosine. Nothing where the table has nothing to say: no weights, or all of the share is the BSDF's.
+    /// Builds the table from M × M weights, mixed with the share `bsdf` of the plain cosine. The weights are ordered as
+    /// `weights[row · M + column]`, with the column by sin² θ and the row by φ. Returns `None` if the table would be plain
+    /// cosine sampling: the weights add up to zero, or `bsdf` is 1.
     ///
     /// # Panics
     /// If there are not M² weights, or one is negative.
@@ -68,7 +70,7 @@ impl Warp {
         Some(Self { rows: ends(&rows)?, columns })
     }
 
-    /// Warped numbers for the cosine map, and r of the direction they choose.
+    /// The warped numbers for the cosine map, and the ratio r of the direction that they give.
     #[inline(always)]
     pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
         let (row, y, p) = self.row(u[1]);
@@ -76,21 +78,21 @@ impl Warp {
         ([x, y], p * q)
     }
 
-    /// The row that a number chooses, the warped number, and M times the probability of the row.
+    /// The row that `u` chooses, the warped number, and M times the probability of the row.
     #[inline(always)]
     pub(super) fn row(&self, u: f32) -> (usize, f32, f32) {
         choose(&self.rows, u)
     }
 
-    /// A number warped along a row, and M times the probability of its column there.
+    /// The number `u` warped along a row, and M times the probability of the chosen column in this row.
     #[inline(always)]
     pub(super) fn column(&self, row: usize, u: f32) -> (f32, f32) {
         let (_, x, q) = choose(&self.columns[row], u);
         (x, q)
     }
 
-    /// r of a direction about a normal: the density over that of the cosine; up to rounding at the edges of cells it is the
-    /// number that [`Self::sample`] returns with that direction.
+    /// r of a direction about the normal `n`: its density divided by that of the cosine. For a direction from
+    /// [`Self::sample`] this is the returned ratio, except for rounding at the edges of cells.
     #[inline(always)]
     pub fn ratio(&self, n: Vec3, direction: Vec3) -> f32 {
         let local = Frame::new(n).local(direction);
@@ -101,8 +103,8 @@ impl Warp {
     }
 }
 
-/// The partial sums of the numbers that choose each entry: in proportion to the weights, and one at least where a weight is
-/// positive; the heaviest takes what rounding leaves over.
+/// Partial sums of the numbers of values that choose each entry. The numbers are in proportion to the weights, and at least
+/// one if the weight is positive. The heaviest entry takes the rest that rounding leaves.
 fn ends(weights: &[f64]) -> Option<Ends> {
     let total: f64 = weights.iter().sum();
     if total <= 0.0 {
@@ -130,27 +132,27 @@ fn share(ends: &Ends, i: usize) -> f32 {
     f32::from(ends[i] - start(ends, i)) * (CELLS as f32 / NUMBERS as f32)
 }
 
-/// The entry that u chooses, the place in it as a number in [0, 1) of the whole row, and its share.
+/// The entry that u chooses, the warped number in [0, 1), and M times the probability of the entry.
 #[inline(always)]
 fn choose(ends: &Ends, u: f32) -> (usize, f32, f32) {
     // a multiple of 2⁻²⁴ times a power of two: exact
     let x = u * NUMBERS as f32;
     let j = x as u16;
-    // all at once instead of a search: u < 1, so that the last never counts
+    // compare with all entries instead of a search; u < 1, so the last comparison is never true
     let i = usize::from(ends.iter().map(|&end| u16::from(end <= j)).sum::<u16>()).min(CELLS - 1);
     let first = start(ends, i);
     let width = f32::from(ends[i] - first);
-    // what is left of u, at the centre of its part
+    // the rest of u, at the centre of its part of the entry
     let rest = (x - f32::from(first) + HALF_A_STEP) / width;
-    // rounding must not reach the next cell, nor 1, which is no number of the cosine map
+    // rounding must reach neither the next cell nor 1, which the cosine map does not accept
     let place = (i as f32 + rest).min(BELOW[i]);
     (i, place * (1.0 / CELLS as f32), width * (CELLS as f32 / NUMBERS as f32))
 }
 
-/// Half of the distance between two numbers u, in numbers of a row.
+/// Half of the distance between two neighbouring values of u, in units of 1/NUMBERS.
 const HALF_A_STEP: f32 = NUMBERS as f32 / (1u32 << 25) as f32;
 
-/// The last place before the end of each entry.
+/// The largest position inside each entry, just below its end.
 const BELOW: [f32; CELLS] = {
     let mut below = [0.0; CELLS];
     let mut i = 0;
@@ -161,17 +163,18 @@ const BELOW: [f32; CELLS] = {
     below
 };
 
-/// (cos, sin) of the angles at which one row of cells ends and the next begins, in the first quadrant.
+/// (cos, sin) of the angles in the first quadrant at which one row of cells ends and the next begins.
 const EDGES: [[f32; 2]; CELLS / 4 - 1] = {
     // cos π/8, sin π/8 and √½
     let (c, s, h) = (0.923_879_5, 0.382_683_43, std::f32::consts::FRAC_1_SQRT_2);
     [[c, s], [h, h], [s, c]]
 };
 
-/// ⌊M φ/2π⌋ of the direction (x, y), by comparison with the edges themselves: no arcus tangent, the same on every machine.
+/// ⌊M φ/2π⌋ of the direction (x, y), by comparison with the edges themselves. Without an arc tangent the result is the same
+/// on every machine.
 #[inline(always)]
 fn sector(x: f32, y: f32) -> usize {
-    // turned into the first quadrant: x > 0, y ≥ 0, or the origin
+    // rotated into the first quadrant: x > 0, y ≥ 0; the origin belongs to sector 0
     let (quarter, x, y) = match (x, y) {
         (x, y) if x > 0.0 && y >= 0.0 => (0, x, y),
         (x, y) if x <= 0.0 && y > 0.0 => (1, y, -x),
@@ -190,7 +193,7 @@ mod tests {
 
     const ALL: usize = CELLS * CELLS;
 
-    /// Numbers that a walk draws from.
+    /// The number of different random numbers u.
     const ALL_NUMBERS: u32 = 1 << 24;
 
     fn example(bsdf: f64) -> Warp {
@@ -215,24 +218,25 @@ mod tests {
         }
     }
 
-    /// The direction of every sample lies in the cell that it was drawn from, whichever way the normal points.
+    /// The direction of every sample lies in the cell from which it was sampled, for normals of every orientation.
     #[test]
     fn sampled_directions_have_the_ratio_they_claim() {
         let (w, all) = (example(0.3), 1u32 << 18);
         let mut wrong = 0;
         for i in 0..all {
-            // multiples of 2⁻²⁴, as the numbers of a walk; a product of floats would lie on edges too often
+            // multiples of 2⁻²⁴, like the random numbers of a walk; products of floats would lie on edges too often
             let u = [0x9e37_79b1u32, 0x85eb_ca77].map(|m| (m.wrapping_mul(i + 1) >> 8) as f32 / ALL_NUMBERS as f32);
             let n = Vec3::new((i % 7) as f32 - 3.0, (i % 5) as f32 - 2.0, (i % 3) as f32 - 1.5).normalize();
             let (u, ratio) = w.sample(u);
             assert!(u.iter().all(|x| (0.0..1.0).contains(x)));
             wrong += u32::from(w.ratio(n, cosine_hemisphere(n, u).0) != ratio);
         }
-        // rounding moves a direction by 4·10⁻⁷ or less over one of 16 edges of each kind
+        // rounding moves a direction by at most 4·10⁻⁷, possibly across one of 16 edges in each coordinate
         assert!(wrong <= all / 20_000, "{wrong} of {all}");
     }
 
-    /// Of all numbers u each entry has as many as its share says, and none leaves its entry: a search finds the same.
+    /// Over all numbers u each entry is chosen as often as its share says. The warped number stays inside the entry, and a
+    /// search finds the same entry.
     #[test]
     fn numbers_choose_in_proportion_to_the_weights() {
         let weights: Vec<f64> = (0..CELLS).map(|i| if i % 5 == 2 { 0.0 } else { 1e-7 + (i * i) as f64 }).collect();
@@ -250,7 +254,7 @@ mod tests {
         }
         for (i, (&n, w)) in counts.iter().zip(&weights).enumerate() {
             assert_eq!(n, (share(&ends, i) * (ALL_NUMBERS / CELLS as u32) as f32) as u32);
-            // rounded down, one at least, and the heaviest takes the rest
+            // rounded down, at least one, and the heaviest entry takes the rest
             let (n, expected) = (f64::from(n) / f64::from(ALL_NUMBERS / NUMBERS), w / total * f64::from(NUMBERS));
             assert!((n - expected).abs() <= if i == CELLS - 1 { CELLS as f64 } else { 1.0 }, "{i}: {n} {expected}");
             assert_eq!(n > 0.0, *w > 0.0);

@@ -1,20 +1,21 @@
-//! Many vectors as three columns, so that loops over a wave run on all lanes of the machine.
+//! Arrays of vectors in structure-of-arrays layout: one column per component. Loops over a wave of paths then use all SIMD
+//! lanes.
 
 use glam::Vec3;
 
-/// `n` vectors or colours, component by component.
+/// An array of `n` vectors or colours, stored as one column per component.
 #[derive(Clone, Debug, Default)]
 pub struct Columns {
-    /// First components.
+    /// First components (x or red).
     pub x: Vec<f32>,
-    /// Second components.
+    /// Second components (y or green).
     pub y: Vec<f32>,
-    /// Third components.
+    /// Third components (z or blue).
     pub z: Vec<f32>,
 }
 
 impl Columns {
-    /// `n` zeros.
+    /// An array of `n` zero vectors.
     pub fn new(n: usize) -> Self {
         Self { x: vec![0.0; n], y: vec![0.0; n], z: vec![0.0; n] }
     }
@@ -33,28 +34,29 @@ impl Columns {
         self.z[i] = v.z;
     }
 
-    /// The first `n` become `v`.
+    /// Sets the first `n` vectors to `v`.
     pub fn fill(&mut self, n: usize, v: Vec3) {
         self.x[..n].fill(v.x);
         self.y[..n].fill(v.y);
         self.z[..n].fill(v.z);
     }
 
-    /// The first `n` are multiplied, component by component.
+    /// Multiplies the first `n` vectors component by component with those of `by`.
     pub fn multiply(&mut self, by: &Columns, n: usize) {
         for (a, b) in [(&mut self.x, &by.x), (&mut self.y, &by.y), (&mut self.z, &by.z)] {
             a[..n].iter_mut().zip(&b[..n]).for_each(|(a, b)| *a *= b);
         }
     }
 
-    /// The first `n` are scaled, each by its own factor.
+    /// Multiplies vector `i` by the number `by[i]`, for the first `n` vectors.
     pub fn scale(&mut self, by: &[f32], n: usize) {
         for a in [&mut self.x, &mut self.y, &mut self.z] {
             a[..n].iter_mut().zip(&by[..n]).for_each(|(a, b)| *a *= b);
         }
     }
 
-    /// Stable compaction: vector `j` becomes the old vector `indices[j]`; `indices` ascend.
+    /// Keeps only the vectors whose numbers are in `indices`: vector `j` becomes the old vector `indices[j]`. The indices
+    /// must ascend, so the order is kept.
     pub fn keep(&mut self, indices: &[u32]) {
         keep(&mut self.x, indices);
         keep(&mut self.y, indices);
@@ -62,7 +64,7 @@ impl Columns {
     }
 }
 
-/// Stable compaction of one column: `v[j] = v[indices[j]]`, `indices` ascending.
+/// Keeps only the chosen entries of one column: `v[j] = v[indices[j]]`. The indices must ascend, so the order is kept.
 pub fn keep<X: Copy>(v: &mut [X], indices: &[u32]) {
     for (j, &i) in indices.iter().enumerate() {
         v[j] = v[i as usize];

@@ -1,20 +1,21 @@
-//! Directions about a normal: maps from two uniform numbers, with their densities in solid angle.
+//! Random directions about a normal: maps from two uniform numbers to a direction, with their densities in solid angle
+//! (sr⁻¹).
 //!
 //! | map | density p(ω) |
 //! |---|---|
 //! | [`cosine_hemisphere`] | cos θ / π |
 //! | [`uniform_hemisphere`] | 1 / 2π |
 //!
-//! The cosine map is Malley's (a uniform disk, lifted); the frame is that of Duff et al., *Building an Orthonormal
-//! Basis, Revisited* (JCGT 6(1), 2017).
+//! θ is the angle between the direction and the normal. The cosine map is Malley's: a uniform point of the disk, lifted to
+//! the hemisphere. The frame is that of Duff et al., *Building an Orthonormal Basis, Revisited* (JCGT 6(1), 2017).
 
 use glam::Vec3;
 
-/// (cos, sin) of 2πx for x in [0, 1). Polynomials, because a call into the maths library neither vectorises nor gives
-/// the same bits on every machine; absolute error below 4·10⁻⁷.
+/// (cos, sin) of 2πx for x in [0, 1), by polynomials. A call into the maths library would not vectorise, and its bits differ
+/// between machines. The absolute error is below 4·10⁻⁷.
 #[inline(always)]
 pub fn cos_sin_turn(x: f32) -> (f32, f32) {
-    // nearest quarter turn, and the angle left over in [−π/4, π/4]
+    // nearest quarter turn, and the remaining angle in [−π/4, π/4]
     let quarter = (4.0 * x + 0.5) as i32;
     let a = (4.0 * x - quarter as f32) * std::f32::consts::FRAC_PI_2;
     let b = a * a;
@@ -38,7 +39,7 @@ pub fn about(n: Vec3, x: f32, y: f32, z: f32) -> Vec3 {
     )
 }
 
-/// The frame of [`about`], both ways.
+/// The frame of [`about`] with conversions in both directions: to local and to world coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     t: Vec3,
@@ -52,19 +53,19 @@ impl Frame {
     pub fn new(n: Vec3) -> Self {
         Self { t: about(n, 1.0, 0.0, 0.0), b: about(n, 0.0, 1.0, 0.0), n }
     }
-    /// Coordinates of a direction: z along the normal.
+    /// Local coordinates of the world direction `d`; z is along the normal.
     #[inline(always)]
     pub fn local(&self, d: Vec3) -> Vec3 {
         Vec3::new(d.dot(self.t), d.dot(self.b), d.dot(self.n))
     }
-    /// The direction with these coordinates.
+    /// World direction with the local coordinates `d`.
     #[inline(always)]
     pub fn world(&self, d: Vec3) -> Vec3 {
         self.t * d.x + self.b * d.y + self.n * d.z
     }
 }
 
-/// A direction with density cos θ/π about `n`, and its cosine (never 0).
+/// A random direction with density cos θ/π about `n`, and its cosine cos θ (never 0).
 #[inline(always)]
 pub fn cosine_hemisphere(n: Vec3, u: [f32; 2]) -> (Vec3, f32) {
     let (c, s) = cos_sin_turn(u[1]);
@@ -72,7 +73,7 @@ pub fn cosine_hemisphere(n: Vec3, u: [f32; 2]) -> (Vec3, f32) {
     (about(n, r * c, r * s, z), z)
 }
 
-/// A direction with density 1/4π.
+/// A random direction with density 1/4π on the whole sphere.
 #[inline(always)]
 pub fn uniform_sphere(u: [f32; 2]) -> Vec3 {
     let (c, s) = cos_sin_turn(u[1]);
@@ -81,7 +82,7 @@ pub fn uniform_sphere(u: [f32; 2]) -> Vec3 {
     Vec3::new(r * c, r * s, z)
 }
 
-/// A direction with density 1/2π about `n`, and its cosine (never 0).
+/// A random direction with density 1/2π in the hemisphere about `n`, and its cosine cos θ (never 0).
 #[inline(always)]
 pub fn uniform_hemisphere(n: Vec3, u: [f32; 2]) -> (Vec3, f32) {
     let (c, s) = cos_sin_turn(u[1]);

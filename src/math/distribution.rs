@@ -1,4 +1,4 @@
-//! Choosing one of many with given weights, from uniform numbers that are multiples of 2⁻²⁴.
+//! Sampling of one entry out of many with given weights. The uniform numbers u are multiples of 2⁻²⁴.
 //!
 //! ```text
 //! pᵢ = nᵢ / N      N = 2²⁴      Σ nᵢ = N      nᵢ = [wᵢ > 0] + ⌊(N − m) Wᵢ₊₁/W⌉ − ⌊(N − m) Wᵢ/W⌉
@@ -6,40 +6,42 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | wᵢ | weight, as large as one likes | argument of [`Discrete::new`] |
-//! | Wᵢ, W | w₀ + … + wᵢ₋₁, and the sum of all | – |
+//! | wᵢ | weight of entry i, on any scale | argument of [`Discrete::new`] |
+//! | Wᵢ, W | w₀ + … + wᵢ₋₁, and the sum of all weights | – |
 //! | m | number of positive weights | – |
 //! | N | number of different values of u | [`Discrete::NUMBERS`] |
-//! | nᵢ | how many of them choose i | – |
-//! | pᵢ | probability of i, exact in `f32` | [`Discrete::probability`] |
+//! | nᵢ | number of values of u that choose entry i | – |
+//! | pᵢ | probability of entry i, exact in `f32` | [`Discrete::probability`] |
 //!
-//! The random numbers are integers j < N in disguise, so probabilities are, too: i is chosen by exactly nᵢ of the N
-//! numbers and pᵢ is no approximation. What is rounded is the proportion of p to w, which costs variance and never bias:
-//! pᵢ = (1 − m/N) wᵢ/W + 1/N up to 1/N. Weight 0 is never chosen, positive weight always possible, however small; a
-//! single entry has p = 1, and m equal weights differ by at most 1/N, by nothing if m divides N.
+//! A uniform number u is an integer j < N divided by N. Entry i is chosen by exactly nᵢ of the N values of u, so pᵢ = nᵢ/N
+//! is exact. Only the proportion of p to w is rounded, which costs variance but adds no bias: pᵢ = (1 − m/N) wᵢ/W + 1/N with
+//! an error of at most 1/N. An entry of weight 0 is never chosen. An entry of positive weight can always be chosen, however
+//! small the weight. A single entry has p = 1. The probabilities of m equal weights differ by at most 1/N, and are equal if
+//! m divides N.
 //!
-//! **Used again.** What is left of u after the choice is uniform in the entry: its nᵢ numbers become the centres of nᵢ
-//! equal parts of the unit interval, shifted down by 2⁻²⁵ as u itself is (the numbers 0, …, 1 − 2⁻²⁴ have the mean
-//! ½ − 2⁻²⁵). So a single entry returns u unchanged, and 1 is never reached. An entry of probability p has pN different
-//! positions; a function of bounded variation V inside the entry is then integrated within V/N of p times its mean. In
-//! two dimensions row and column have a number each, 48 bits together.
+//! **The rest of u is used again.** After the choice, the rest of u is uniform within the chosen entry. The nᵢ numbers of
+//! the entry become the centres of nᵢ equal parts of the unit interval. They are shifted down by 2⁻²⁵, because u itself is:
+//! the numbers 0, …, 1 − 2⁻²⁴ have the mean ½ − 2⁻²⁵. So a single entry returns u unchanged, and the rest never reaches 1.
+//! An entry of probability p has pN different positions. A function of bounded variation V inside the entry is therefore
+//! integrated with an error of at most V/N from p times its mean. In two dimensions row and column use one number each, 48
+//! bits together.
 //!
-//! References: inversion over rows and columns: Matt Pharr, Wenzel Jakob and Greg Humphreys, *Physically Based
-//! Rendering* (4th ed. 2023), ch. 2 and appendix A; a uniform part that keeps every weight possible: Tim Hesterberg,
-//! *Weighted average importance sampling and defensive mixture distributions*, Technometrics 37 (1995).
+//! References: inversion over rows and columns: Matt Pharr, Wenzel Jakob and Greg Humphreys, *Physically Based Rendering*
+//! (4th ed. 2023), ch. 2 and appendix A; a uniform part that keeps every positive weight possible: Tim Hesterberg, *Weighted
+//! average importance sampling and defensive mixture distributions*, Technometrics 37 (1995).
 
-/// A choice among numbered entries.
+/// A discrete distribution over numbered entries.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Discrete {
-    /// n₀ + … + nᵢ: entry i has the numbers from `ends[i − 1]` to `ends[i]`.
+    /// Partial sums n₀ + … + nᵢ: the integers j from `ends[i − 1]` up to `ends[i]` choose entry i.
     ends: Vec<u32>,
 }
 
 impl Discrete {
-    /// How many values of u there are, and the largest number of positive weights.
+    /// N: the number of different values of u, and the largest allowed number of positive weights.
     pub const NUMBERS: u32 = 1 << 24;
 
-    /// Probabilities in proportion to `weights`; nothing if no weight is positive.
+    /// A distribution with probabilities in proportion to `weights`; `None` if no weight is positive.
     ///
     /// ```
     /// use fredholm::math::distribution::Discrete;
@@ -53,7 +55,7 @@ impl Discrete {
     /// If a weight is negative or NaN, their sum is not finite, or more than [`Self::NUMBERS`] are positive.
     pub fn new(weights: &[f64]) -> Option<Self> {
         assert!(weights.iter().all(|&w| w >= 0.0), "a negative weight");
-        // the same order of summation as below: the last share is exactly 1
+        // the same order of summation as below, so that the last share is exactly 1
         let total = weights.iter().fold(0.0, |sum, w| sum + w);
         assert!(total.is_finite(), "the weights are too large");
         let positive = weights.iter().filter(|&&w| w > 0.0).count();
@@ -73,18 +75,18 @@ impl Discrete {
         self.ends.len()
     }
 
-    /// Never: there is something to choose.
+    /// Always false: a distribution has at least one entry.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// nᵢ numbers, starting with the first.
+    /// The integers j that choose entry i: the first one, and how many there are (nᵢ).
     fn numbers(&self, i: usize) -> (u32, u32) {
         let start = if i == 0 { 0 } else { self.ends[i - 1] };
         (start, self.ends[i] - start)
     }
 
-    /// The entry that u in [0, 1) chooses, and what is left of u, in [0, 1) again.
+    /// The entry that u in [0, 1) chooses, and the rest of u, rescaled to [0, 1).
     pub fn sample(&self, u: f32) -> (usize, f32) {
         let j = (u * Self::NUMBERS as f32) as u32;
         let i = self.ends.partition_point(|&end| end <= j);
@@ -93,22 +95,23 @@ impl Discrete {
         (i, (centre - 0.5 / f64::from(Self::NUMBERS)) as f32)
     }
 
-    /// With what probability entry i is chosen.
+    /// pᵢ: the probability of entry i.
     pub fn probability(&self, i: usize) -> f32 {
         self.numbers(i).1 as f32 / Self::NUMBERS as f32
     }
 }
 
-/// A choice among the cells of a table: a row, then a column of it.
+/// A discrete distribution over the cells of a table: first a row is chosen, then a column in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Table {
     rows: Discrete,
-    /// Nothing for a row of zeros.
+    /// The distribution within each row; `None` for a row of zeros.
     columns: Vec<Option<Discrete>>,
 }
 
 impl Table {
-    /// Probabilities in proportion to `weight(column, row)`; nothing if no weight is positive.
+    /// A distribution with probabilities in proportion to `weight(column, row)`; `None` if no weight is positive. `size` is
+    /// `[columns, rows]`.
     ///
     /// # Panics
     /// As [`Discrete::new`], for each row and for the sums of rows.
@@ -122,15 +125,15 @@ impl Table {
         Some(Self { rows: Discrete::new(&sums)?, columns })
     }
 
-    /// The cell `[column, row]` and the position in it, in [0, 1)²: `u[0]` chooses the column, `u[1]` the row.
+    /// The chosen cell `[column, row]` and the position in it, in [0, 1)²: `u[0]` chooses the column, `u[1]` the row.
     pub fn sample(&self, u: [f32; 2]) -> ([u32; 2], [f32; 2]) {
         let (row, v) = self.rows.sample(u[1]);
-        // a row that is chosen has a positive weight
+        // a chosen row has a positive weight
         let (column, u) = self.columns[row].as_ref().map_or((0, u[0]), |c| c.sample(u[0]));
         ([column as u32, row as u32], [u, v])
     }
 
-    /// With what probability a cell is chosen.
+    /// The probability of a cell.
     pub fn probability(&self, [column, row]: [u32; 2]) -> f32 {
         let columns = &self.columns[row as usize];
         columns.as_ref().map_or(0.0, |c| c.probability(column as usize)) * self.rows.probability(row as usize)
@@ -144,7 +147,8 @@ mod tests {
 
     const N: u32 = Discrete::NUMBERS;
 
-    /// All numbers there are: every entry is chosen exactly as often as it says, by remainders that are evenly spread.
+    /// Tries all N values of u: every entry is chosen exactly as often as its probability says, and the rest of u is evenly
+    /// spread.
     fn check_every_number(weights: &[f64]) {
         let d = Discrete::new(weights).unwrap();
         let (mut hits, mut sums) = (vec![0u32; weights.len()], vec![0.0f64; weights.len()]);

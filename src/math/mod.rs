@@ -1,7 +1,8 @@
-//! Small shared mathematics: addressed random numbers, directions, columns of vectors, convex polygons; values by name.
+//! Small shared mathematics: random numbers by address, directions, columns of vectors, convex polygons, and enum values by
+//! name.
 //!
-//! Everything that runs per ray is plain scalar code marked `#[inline(always)]`, so that one function serves a single
-//! path and, inside a loop over lanes, a wave of paths, with the same bits.
+//! Everything that runs per ray is plain scalar code marked `#[inline(always)]`. The same function serves a single path and,
+//! inside a loop over SIMD lanes, a wave of paths, and both give the same bits.
 
 pub mod columns;
 pub mod direction;
@@ -15,10 +16,11 @@ pub mod sobol;
 pub use columns::Columns;
 pub use random::{Key, Points, Purpose, Rng, Streams, fnv1a};
 
-/// A radiance, reflectance or throughput: linear Rec. 709, one `f32` per channel. Sums of it are kept in [`glam::DVec3`].
+/// A radiance, reflectance or throughput in linear Rec. 709 colour, one `f32` per channel. Sums of such values are kept in
+/// [`glam::DVec3`].
 pub type Rgb = glam::Vec3;
 
-/// The names of the channels.
+/// The names of the colour channels.
 pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 /// Relative luminance of a linear colour (ITU-R BT.709).

@@ -1,4 +1,5 @@
-//! The hash behind all random numbers: pcg4d of Jarzynski and Olano, *Hash Functions for GPU Rendering* (JCGT 9(3), 2020).
+//! The hash function from which all random numbers come: pcg4d of Jarzynski and Olano, *Hash Functions for GPU Rendering*
+//! (JCGT 9(3), 2020).
 
 #[inline(always)]
 pub(super) fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {

@@ -1,7 +1,7 @@
-//! Convex polygons in space, as corner lists counter-clockwise seen from the front.
+//! Convex polygons in space. The corners are listed counter-clockwise as seen from the front.
 //!
 //! ```text
-//! a = ½ Σᵢ (pᵢ − p₀) × (pᵢ₊₁ − p₀)        area vector: length is the area, direction the normal
+//! a = ½ Σᵢ (pᵢ − p₀) × (pᵢ₊₁ − p₀)        area vector: its length is the area, its direction the normal of the front
 //! ```
 
 use glam::DVec3;
@@ -12,7 +12,7 @@ pub fn area_vector(p: &[DVec3]) -> DVec3 {
     0.5 * p.windows(2).map(|w| (w[0] - o).cross(w[1] - o)).sum::<DVec3>()
 }
 
-/// Centre of mass.
+/// Centroid of the polygon (centre of mass at uniform density).
 pub fn centroid(p: &[DVec3]) -> DVec3 {
     let n = area_vector(p);
     let o = p[0];
@@ -20,12 +20,12 @@ pub fn centroid(p: &[DVec3]) -> DVec3 {
     o + moment / (6.0 * n.length_squared())
 }
 
-/// Largest distance of a corner from `c`.
+/// Largest distance of a corner of `p` from the point `c`.
 pub fn radius_about(p: &[DVec3], c: DVec3) -> f64 {
     p.iter().map(|q| q.distance_squared(c)).fold(0.0, f64::max).sqrt()
 }
 
-/// Writes the part of `p` with `normal·x ≥ offset` to `out`; corners within `tolerance` of the plane count as on it.
+/// Writes the part of `p` with `normal·x ≥ offset` to `out`. A corner within `tolerance` of the plane counts as lying on it.
 pub fn clip(p: &[DVec3], normal: DVec3, offset: f64, tolerance: f64, out: &mut Vec<DVec3>) {
     out.clear();
     let height = |x: DVec3| {
@@ -51,7 +51,7 @@ pub fn extent(p: &[DVec3], axis: DVec3) -> [f64; 2] {
 
 /// Maps `[0, 1]²` onto the polygon. Returns the point and the density factor |∂x/∂(u, v)|.
 ///
-/// Quadrilaterals map bilinearly, triangles with constant factor, the rest as a fan of triangles.
+/// Quadrilaterals are mapped bilinearly, triangles with a constant factor, and all other polygons as a fan of triangles.
 pub fn at(p: &[DVec3], u: f64, v: f64) -> (DVec3, f64) {
     let triangle = |a: DVec3, b: DVec3, c: DVec3, u: f64, v: f64| {
         let r = u.sqrt();
@@ -79,13 +79,13 @@ pub fn at(p: &[DVec3], u: f64, v: f64) -> (DVec3, f64) {
     }
 }
 
-/// Maps `[0, 1]²` onto the polygon with constant density, so that uniform numbers give uniform points.
+/// Maps `[0, 1]²` onto the polygon with constant density, so that uniform numbers give uniformly distributed points.
 pub fn uniform(p: &[DVec3], u: f64, v: f64) -> DVec3 {
     if let [a, b, c, d] = *p {
         if (a - b + c - d).length_squared() <= 1e-20 * (c - a).length_squared() {
             return a + u * (b - a) + v * (d - a);
         }
-        // the fan of two triangles
+        // otherwise two triangles
         let first = (b - a).cross(c - a).length();
         let share = first / (first + (c - a).cross(d - a).length());
         return if u < share {
@@ -97,10 +97,11 @@ pub fn uniform(p: &[DVec3], u: f64, v: f64) -> DVec3 {
     at(p, u, v).0
 }
 
-/// The line perpendicular to the longest extent that leaves the share `share` of the area below it:
-/// `(axis, offset)` with the lower part at `axis·x ≤ offset`.
+/// The line perpendicular to the longest extent that has the fraction `share` of the area below it. Returned as `(axis,
+/// offset)`; the lower part is `axis·x ≤ offset`.
 ///
-/// Extents are measured along the edges; of equal ones the first counts, so that a square halves along its first edge.
+/// Extents are measured along the edges. If several are equal the first is taken, so a square is divided along its first
+/// edge.
 pub fn equal_area_line(p: &[DVec3], share: f64) -> (DVec3, f64) {
     let mut axis = DVec3::ZERO;
     let mut longest = 0.0;
@@ -111,7 +112,8 @@ pub fn equal_area_line(p: &[DVec3], share: f64) -> (DVec3, f64) {
             (axis, longest) = (d, hi - lo);
         }
     }
-    // safeguarded Newton for area(below s) = share · area; the slope is the chord at s
+    // Newton's method with bisection as safeguard for area(below s) = share · area; the slope is the length of the chord at
+    // s
     let [mut lo, mut hi] = extent(p, axis);
     let [width, whole] = [hi - lo, area_vector(p).length()];
     let mut s = lo + share * width;
@@ -191,7 +193,7 @@ mod tests {
                 .map(|k| uniform(&p, ((k % m) as f64 + 0.5) / m as f64, ((k / m) as f64 + 0.5) / m as f64))
                 .sum();
             assert!((uniform / (m * m) as f64 - centroid(&p)).length() < 2.0 / m as f64);
-            // the fan jumps from triangle to triangle, which costs the midpoint rule an order
+            // the fan jumps from one triangle to the next, which lowers the order of the midpoint rule by one
             assert!((x / one - centroid(&p)).length() < 2.0 / m as f64);
         }
     }

@@ -1,27 +1,28 @@
-//! Random numbers by address: nothing is counted, so nothing depends on the order of work.
+//! Random numbers by address: each number is a hash of where it is used. There is no counter, so the numbers do not depend
+//! on the order in which paths are computed.
 //!
 //! `u = hash(key, pixel, sample, place)` with `place = (bounce, purpose, draw)`.
 //!
 //! | symbol | type | meaning |
 //! |---|---|---|
-//! | key | [`Key`] | the run: seed and the name of the stream |
+//! | key | [`Key`] | the run: its seed and the name of the stream |
 //! | pixel, sample | `u32` | the path |
-//! | bounce | vertex index v | where on the path |
-//! | purpose | [`Purpose`] | what the number decides |
-//! | draw | 0, 1, … | four numbers each |
-//! | points | [`Points`] | how the samples of a pixel lie to each other |
+//! | bounce | vertex index v | the vertex of the path |
+//! | purpose | [`Purpose`] | the decision that the number is used for |
+//! | draw | 0, 1, … | number of the draw; each draw gives four numbers |
+//! | points | [`Points`] | independent samples, or points of a Sobol sequence |
 //!
 //! The hash is pcg4d of Jarzynski and Olano, *Hash Functions for GPU Rendering* (JCGT 9(3), 2020).
 
 use super::pcg::pcg4d;
 use super::sobol;
 
-/// What a random number decides; part of its address.
+/// The decision that a random number is used for; part of its address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// The start of the path: the point in the pixel, or on the surface sensor.
     Start = 0,
-    /// Next-event estimation.
+    /// The point on a lamp, for next-event estimation.
     Connect = 1,
     /// The direction of the next ray.
     Scatter = 2,
@@ -29,13 +30,13 @@ pub enum Purpose {
     Roulette = 3,
 }
 
-/// How the samples of a pixel lie to each other.
+/// The relation between the samples of one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Points {
-    /// They know nothing of each other.
+    /// The samples are independent of each other.
     #[default]
     Independent,
-    /// Those of one replicate are the points of a scrambled [Sobol sequence](super::sobol).
+    /// The samples of one replicate are the points of a scrambled [Sobol sequence](super::sobol).
     Sobol,
 }
 
@@ -46,7 +47,7 @@ impl std::fmt::Display for Points {
 }
 
 impl Points {
-    /// All of them.
+    /// Both kinds of points.
     pub const ALL: [Self; 2] = [Self::Independent, Self::Sobol];
 }
 
@@ -57,16 +58,16 @@ impl std::str::FromStr for Points {
     }
 }
 
-/// A whole run's stream: equal seeds and names give equal numbers, anything else gives unrelated ones.
+/// The key of a stream of random numbers. Equal seeds and names give equal numbers; any difference gives unrelated numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Key {
     bits: [u32; 2],
-    /// Replicates that the samples are dealt to; 0 where samples are independent.
+    /// Number of replicates over which the samples are distributed, if they are Sobol points; 0 if samples are independent.
     scrambles: u32,
 }
 
 impl Key {
-    /// The stream called `name` of a run with this seed.
+    /// The stream called `name` of a run with the seed `seed`.
     ///
     /// ```
     /// use fredholm::math::Key;
@@ -84,19 +85,20 @@ impl Key {
     }
 
     /// The same stream with other points. Sample i belongs to replicate `i mod replicates`, as on the
-    /// [film](crate::terms::film); replicates are independent whatever the points.
+    /// [film](crate::terms::film). Replicates are independent of each other for both kinds of points.
     #[must_use]
     pub fn with_points(self, points: Points, replicates: usize) -> Self {
         Self { scrambles: if points == Points::Sobol { replicates.max(1) as u32 } else { 0 }, ..self }
     }
 
-    /// How the samples of a pixel lie to each other.
+    /// The relation between the samples of one pixel.
     #[inline(always)]
     pub fn points(self) -> Points {
         if self.scrambles == 0 { Points::Independent } else { Points::Sobol }
     }
 
-    /// A further stream of this run: `single` gives each term its own.
+    /// Another stream of the same run with the number `index`. For example, the estimator `single` uses a separate stream
+    /// for each term.
     #[must_use]
     pub fn branch(self, index: u32) -> Self {
         let v = pcg4d([self.bits[0], self.bits[1], index, 0x5bd1_e995]);
@@ -109,7 +111,7 @@ pub fn fnv1a(bytes: impl IntoIterator<Item = u8>) -> u64 {
     bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3))
 }
 
-/// The numbers of one (path, bounce, purpose), four at a time.
+/// Generator of the random numbers of one (path, bounce, purpose), four per draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Rng {
     key: Key,
@@ -121,13 +123,13 @@ pub struct Rng {
 const DRAW: u32 = 1 << 24;
 
 impl Rng {
-    /// The numbers at vertex `bounce` of path (`pixel`, `sample`) for one purpose.
+    /// The generator for one purpose at vertex `bounce` of path (`pixel`, `sample`).
     #[inline(always)]
     pub fn at(key: Key, pixel: u32, sample: u32, bounce: usize, purpose: Purpose) -> Self {
         Self { key, pixel, sample, place: place(bounce, purpose) }
     }
 
-    /// Four uniform numbers in [0, 1): independent ones, multiples of 2⁻²⁴, or a Sobol point.
+    /// Four uniform numbers in [0, 1). They are independent multiples of 2⁻²⁴, or the coordinates of one Sobol point.
     #[inline(always)]
     pub fn four(&mut self) -> [f32; 4] {
         let Self { key, pixel, sample, place } = *self;
@@ -155,25 +157,25 @@ fn place(bounce: usize, purpose: Purpose) -> u32 {
     (bounce as u32) << 2 | purpose as u32
 }
 
-/// The top 24 bits as a number in [0, 1).
+/// The top 24 bits of `x` as a number in [0, 1).
 #[inline(always)]
 fn unit(x: u32) -> f32 {
-    // through i32, which converts in one vector instruction
+    // through i32, which is converted by one vector instruction
     (x >> 8) as i32 as f32 * (1.0 / 16_777_216.0)
 }
 
-/// The streams of a wave: one (pixel, sample) per path, one (bounce, purpose) for all.
+/// The random streams of a wave of paths: each path has its own (pixel, sample), and all share one (bounce, purpose).
 #[derive(Clone, Copy, Debug)]
 pub struct Streams<'a> {
-    /// The run.
+    /// The key of the run's stream.
     pub key: Key,
     /// Pixel of each path.
     pub pixel: &'a [u32],
     /// Sample number of each path within its pixel.
     pub sample: &'a [u32],
-    /// Vertex index, the same for all.
+    /// Vertex index, the same for all paths.
     pub bounce: usize,
-    /// What the numbers decide.
+    /// The decision that the numbers are used for.
     pub purpose: Purpose,
 }
 
@@ -184,7 +186,7 @@ impl Streams<'_> {
         Rng::at(self.key, self.pixel[i], self.sample[i], self.bounce, self.purpose)
     }
 
-    /// The first draw of path `i`, where samples are independent: no branch in a loop over paths.
+    /// The first draw of path `i`, for independent samples only. A loop over paths then has no branch.
     #[inline(always)]
     pub(crate) fn first_draw(&self, i: usize) -> [f32; 4] {
         independent(self.key, self.pixel[i], self.sample[i], place(self.bounce, self.purpose))
@@ -196,7 +198,7 @@ impl Streams<'_> {
         self.pixel.len()
     }
 
-    /// Whether there is no path.
+    /// Returns true if there is no path.
     pub fn is_empty(&self) -> bool {
         self.pixel.is_empty()
     }
@@ -208,7 +210,7 @@ mod tests {
 
     #[test]
     fn numbers_are_uniform_and_uncorrelated_in_every_address() {
-        // means of u and of products of neighbours over 2^18 addresses, each within 5.5 standard errors
+        // means of u and of products of neighbouring numbers over 2^18 addresses; each must lie within 5.5 standard errors
         let key = Key::new(3, "test");
         let n = 1u32 << 18;
         let (mut mean, mut product) = ([0.0; 4], [0.0; 3]);

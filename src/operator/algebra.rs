@@ -1,64 +1,66 @@
-//! Operators as values: a small algebra that is only evaluated when it is applied.
+//! Operators as values that can be added, multiplied and inverted. Nothing is computed before the result is applied to a
+//! vector.
 //!
 //! ```text
 //! (S + T) x = S x + T x      (S T) x = S (T x)      T^k x = T (T^{k−1} x)      (I − T)⁻¹ x = Σ_{k≥0} T^k x
 //! (S + T)* = S* + T*         (S T)* = T* S*         (T^k)* = (T*)^k            ((I − T)⁻¹)* = (I − T*)⁻¹
 //! ```
 //!
-//! `T*` is the adjoint in ⟨u, v⟩ = Σᵢ Aᵢ uᵢ vᵢ, so that ⟨W, T x⟩ = ⟨T* W, x⟩: light tracing and path tracing of the same
-//! number. `T = diag(ρ) F` with ρ on the left, and since F is self-adjoint here, `T* = F diag(ρ)`.
+//! `T*` is the adjoint in ⟨u, v⟩ = Σᵢ Aᵢ uᵢ vᵢ, so that ⟨W, T x⟩ = ⟨T* W, x⟩: light tracing and path tracing compute the
+//! same number. `T = diag(ρ) F` has ρ on the left, and F is self-adjoint here, so that `T* = F diag(ρ)`.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | I, diag(ρ) | identity, multiplication patch by patch | [`Expression::identity`], [`Expression::diagonal`] |
+//! | I, diag(ρ) | identity, multiplication by one number per patch | [`Expression::identity`], [`Expression::diagonal`] |
 //! | S + T, c T, S T, T^k | combinations | [`Expression::plus`], [`Expression::scaled`], [`Expression::times`], [`Expression::power`] |
-//! | (I − T)⁻¹ | everything that ever arrives | [`Expression::resolvent`] |
-//! | T* | walked from the lights | [`Expression::adjoint`] |
-//! | ½ (T + w⁻¹A T* A⁻¹w) | the part that is self-adjoint in the weight w | [`Expression::symmetric_part`] |
+//! | (I − T)⁻¹ | the sum over all numbers of bounces | [`Expression::resolvent`] |
+//! | T* | adjoint: transport seen from the lights | [`Expression::adjoint`] |
+//! | ½ (T + w⁻¹A T* A⁻¹w) | the part of T that is self-adjoint in the weight w | [`Expression::symmetric_part`] |
 //!
-//! Operators can be combined if they act on the same space: as many patches, of the same areas. Anything else is an
-//! error that says where the spaces differ.
+//! Operators can be combined if they act on the same space: the same number of patches with the same areas. Otherwise the
+//! result is an error that states the difference.
 //!
 //! Reference: Arvo, *Analytic Methods for Simulated Light Transport* (1995), chapter 6.
 
 use super::matrix::{LinearOperator, Weight};
 use std::borrow::Cow;
 
-/// Why operators cannot be combined or applied.
+/// The reason why two operators cannot be combined or applied.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AlgebraError {
-    /// Another number of patches.
+    /// The two operands have different numbers of patches.
     #[error("one side has {left} patches, the other {right}: they act on different meshes")]
     Sizes {
-        /// Of the left operand.
+        /// Number of patches of the left operand.
         left: usize,
-        /// Of the right operand.
+        /// Number of patches of the right operand.
         right: usize,
     },
-    /// As many patches, of other areas: the adjoint would be another.
+    /// The two operands have equally many patches with different areas. The adjoint of one is then not the adjoint of the
+    /// other.
     #[error("patch {patch} has area {left} on one side and {right} on the other: they act on different meshes")]
     Areas {
-        /// The first patch that differs.
+        /// The first patch whose areas differ.
         patch: usize,
         /// Its area in the left operand, m².
         left: f64,
         /// Its area in the right operand, m².
         right: f64,
     },
-    /// Σ T^k 1 does not settle.
-    #[error("Σ T^k 1 has not settled after {steps} terms: I − T has no inverse that the Neumann series could give")]
+    /// The Neumann series Σ T^k 1 does not converge.
+    #[error("Σ T^k 1 has not converged after {steps} terms, so the Neumann series cannot compute (I − T)⁻¹")]
     Diverges {
-        /// Terms tried.
+        /// Number of terms computed.
         steps: usize,
     },
 }
 
-/// More terms than this, and the Neumann series is said to diverge.
+/// After this number of terms the Neumann series counts as divergent.
 const MOST_TERMS: usize = 100_000;
-/// A term below this share of the sum is below rounding, with room for the slow tail of a series.
+/// A term below this share of the sum is below rounding. The margin allows for the tail of a slowly converging series.
 const NEGLIGIBLE: f64 = 1.0 / (1u64 << 60) as f64;
 
-/// An operator built from others. It borrows them, and does nothing before it is applied.
+/// An operator built from other operators. It borrows them and computes nothing before it is applied.
 ///
 /// ```
 /// use fredholm::operator::{algebra::Expression, form_factor::FormFactors, matrix::PatchOperator};
@@ -96,15 +98,15 @@ impl<'a, T: LinearOperator> From<&'a T> for Expression<'a> {
 }
 
 impl<'a> Expression<'a> {
-    /// I on patches of these areas.
+    /// The identity I on patches with these areas.
     pub fn identity(area: &'a [f64]) -> Self {
         Self { area: Cow::Borrowed(area), node: Node::Identity }
     }
 
-    /// Multiplication by one number per patch; self-adjoint.
+    /// Multiplication by one number per patch; this operator is self-adjoint.
     ///
     /// # Errors
-    /// [`AlgebraError::Sizes`] if there are not as many values as areas.
+    /// [`AlgebraError::Sizes`] if the numbers of values and areas differ.
     pub fn diagonal(area: &'a [f64], values: Vec<f64>) -> Result<Self, AlgebraError> {
         match (values.len(), area.len()) {
             (left, right) if left != right => Err(AlgebraError::Sizes { left, right }),
@@ -112,50 +114,51 @@ impl<'a> Expression<'a> {
         }
     }
 
-    /// S + T.
+    /// The sum S + T, where S is `self` and T is `other`.
     ///
     /// # Errors
-    /// If they act on different spaces.
+    /// [`AlgebraError`] if they act on different spaces.
     pub fn plus(&self, other: &Self) -> Result<Self, AlgebraError> {
         self.join(other, Node::Sum)
     }
 
-    /// S − T.
+    /// The difference S − T, where S is `self` and T is `other`.
     ///
     /// # Errors
-    /// If they act on different spaces.
+    /// [`AlgebraError`] if they act on different spaces.
     pub fn minus(&self, other: &Self) -> Result<Self, AlgebraError> {
         self.plus(&other.scaled(-1.0))
     }
 
-    /// S T: first `other`, then `self`.
+    /// S T: applies first `other`, then `self`.
     ///
     /// # Errors
-    /// If they act on different spaces.
+    /// [`AlgebraError`] if they act on different spaces.
     pub fn times(&self, other: &Self) -> Result<Self, AlgebraError> {
         self.join(other, Node::Product)
     }
 
-    /// c T.
+    /// The multiple c T.
     pub fn scaled(&self, c: f64) -> Self {
         self.with(Node::Scaled(c, self.boxed()))
     }
 
-    /// T^k; T⁰ = I.
+    /// The power T^k; T⁰ = I.
     pub fn power(&self, k: usize) -> Self {
         self.with(Node::Power(self.boxed(), k))
     }
 
-    /// T*, in the area inner product.
+    /// T*, the adjoint in the area inner product.
     pub fn adjoint(&self) -> Self {
         self.with(Node::Adjoint(self.boxed()))
     }
 
-    /// ½ (T + T^w), T^w the adjoint in ⟨u, v⟩_w = Σ wᵢ uᵢ vᵢ: T itself where T is self-adjoint in w. Its spectrum lies between
-    /// the ends of the numerical range of T, and so do the real parts of all eigenvalues of T.
+    /// ½ (T + T^w), where T^w is the adjoint of T in ⟨u, v⟩_w = Σ wᵢ uᵢ vᵢ. It equals T if T is self-adjoint in w. The real
+    /// parts of all eigenvalues of T lie between its smallest and its largest eigenvalue, because these are the ends of the
+    /// numerical range of T.
     ///
     /// # Panics
-    /// If there is not one weight per patch.
+    /// If the number of weights is not the number of patches.
     pub fn symmetric_part(&self, weight: &Weight) -> Self {
         let w = weight.values();
         assert_eq!(w.len(), self.area.len(), "one weight per patch");
@@ -167,23 +170,23 @@ impl<'a> Expression<'a> {
         self.with(Node::Scaled(0.5, Box::new(Node::Sum(self.boxed(), Box::new(adjoint)))))
     }
 
-    /// (I − T)⁻¹ as the Neumann series, summed until its terms fall below rounding.
+    /// (I − T)⁻¹ as the Neumann series, summed until its terms are below rounding.
     ///
-    /// That the series settles is tried on x = 1 first. For T ≥ 0 this proves it for every x, because
-    /// |T^k x| ≤ max|x| T^k 1. For other T a series that does not settle gives NaN, never a wrong number.
+    /// Convergence is tested on x = 1 first. For T ≥ 0 this proves convergence for every x, because |T^k x| ≤ max|x| T^k 1.
+    /// For other T, a series that does not converge gives NaN, never a wrong number.
     ///
     /// # Errors
-    /// [`AlgebraError::Diverges`] if Σ T^k 1 does not settle.
+    /// [`AlgebraError::Diverges`] if Σ T^k 1 does not converge.
     pub fn resolvent(&self) -> Result<Self, AlgebraError> {
         let out = self.with(Node::Resolvent(self.boxed()));
         let probe = out.of(&vec![1.0; self.area.len()])?;
         if probe.iter().all(|x| x.is_finite()) { Ok(out) } else { Err(AlgebraError::Diverges { steps: MOST_TERMS }) }
     }
 
-    /// T x as a new vector.
+    /// Computes T x as a new vector.
     ///
     /// # Errors
-    /// [`AlgebraError::Sizes`] if x has not one value per patch.
+    /// [`AlgebraError::Sizes`] if x does not have one value per patch.
     pub fn of(&self, x: &[f64]) -> Result<Vec<f64>, AlgebraError> {
         if x.len() != self.area.len() {
             return Err(AlgebraError::Sizes { left: self.area.len(), right: x.len() });
@@ -209,7 +212,7 @@ impl<'a> Expression<'a> {
     }
 }
 
-/// Whether two lists of areas are of one space.
+/// Checks that two lists of areas describe the same space.
 fn same_space(left: &[f64], right: &[f64]) -> Result<(), AlgebraError> {
     if left.len() != right.len() {
         return Err(AlgebraError::Sizes { left: left.len(), right: right.len() });
@@ -221,7 +224,7 @@ fn same_space(left: &[f64], right: &[f64]) -> Result<(), AlgebraError> {
 }
 
 impl Node<'_> {
-    /// T x, or T* x if `adjoint`.
+    /// T x, or T* x if `adjoint` is true.
     fn image(&self, x: &[f64], adjoint: bool) -> Vec<f64> {
         match self {
             Node::Leaf(t) => {
@@ -252,7 +255,7 @@ impl Node<'_> {
     }
 }
 
-/// Σ T^k x; NaN where it does not settle.
+/// Σ T^k x; NaN in every entry if the series does not converge.
 fn neumann(apply: impl Fn(&[f64]) -> Vec<f64>, x: &[f64]) -> Vec<f64> {
     let largest = |v: &[f64]| v.iter().fold(0.0, |a: f64, v| if v.abs() > a || v.is_nan() { v.abs() } else { a });
     let (mut term, mut sum) = (x.to_vec(), x.to_vec());

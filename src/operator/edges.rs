@@ -1,4 +1,4 @@
-//! The essential band: what edges do to the spectrum, whatever the rest of the scene is.
+//! The essential band: the continuous spectrum of T that edges between surfaces cause, whatever the rest of the scene is.
 //!
 //! ```text
 //! along a right-angled edge between albedos ρ₁ and ρ₂ the spectrum of T in L₂ holds  [−κ √(ρ₁ρ₂), κ √(ρ₁ρ₂)]
@@ -7,15 +7,16 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | κ | L₂ norm of the kernel xy/2(x² + y²)^{3/2} on a half line: its Mellin symbol at −½ | [`KAPPA`] |
-//! | √(ρ₁ρ₂) | largest over the edges of the mesh | [`essential_band`] |
+//! | κ | L₂ norm of the operator with kernel xy/2(x² + y²)^{3/2} on a half line: its Mellin symbol at −½ | [`KAPPA`] |
+//! | √(ρ₁ρ₂) | geometric mean of the albedos at an edge; the largest value over the mesh counts | [`essential_band`] |
 //!
-//! Near an edge the kernel is homogeneous of degree −2: T maps a function squeezed towards the edge to the squeezed image, so
-//! it is not compact, and the band is continuous spectrum. The eigenvalues of a mesh fill it ever more densely as the mesh is
-//! refined, and none of those inside converges to anything. Three faces that meet widen the band further (not computed), so
-//! eigenvalues just outside it may drift as well.
+//! Near an edge the kernel is homogeneous of degree −2: if a function is squeezed towards the edge, its image under T is
+//! squeezed in the same way. Therefore T is not compact, and the band is continuous spectrum. As a mesh is refined, its
+//! eigenvalues fill the band ever more densely, and no eigenvalue inside the band converges to a limit. Three faces that
+//! meet in a corner widen the band further, which is not computed here. Eigenvalues just outside the band may therefore
+//! drift as well.
 //!
-//! Only right angles are known in closed form; patches that meet at others are counted apart.
+//! The band has a known closed form only for right angles. Patches that meet at other angles are counted separately.
 //!
 //! Reference: Atkinson, *The Numerical Solution of Integral Equations of the Second Kind* (1997), chapter 8, for Mellin
 //! convolutions at edges.
@@ -24,21 +25,21 @@ use super::form_factor::FormFactors;
 use super::patches::{Patch, Patches};
 use glam::DVec3;
 
-/// κ = Γ(¾)²/(2√π).
+/// κ = Γ(¾)²/(2√π): half width of the band for albedo 1.
 pub const KAPPA: f64 = 0.423_606_542_396_989_5;
 
-/// What the edges of a mesh hold of the spectrum.
+/// The essential band of a mesh, and the number of edges that contribute to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Band {
-    /// κ √(ρ₁ρ₂), the largest over all right-angled edges; 0 without any.
+    /// κ √(ρ₁ρ₂), the largest value over all right-angled edges; 0 if there are none.
     pub half_width: f64,
     /// Pairs of patches that meet at a right angle and see each other.
     pub right: usize,
-    /// Pairs that meet at another angle below 180°, whose band is not known.
+    /// Pairs of patches that meet at another angle below 180°; their band is not known.
     pub other: usize,
 }
 
-/// The band of one channel.
+/// The essential band of one colour channel; `rho` holds its albedo per patch.
 pub fn essential_band(patches: &Patches, factors: &FormFactors, rho: &[f64]) -> Band {
     let reach: Vec<f64> = patches.iter().map(radius).collect();
     let mut band = Band::default();
@@ -67,7 +68,8 @@ fn radius(p: &Patch) -> f64 {
     p.polygon.iter().map(|c| c.distance(p.centre)).fold(0.0, f64::max)
 }
 
-/// Whether an edge of one lies along the other, at three inner points of the edge.
+/// Returns true if an edge of one patch lies along the other patch: at least two of three inner points of the edge lie on
+/// it.
 fn meet(a: &Patch, b: &Patch, size: f64) -> bool {
     let touches = |p: &Patch, q: &Patch| {
         let next = p.polygon.iter().cycle().skip(1);
@@ -78,7 +80,7 @@ fn meet(a: &Patch, b: &Patch, size: f64) -> bool {
     touches(a, b) || touches(b, a)
 }
 
-/// Whether a point lies in a convex polygon or on its rim.
+/// Returns true if a point lies in a convex polygon or on its boundary.
 fn inside(p: &Patch, x: DVec3, tolerance: f64) -> bool {
     let next = p.polygon.iter().cycle().skip(1);
     let left = |(from, to): (&DVec3, &DVec3)| {

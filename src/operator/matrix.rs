@@ -1,4 +1,4 @@
-//! The operator over patches: `T_h = diag(ρ) F`, one channel at a time.
+//! The discrete operator over patches: `T_h = diag(ρ) F`, separately for each colour channel.
 //!
 //! ```text
 //! (T u)ᵢ  = ρᵢ Σⱼ Fᵢⱼ uⱼ                            apply
@@ -12,7 +12,7 @@
 //! | ρ | albedo of the channel | [`PatchOperator::rho`] |
 //! | F, A | form factors and areas | [`FormFactors`] |
 //!
-//! Every sum runs in a fixed order, so results do not depend on the number of threads.
+//! Every sum runs in a fixed order, so that results do not depend on the number of threads.
 
 mod columns;
 mod lanczos;
@@ -28,9 +28,9 @@ pub use reach::reached;
 pub use spectrum::{Spectral, spectral_radius};
 pub use weight::Weight;
 
-/// Something that can be applied to radiance per patch, and so can its adjoint.
+/// A linear operator that can be applied to one radiance per patch; its adjoint can be applied, too.
 pub trait LinearOperator: Sync {
-    /// The space it acts on: Aᵢ, m², one per patch.
+    /// The areas Aᵢ of the patches, m²; they define the space on which the operator acts.
     fn area(&self) -> &[f64];
 
     /// Number of patches.
@@ -38,48 +38,48 @@ pub trait LinearOperator: Sync {
         self.area().len()
     }
 
-    /// There are no patches.
+    /// Returns true if there are no patches.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// y = T x.
+    /// Computes y = T x.
     fn apply(&self, x: &[f64], y: &mut [f64]);
 
-    /// y = T* x: ⟨y, T x⟩_A = ⟨T* y, x⟩_A in the area inner product.
+    /// Computes y = T* x, where T* is the adjoint in the area inner product: ⟨z, T x⟩_A = ⟨T* z, x⟩_A.
     fn apply_adjoint(&self, x: &[f64], y: &mut [f64]);
 
-    /// ⟨u, v⟩_A = Σᵢ Aᵢ uᵢ vᵢ.
+    /// The area inner product ⟨u, v⟩_A = Σᵢ Aᵢ uᵢ vᵢ.
     fn inner(&self, u: &[f64], v: &[f64]) -> f64 {
         self.area().iter().zip(u).zip(v).map(|((a, u), v)| a * u * v).sum()
     }
 
-    /// √⟨u, u⟩_A.
+    /// The area norm ‖u‖_A = √⟨u, u⟩_A.
     fn norm(&self, u: &[f64]) -> f64 {
         self.inner(u, u).sqrt()
     }
 }
 
-/// An operator whose rows can be used one at a time, and whose entries can be read.
+/// An operator with access to single rows and single entries.
 pub trait Rows: LinearOperator {
-    /// Tᵢⱼ.
+    /// The entry Tᵢⱼ.
     fn entry(&self, i: usize, j: usize) -> f64;
 
-    /// (T x)ᵢ.
+    /// Entry i of T x.
     fn row_times(&self, i: usize, x: &[f64]) -> f64;
 }
 
-/// `diag(ρ) F` for one channel.
+/// The operator `diag(ρ) F` of one colour channel.
 #[derive(Clone, Debug)]
 pub struct PatchOperator<'a> {
-    /// The geometry.
+    /// The form factors F.
     pub factors: &'a FormFactors,
     /// Albedo per patch.
     pub rho: Vec<f64>,
 }
 
 impl<'a> PatchOperator<'a> {
-    /// The operator of these albedos.
+    /// The operator `diag(ρ) F` for the albedos `rho`, one per patch.
     ///
     /// ```
     /// use fredholm::operator::{form_factor::FormFactors, matrix::{LinearOperator, PatchOperator}};
@@ -91,37 +91,37 @@ impl<'a> PatchOperator<'a> {
     /// ```
     ///
     /// # Panics
-    /// If there are not as many albedos as patches.
+    /// If the number of albedos is not the number of patches.
     pub fn new(factors: &'a FormFactors, rho: Vec<f64>) -> Self {
         assert_eq!(rho.len(), factors.n, "one albedo per patch");
         Self { factors, rho }
     }
 
-    /// ‖T‖∞ = maxᵢ ρᵢ Σⱼ Fᵢⱼ: no patch gains more than this in one bounce.
+    /// ‖T‖∞ = maxᵢ ρᵢ Σⱼ Fᵢⱼ: one bounce multiplies the largest radiance by at most this factor.
     pub fn norm_inf(&self) -> f64 {
         let mut y = vec![0.0; self.len()];
         self.apply(&vec![1.0; self.len()], &mut y);
         y.into_iter().fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
     }
 
-    /// ‖T‖₁ in the area measure, maxⱼ (1/Aⱼ) Σᵢ Aᵢ ρᵢ Fᵢⱼ: no light loses less than its complement in one bounce.
+    /// ‖T‖₁ in the area measure, maxⱼ (1/Aⱼ) Σᵢ Aᵢ ρᵢ Fᵢⱼ: one bounce multiplies the total power by at most this factor.
     pub fn norm_1(&self) -> f64 {
         let mut y = vec![0.0; self.len()];
         self.apply_adjoint(&vec![1.0; self.len()], &mut y);
         y.into_iter().fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
     }
 
-    /// A/ρ, in which T is self-adjoint.
+    /// The weight w = A/ρ, in which T is self-adjoint.
     pub fn weight(&self) -> Weight {
         Weight::new(&self.factors.area, &self.rho)
     }
 
-    /// ⟨u, v⟩_w in that weight.
+    /// ⟨u, v⟩_w in the weight w = A/ρ.
     pub fn weighted_inner(&self, u: &[f64], v: &[f64]) -> f64 {
         self.weight().inner(u, v)
     }
 
-    /// √⟨x, x⟩_w.
+    /// ‖x‖_w = √⟨x, x⟩_w.
     pub fn weighted_norm(&self, x: &[f64]) -> f64 {
         self.weight().norm(x)
     }
@@ -166,7 +166,7 @@ impl LinearOperator for PatchOperator<'_> {
     }
 }
 
-/// Σ aⱼ xⱼ in eight interleaved sums, so that the compiler can use vector registers.
+/// Σ aⱼ xⱼ as eight interleaved partial sums, so that the compiler can use vector registers.
 fn dot(a: &[f32], x: &[f64]) -> f64 {
     let (blocks, rest) = a.as_chunks::<8>();
     let (xs, tail) = x.as_chunks::<8>();

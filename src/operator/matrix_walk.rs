@@ -1,17 +1,17 @@
-//! The bridge between the worlds: the discrete T = diag(ρ) F, sampled by a walk on its rows.
+//! The discrete operator T = diag(ρ) F, sampled by a random walk on its rows. It connects sampling with matrices.
 //!
-//! `(T^k E)_i = Σ ρ_i F_ij ρ_j F_jl … E`: from row i the walk goes to j with probability F_ij, weight ρ_i, and leaves with
-//! probability 1 − Σ_j F_ij.
+//! `(T^k E)_i = Σ ρ_i F_ij ρ_j F_jl … E`: from row i the walk steps to row j with probability F_ij and weight ρ_i. With
+//! probability 1 − Σ_j F_ij it ends.
 //!
-//! Every estimator that runs here is checked against matrix powers, where there is no discretisation error at all.
+//! Every estimator that runs on this walk is compared with exact matrix powers, so that no discretisation error occurs.
 //! Reference: Forsythe and Leibler, *Matrix inversion by a Monte Carlo method* (1950).
 //!
 //! | notation | type | meaning |
 //! |---|---|---|
 //! | F | `rows` | nonnegative, row sums at most 1 |
-//! | ρ | `rho` | row factor, one per channel |
-//! | E | `emission` | one per row and channel |
-//! | c_j | `1/(number of emitting rows)` | density of next-event estimation |
+//! | ρ | `rho` | factor of a row, one per channel |
+//! | E | `emission` | emission, one per row and channel |
+//! | c_j | `1/(number of emitting rows)` | density with which next-event estimation chooses row j |
 
 use super::adjoint::{Adjoint, AdjointStep, Role, Toward};
 use super::kernel::{Factors, Kernel};
@@ -23,7 +23,7 @@ use crate::math::{Rgb, Rng};
 pub struct MatrixWalk {
     n: usize,
     rows: Vec<f64>,
-    /// Partial sums along each row, and down each column.
+    /// Partial sums along each row (`cdf`) and down each column (`down`).
     cdf: Vec<f64>,
     down: Vec<f64>,
     rho: Vec<Rgb>,
@@ -35,7 +35,7 @@ impl MatrixWalk {
     /// `rows` is F, row by row; `rho` and `emission` have one entry per row.
     ///
     /// # Panics
-    /// If the lengths do not fit together.
+    /// If `rows` does not have n² entries or `emission` does not have n, where n is the length of `rho`.
     pub fn new(rows: Vec<f64>, rho: Vec<Rgb>, emission: Vec<Rgb>) -> Self {
         let n = rho.len();
         assert!(rows.len() == n * n && emission.len() == n, "F is {n} × {n}");
@@ -53,7 +53,7 @@ impl MatrixWalk {
         Self { n, rows, cdf, down, rho, emission, emitters }
     }
 
-    /// The exact terms `T^k E`, k = 0..=`k_max`, one vector of rows each.
+    /// The exact terms `T^k E` for k = 0..=`k_max`: for each k one vector over the rows.
     pub fn powers(&self, k_max: usize) -> Vec<Vec<glam::DVec3>> {
         let mut terms = vec![self.emission.iter().map(|e| e.as_dvec3()).collect::<Vec<_>>()];
         for k in 0..k_max {
@@ -79,7 +79,7 @@ impl Transport for MatrixWalk {
     fn scatter(&self, &i: &u32, rng: &mut Rng) -> Option<Step<u32>> {
         let i = i as usize;
         let u = rng.four();
-        // 48 bits, so that small entries get their exact share
+        // a number of 48 bits, so that small entries are chosen with their exact probability
         let u = f64::from(u[0]) + f64::from(u[1]) / 16_777_216.0;
         let j = self.cdf[i * self.n..(i + 1) * self.n].partition_point(|&c| c <= u);
         if j == self.n {
@@ -114,7 +114,7 @@ impl Transport for MatrixWalk {
     }
 }
 
-/// f is the row's entry T_ij = ρ_i F_ij, p its probability.
+/// f is the matrix entry T_ij = ρ_i F_ij, p the probability of stepping from i to j.
 impl Kernel for MatrixWalk {
     fn sample_direction(&self, &i: &u32, rng: &mut Rng) -> Option<Factors<u32>> {
         let Step { state, pdf, other_pdf, .. } = self.scatter(&i, rng)?;
@@ -128,12 +128,12 @@ impl Kernel for MatrixWalk {
 }
 
 impl MatrixWalk {
-    /// T_ij.
+    /// The entry T_ij.
     fn entry(&self, i: u32, j: u32) -> Rgb {
         self.rho[i as usize] * self.rows[i as usize * self.n + j as usize] as f32
     }
 
-    /// The exact `((T*)^k W)_j`, k = 0..=`k_max`, for an importance W of rows; T* is the transpose.
+    /// The exact `((T*)^k W)_j` for k = 0..=`k_max` and an importance W per row; T* is the transpose.
     pub fn adjoint_powers(&self, importance: &[glam::DVec3], k_max: usize) -> Vec<Vec<glam::DVec3>> {
         let mut terms = vec![importance.to_vec()];
         for k in 0..k_max {
@@ -150,7 +150,7 @@ impl MatrixWalk {
     }
 }
 
-/// From row j light goes to i with probability F_ij over the column's sum.
+/// From row j light steps to row i with probability F_ij divided by the sum of column j.
 impl Adjoint for MatrixWalk {
     fn emit(&self, rng: &mut Rng) -> Option<(u32, f32)> {
         let count = self.emitters.len();
@@ -212,7 +212,7 @@ impl Adjoint for MatrixWalk {
     }
 }
 
-/// Pixel i asks for row i.
+/// A sensor with one pixel per row: pixel i estimates the value of row i. The field is the number of rows.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows(pub u32);
 

@@ -1,12 +1,13 @@
-//! What T is: one symbol, three realisations.
+//! The transport operator T in three realisations.
 //!
-//! | world | T is | place |
+//! | realisation | T is | place |
 //! |---|---|---|
-//! | continuous | rays in a scene: can be sampled | [`scene_transport`] |
-//! | discrete | a matrix over patches, diag(ρ) F: can be applied | [`patches`]; [`form_factor`] and [`matrix`], or stored [`rays`] |
-//! | walk | a random walk on that matrix: can be sampled, and is known exactly | [`matrix_walk`] |
+//! | continuous | light transport along rays in a scene; it can be sampled | [`scene_transport`] |
+//! | discrete | a matrix over patches, diag(ρ) F; it can be applied to a vector | [`patches`]; [`form_factor`] and [`matrix`], or stored [`rays`] |
+//! | walk | a random walk on that matrix; it can be sampled, and its exact result is known | [`matrix_walk`] |
 //!
-//! Sampling is the trait [`Transport`], with its factors apart [`Kernel`]; applying is [`matrix::LinearOperator`], and [`algebra`] combines what can be applied.
+//! The trait [`Transport`] samples T; [`Kernel`] returns the factors of each sample separately. The trait
+//! [`matrix::LinearOperator`] applies T to a vector; [`algebra`] combines such operators.
 
 pub mod adjoint;
 pub mod algebra;

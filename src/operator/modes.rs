@@ -1,4 +1,4 @@
-//! The spectrum of T: every eigenvalue, the leading modes, and what bounds them.
+//! The spectrum of T: all eigenvalues, the leading modes (eigenvectors), and bounds on the spectral radius.
 //!
 //! ```text
 //! S = √(ρᵢAᵢ) Fᵢⱼ √(ρⱼ/Aⱼ)      symmetric, on the patches with ρ > 0:      S s = λ s      uᵢ = sᵢ √(ρᵢ/Aᵢ)      T u = λ u
@@ -8,12 +8,12 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | λ_j, u_j | eigenvalues by falling magnitude, modes of w-length 1 | [`Modes`] |
-//! | ‖T u − λ u‖_w | some eigenvalue lies within this of λ | [`Mode::residual`] |
-//! | r(T) | spectral radius: the rate at which T^k E decays at last | [`radius_bounds`] |
-//! | ‖T‖₂ | largest gain of the area norm in one bounce | [`norm_2`] |
+//! | λ_j, u_j | eigenvalues by decreasing magnitude; modes with ‖u_j‖_w = 1 | [`Modes`] |
+//! | ‖T u − λ u‖_w | residual of a mode: some eigenvalue lies within this distance of λ | [`Mode::residual`] |
+//! | r(T) | spectral radius: the rate at which T^k E decays for large k | [`radius_bounds`] |
+//! | ‖T‖₂ | largest factor by which one bounce can multiply the area norm | [`norm_2`] |
 //!
-//! Only eigenvalues outside the [essential band](super::edges) belong to the scene; those inside belong to the mesh.
+//! Only eigenvalues outside the [essential band](super::edges) are properties of the scene; those inside depend on the mesh.
 //!
 //! Reference: Parlett, *The Symmetric Eigenvalue Problem* (1980), chapter 4; Varga, *Matrix Iterative Analysis* (1962), 2.2.
 
@@ -23,20 +23,20 @@ use super::matrix::{LinearOperator, PatchOperator, Rows};
 /// One eigenvalue with its mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// λ.
+    /// The eigenvalue λ.
     pub value: f64,
-    /// u, one value per patch; ‖u‖_w = 1, its largest value positive.
+    /// The mode u, one value per patch, with ‖u‖_w = 1; the value of largest magnitude is positive.
     pub vector: Vec<f64>,
-    /// ‖T u − λ u‖_w.
+    /// The residual ‖T u − λ u‖_w.
     pub residual: f64,
 }
 
-/// The spectrum of one channel.
+/// The spectrum of one colour channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
-    /// Every eigenvalue on the patches that reflect, by falling magnitude.
+    /// All eigenvalues on the patches with ρ > 0, by decreasing magnitude.
     pub values: Vec<f64>,
-    /// The first of them with their modes.
+    /// The first of these eigenvalues, with their modes.
     pub leading: Vec<Mode>,
 }
 
@@ -53,7 +53,7 @@ impl Modes {
         let on: Vec<usize> = (0..t.len()).filter(|&i| t.rho[i] > 0.0).collect();
         let weight = |i: usize| (t.area()[i] / t.rho[i]).sqrt();
         let s = |a: usize, b: usize| t.entry(on[a], on[b]) * weight(on[a]) / weight(on[b]);
-        // entries are rounded to single precision one by one: the mean of both is symmetric
+        // each entry is rounded to single precision separately; the mean of the two is symmetric
         let (values, vectors) = symmetric_eigen(on.len(), |a, b| 0.5 * (s(a, b) + s(b, a)));
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[b].abs().total_cmp(&values[a].abs()).then(values[b].total_cmp(&values[a])));
@@ -74,10 +74,10 @@ impl Modes {
     }
 }
 
-/// Eigenvalues, and entry a of eigenvector j.
+/// The eigenvalues, and a function (a, j) ↦ entry a of eigenvector j.
 type Eigen = (Vec<f64>, Box<dyn Fn(usize, usize) -> f64>);
 
-/// Of a symmetric matrix.
+/// Eigenvalues and eigenvectors of a symmetric matrix.
 #[cfg(feature = "faer")]
 fn symmetric_eigen(n: usize, entry: impl Fn(usize, usize) -> f64) -> Eigen {
     use faer::{Mat, Side};
@@ -101,10 +101,11 @@ fn by_nalgebra(n: usize, entry: impl Fn(usize, usize) -> f64) -> Eigen {
     (eigen.eigenvalues.iter().copied().collect(), Box::new(move |a, j| eigen.eigenvectors[(a, j)]))
 }
 
-/// Lower and upper bound of r(T) from v = T^steps 1: the Rayleigh quotient of v, and maxᵢ (T v)ᵢ/vᵢ.
+/// Lower and upper bound of the spectral radius r(T), from v = T^(steps + 1) 1: the Rayleigh quotient of v, and maxᵢ (T
+/// v)ᵢ/vᵢ.
 ///
-/// The upper bound holds for the matrix as it is stored, whatever T; the lower one as far as A F is symmetric, 1e-7 for
-/// entries in single precision.
+/// The upper bound holds for the stored matrix, whatever T is. The lower bound holds as far as the stored A F is symmetric:
+/// to about 1e-7, because entries are in single precision.
 ///
 /// ```
 /// use fredholm::operator::{form_factor::FormFactors, matrix::PatchOperator, modes::radius_bounds};
@@ -119,7 +120,7 @@ pub fn radius_bounds(t: &PatchOperator<'_>, steps: usize) -> [f64; 2] {
         std::mem::swap(&mut v, &mut y);
         let largest = v.iter().copied().fold(0.0, f64::max);
         if largest == 0.0 {
-            return [0.0; 2]; // nothing comes back: all eigenvalues are 0
+            return [0.0; 2]; // no light returns: all eigenvalues are 0
         }
         v.iter_mut().for_each(|v| *v /= largest);
     }
@@ -128,8 +129,8 @@ pub fn radius_bounds(t: &PatchOperator<'_>, steps: usize) -> [f64; 2] {
     [t.weighted_inner(&v, &y) / t.weighted_inner(&v, &v), gain]
 }
 
-/// ‖T‖₂ = √r(T*T) in the area inner product, by power iteration: a lower bound that rises to it, to the relative change
-/// `tolerance` per step, in at most `max_steps` steps.
+/// ‖T‖₂ = √r(T*T) in the area inner product, by power iteration. The result is a lower bound that increases towards ‖T‖₂.
+/// The iteration ends when the relative change per step is at most `tolerance`, or after `max_steps` steps.
 pub fn norm_2(t: &impl LinearOperator, tolerance: f64, max_steps: usize) -> f64 {
     let t = Expression::from(t);
     let back = t.adjoint();

@@ -1,11 +1,11 @@
-//! The scene from both ends: particles from its lights, and densities for paths found from either.
+//! The adjoint for a scene: walks from its lights, and the densities of paths that are built from both ends.
 //!
-//! | from | to | density per area of the next point y |
+//! | step from | distribution of directions or positions | density per area of the next point y |
 //! |---|---|---|
-//! | surface that emits | Lambertian, cos θ/π | `cos θ/π · cos θ_y/r²` |
-//! | point | uniform, 1/4π | `1/4π · cos θ_y/r²` |
-//! | direction, sky | uniform on a disk of the scene's radius R | `cos θ_y/πR²` |
-//! | surface | that of the BSDF | `p_ω · cos θ_y/r²` |
+//! | emitting surface | Lambertian, cos θ/π | `cos θ/π · cos θ_y/r²` |
+//! | point light | uniform, 1/4π | `1/4π · cos θ_y/r²` |
+//! | direction light, sky | uniform on a disk of the scene's radius R | `cos θ_y/πR²` |
+//! | surface | density p_ω of the BSDF sampling | `p_ω · cos θ_y/r²` |
 //!
 //! Reference: Veach (1997), ch. 8; Pharr, Jakob, Humphreys, *Physically Based Rendering* (3rd ed. 2016), ch. 16.
 
@@ -27,12 +27,12 @@ impl Role {
 }
 
 impl SceneTransport<'_> {
-    /// Whether light comes from there in parallel.
+    /// Returns true if light from this state arrives in parallel: a direction light or the sky.
     fn parallel(&self, at: &Vertex) -> bool {
         !at.on_surface() && !matches!(self.scene.light_of(at), Some(Light::Point { .. }))
     }
 
-    /// Unit direction from one state to another.
+    /// Unit direction from `at` to `to`.
     fn direction(&self, at: &Vertex, to: &Vertex) -> Vec3 {
         if self.parallel(to) {
             -to.omega
@@ -43,7 +43,7 @@ impl SceneTransport<'_> {
         }
     }
 
-    /// Solid angle at `at` per unit of the measure of `to`; 0 for what no ray hits.
+    /// Solid angle at `at` per unit of the measure of `to`; 0 for a light that no ray can hit.
     fn angle(&self, at: &Vertex, to: &Vertex, direction: Vec3) -> f32 {
         match to.side {
             ESCAPED => 1.0,
@@ -82,7 +82,8 @@ impl Adjoint for SceneTransport<'_> {
         let delta = d.delta.then_some(d.pdf);
         let density = match delta {
             Some(choice) => self.delta_density(at, &state, choice),
-            // of the pair of points, as every other strategy takes it; where rounding has turned it away, as it was drawn
+            // take the density for the pair of points, as every other strategy does; if rounding makes it zero, take the
+            // density of the sampled direction
             None => Some(self.toward(at, &state, role).density)
                 .filter(|density| *density > 0.0)
                 .unwrap_or_else(|| d.pdf * self.angle(at, &state, d.direction)),
@@ -117,7 +118,8 @@ impl Adjoint for SceneTransport<'_> {
     fn delta_density(&self, at: &Vertex, to: &Vertex, choice: f32) -> f32 {
         let direction = self.direction(at, to);
         let cos = at.n.dot(direction);
-        // a delta function of n² times projected solid angle is the same from both ends: its factor n² over the indices of both
+        // the delta function in n² times projected solid angle is the same from both ends (n: refractive index); `relative`
+        // is n² divided by the indices of both sides
         let relative = match self.scene.bsdf(at) {
             Bsdf::Dielectric(Dielectric::Smooth(glass)) if cos < 0.0 => glass.interface.eta,
             _ => 1.0,
@@ -150,12 +152,13 @@ impl Adjoint for SceneTransport<'_> {
 }
 
 impl SceneTransport<'_> {
-    /// Area of the disk that parallel light starts from.
+    /// Area of the disk from which parallel light starts.
     fn disk(&self) -> f32 {
         PI * self.scene.radius() * self.scene.radius()
     }
 
-    /// Light leaves its source: E cos θ/p is π E, 4π I, or πR² times what is parallel.
+    /// The first step of light from its source. The weight E cos θ/p is π E for a surface, 4π I for a point light of
+    /// intensity I, and πR² times the emission of parallel light.
     fn shine(&self, at: &Vertex, u: [f32; 4]) -> Option<AdjointStep<Vertex>> {
         let light = self.scene.light(at);
         let (o, d, weight) = match self.scene.light_of(at) {
@@ -178,14 +181,14 @@ impl SceneTransport<'_> {
 }
 
 impl Camera {
-    /// From the pinhole to a state, in `f64`: of the sky a direction.
+    /// The vector from the pinhole to a state, in `f64`; for the sky, a unit direction.
     fn toward(&self, t: &SceneTransport, at: &Vertex) -> DVec3 {
         if t.parallel(at) { -at.omega.as_dvec3() } else { at.p.as_dvec3() - self.origin }
     }
 
-    /// The pixel that sees a state, before anybody looks whether something hides it.
+    /// The pixel that sees a state if nothing blocks the view.
     pub(crate) fn see(&self, t: &SceneTransport, at: &Vertex) -> Option<Seen<Vertex>> {
-        // a point or a direction is never seen
+        // a camera never sees a point light or a direction light
         if !at.on_surface() && at.side != ESCAPED {
             return None;
         }
@@ -200,13 +203,14 @@ impl Camera {
         Vertex { p: self.origin.as_vec3(), n: Vec3::ZERO, ..Vertex::default() }
     }
 
-    /// Density with which a path starts at a state that some pixel sees, also where rounding puts it outside the picture.
+    /// Density with which a path starts at a state that some pixel sees. It is also valid if rounding puts the state just
+    /// outside the picture.
     pub(crate) fn start_density(&self, t: &SceneTransport, at: &Vertex) -> f32 {
         let d = self.toward(t, at);
         self.pixel(d).map_or(0.0, |(_, per_angle)| per_angle * angle(at, d))
     }
 
-    /// Whether nothing stands between the eye and what it would see.
+    /// Returns true if nothing blocks the view from the eye to the state.
     pub(crate) fn unhidden(&self, t: &SceneTransport, at: &Vertex) -> bool {
         let start = self.enter(self.toward(t, at).normalize());
         let (p, n) = if at.on_surface() {
@@ -219,7 +223,8 @@ impl Camera {
     }
 }
 
-/// Solid angle at the eye per unit of the measure of what lies in direction `d` from it; 0 for what no ray hits.
+/// Solid angle at the eye per unit of the measure of a state in direction `d` from the eye; 0 for a light that no ray can
+/// hit.
 fn angle(at: &Vertex, d: DVec3) -> f32 {
     match at.side {
         ESCAPED => 1.0,

@@ -1,4 +1,5 @@
-//! The factors of T for rays in a scene: f from the BSDF, cos θ from the direction, p from whoever drew it.
+//! The factors of T for rays in a scene: f from the BSDF, cos θ from the direction, p from the technique that sampled the
+//! direction.
 
 use super::kernel::{Factors, Kernel};
 use super::scene_transport::SceneTransport;

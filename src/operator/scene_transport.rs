@@ -1,17 +1,17 @@
-//! The continuous world: T sampled with rays in a scene.
+//! The continuous operator T, sampled with rays in a scene.
 //!
 //! `(T L)(x, ω) = ∫ f(x, ω' → ω) L(ray(x, ω'), −ω') cos θ' dω'`
 //!
-//! and for next-event estimation the same integral over the lights,
+//! For next-event estimation it is the same integral over the lights:
 //!
 //! `(T E)(x, ω) = ∫ f · E(y, y→x) · cos θ_x cos θ_y / r² · V(x, y) dA_y`.
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | f cos θ'/p | weight of [`SceneTransport::scatter`] | [`crate::scene::bsdf`] |
-//! | p_A | density of the light point, m⁻² | [`crate::scene::emitter`] |
-//! | p_ω = p_A r²/cos θ_y | the same in solid angle | `solid_angle` here |
-//! | V | nothing between | [`crate::scene::Scene::blocked`] |
+//! | f cos θ'/p | weight of a step of [`SceneTransport::scatter`] | [`crate::scene::bsdf`] |
+//! | p_A | density of the point y on the light, m⁻² | [`crate::scene::emitter`] |
+//! | p_ω = p_A r²/cos θ_y | the same density per solid angle, sr⁻¹ | `solid_angle` here |
+//! | V | 1 if nothing blocks the segment between x and y, else 0 | [`crate::scene::Scene::blocked`] |
 
 use super::form_factor::Visibility;
 use super::patches::SurfacePoint;
@@ -24,26 +24,26 @@ use crate::scene::{connection, offset_origin, segment, solid_angle};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
-/// A scene, and how its directions are drawn.
+/// A scene with the method of sampling directions in it.
 #[derive(Clone, Copy)]
 pub struct SceneTransport<'a> {
     /// The surfaces and lights.
     pub scene: &'a Scene,
-    /// How [`Transport::scatter`] draws directions.
+    /// Distribution from which [`Transport::scatter`] samples directions.
     pub sampling: Sampling,
 }
 
-/// Next-event estimation from x to the light point y, before visibility.
+/// Next-event connection from x to the light point y, without the visibility test.
 #[derive(Clone, Copy)]
 pub(crate) struct Connection {
     cos_x: f32,
-    /// Density of y in solid angle at x.
+    /// Density of y per solid angle at x.
     pdf: f32,
-    /// cos θ_x/(π·pdf): the weight for albedo 1, and 0 where a cosine is not positive.
+    /// cos θ_x/(π·pdf): the weight for albedo 1. It is 0 if one of the cosines is not positive.
     factor: f32,
 }
 
-/// `f cos θ_x cos θ_y / (r² p_A)` with f = 1/π, by way of the density in solid angle.
+/// `f cos θ_x cos θ_y / (r² p_A)` with f = 1/π, computed from the density per solid angle.
 #[inline(always)]
 pub(crate) fn connect_to(x: Vec3, n: Vec3, y: Vec3, m: Vec3, density: f32) -> Connection {
     let (_, r2, cos_x, cos_y) = connection(x, n, y, m);
@@ -54,16 +54,16 @@ pub(crate) fn connect_to(x: Vec3, n: Vec3, y: Vec3, m: Vec3, density: f32) -> Co
 }
 
 impl<'a> SceneTransport<'a> {
-    /// The usual one: directions suit the surface.
+    /// The default transport of a scene: directions are sampled from the BSDF.
     pub fn new(scene: &'a Scene) -> Self {
         Self { scene, sampling: Sampling::Bsdf }
     }
 }
 
-/// A direction at a vertex, before anybody has looked along it.
+/// A direction sampled at a vertex; no ray has been traced yet.
 pub(super) struct Departure {
     pub(super) direction: Vec3,
-    /// The normal on the side it leaves by.
+    /// The normal on the side of the surface from which the ray leaves.
     pub(super) normal: Vec3,
     pub(super) weight: Rgb,
     pub(super) pdf: f32,
@@ -71,7 +71,7 @@ pub(super) struct Departure {
 }
 
 impl SceneTransport<'_> {
-    /// A direction at a vertex: nothing where the sample is zero.
+    /// Samples a direction at a vertex; `None` if the sample is zero.
     #[inline(always)]
     pub(super) fn depart(&self, at: &Vertex, mode: TransportMode, u: [f32; 4]) -> Option<Departure> {
         match self.scene.bsdf(at) {
@@ -89,7 +89,8 @@ impl SceneTransport<'_> {
         }
     }
 
-    /// f cos θ and the density of scattering, towards unit direction `to`; the normal on that side.
+    /// f cos θ, the density of scattering, and the normal on that side, for the unit direction `to`. `None` if f cos θ is
+    /// zero.
     #[inline(always)]
     pub(super) fn towards(&self, at: &Vertex, to: Vec3, mode: TransportMode) -> Option<(Rgb, f32, Vec3)> {
         let cos = at.n.dot(to);
@@ -108,9 +109,10 @@ impl SceneTransport<'_> {
         }
     }
 
-    /// The densities of scattering and of next-event estimation for what a ray from `at` has found, `drawn` having been the density of
-    /// its direction. Where both can find it, both are those of the pair of points, as a connection takes them: the ray started a
-    /// little off the surface, and weights of two points that differ by that would not add up to one.
+    /// The densities of scattering and of next-event estimation for the state `found` that a ray from `at` has hit; `drawn`
+    /// is the density with which the direction was sampled. If both techniques can find the state, both densities are
+    /// computed for the pair of points, as a connection computes them. The reason: the ray started a little off the surface,
+    /// and weights computed for two slightly different points would not sum to one.
     #[inline(always)]
     pub(crate) fn densities(&self, at: &Vertex, found: &Vertex, drawn: f32) -> (f32, f32) {
         let light = self.scene.light_pdf(at.p, found);
@@ -125,14 +127,14 @@ impl SceneTransport<'_> {
         (scatter.unwrap_or(drawn), light)
     }
 
-    /// The step that a ray makes when it arrives at `state`.
+    /// The step of a ray from `at` that arrives at `state`.
     #[inline(always)]
     pub(crate) fn step(&self, at: &Vertex, state: Vertex, weight: Rgb, pdf: f32, delta: bool) -> Step<Vertex> {
         let (pdf, other_pdf) = if delta { (pdf, 0.0) } else { self.densities(at, &state, pdf) };
         Step { state, weight, pdf, other_pdf }
     }
 
-    /// A connection before anybody has looked whether it is blocked, and the normal on its side: nothing where it is zero.
+    /// A connection without the visibility test, and the normal on its side; `None` if its contribution is zero.
     #[inline(always)]
     pub(crate) fn propose(&self, at: &Vertex, u: [f32; 4]) -> Option<(Step<Vertex>, Vec3)> {
         if self.scene.lights.is_empty() || !at.on_surface() {
@@ -140,7 +142,7 @@ impl SceneTransport<'_> {
         }
         let light = self.scene.sample_light(at, u)?;
         let (weight, scatter_pdf, normal) = match self.scene.bsdf(at) {
-            // the same products in the same order as in a wave
+            // the same products in the same order as in a wave, so that the bits agree
             Bsdf::Diffuse(Diffuse { reflectance }) => {
                 let cos = light.to.dot(at.n);
                 let weight = reflectance * (FRAC_1_PI * cos / light.pdf);
@@ -156,8 +158,9 @@ impl SceneTransport<'_> {
     }
 }
 
-/// Connections of a wave: light points in `rays.o`, `rays.d` (normals) and `rays.t` (densities) become shadow segments, with
-/// the weight for albedo 1 in `rays.t`, the cosine in `rays.cosine` and the density in `out.pdf`.
+/// Computes the connections of a wave. On entry `rays.o`, `rays.d` and `rays.t` hold the light points, their normals and
+/// their densities. On exit `rays.o` and `rays.d` are shadow segments, `rays.t` is the weight for albedo 1, `rays.cosine`
+/// the cosine at x, and `out.pdf` the density.
 #[pulp::with_simd(connections = pulp::Arch::new())]
 #[inline(always)]
 fn connections_with_simd<'a, S: pulp::Simd>(
@@ -235,7 +238,8 @@ impl Transport for SceneTransport<'_> {
         }
     }
 
-    /// Random numbers in bulk and shadow rays in packets, where the scene is small and flat; the same bits.
+    /// In a small scene of flat surfaces, this generates the random numbers in bulk and traces the shadow rays in packets.
+    /// The bits are the same.
     fn connect_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples) {
         if !self.scene.in_packets() {
             return transport::connect_one_by_one(self, wave, streams, out);
@@ -245,7 +249,8 @@ impl Transport for SceneTransport<'_> {
         self.connect_packets(wave, streams.len(), out, 1.0);
     }
 
-    /// Random numbers in bulk and rays in packets, where the scene is small and flat; the same bits.
+    /// In a small scene of flat surfaces, this generates the random numbers in bulk and traces the rays in packets. The bits
+    /// are the same.
     fn scatter_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
         if !self.scene.in_packets() || self.sampling == Sampling::Uniform {
             return transport::scatter_one_by_one(self, wave, streams, out, alive);
@@ -256,8 +261,8 @@ impl Transport for SceneTransport<'_> {
 }
 
 impl SceneTransport<'_> {
-    /// Connections of a wave to the light points in `wave.rays`, in packets. `share` is the part of the cosine in the density of
-    /// scattering.
+    /// Connects a wave to the light points in `wave.rays`, in packets. `share` is the probability of sampling by the cosine,
+    /// as a factor of the density of scattering.
     #[inline(always)]
     pub(crate) fn connect_packets(&self, wave: &mut VertexWave, n: usize, out: &mut Samples, share: f32) {
         connections(&wave.p, &wave.n, &mut wave.rays, out, n);
@@ -282,8 +287,8 @@ impl SceneTransport<'_> {
         }
     }
 
-    /// Scatters a wave by the numbers in `wave.rays.u`, in packets. `ratio(out, i)` is the density of number pair i over that of
-    /// the cosine, `share` the part of the cosine in it.
+    /// Scatters a wave with the random numbers in `wave.rays.u`, in packets. `ratio(out, i)` is the density of the i-th pair
+    /// of numbers divided by that of cosine sampling. `share` is the part of cosine sampling in that density.
     #[inline(always)]
     pub(crate) fn scatter_packets(
         &self,

@@ -1,13 +1,14 @@
-//! All surfaces of a scene as a sensor: ‖T^k E‖₁ is its mean.
+//! A sensor that covers all surfaces of a scene: the mean of its image of T^k E is ‖T^k E‖₁.
 
 use super::scene_transport::SceneTransport;
 use super::transport::Sensor;
 use crate::math::Rng;
 use crate::scene::{SurfaceSensor, Vertex};
 
-/// The surface sensor drawn as a strip of equal pixels, each of them the whole surface: more pixels, more threads.
+/// The surface sensor as a row of equal pixels. Every pixel samples the whole surface; with more pixels, more threads can
+/// work.
 pub struct SurfaceStrip {
-    /// What is seen.
+    /// The sensor that samples points on all surfaces.
     pub sensor: SurfaceSensor,
     /// Number of pixels.
     pub pixels: u32,

@@ -1,91 +1,99 @@
-//! T as something that can be sampled, one state at a time or a wave of states at once.
+//! T in a form that can be sampled, one state at a time or a wave (a batch of states) at once.
 //!
-//! `(T L)(x) = E[ weight · L(x') ]`, where x' is drawn by [`Transport::scatter`] from the kernel, or, where L = E, by
-//! [`Transport::connect`] from the support of E (next-event estimation).
+//! `(T L)(x) = E[ weight · L(x') ]`, where [`Transport::scatter`] samples x' from the kernel of T. If L = E,
+//! [`Transport::connect`] can sample x' from the support of E instead (next-event estimation).
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | x | state: where radiance is asked for, and in which direction it leaves | [`Transport::State`] |
+//! | x | state: a place and the direction in which radiance leaves it | [`Transport::State`] |
 //! | E(x) | emission | [`Transport::emission`] |
-//! | x → x', weight | one factor of T | [`Step`] |
-//! | p, p° | density of the technique used and of the other one, in one measure | [`Step::pdf`], [`Step::other_pdf`] |
+//! | x → x', weight | one sampled application of T | [`Step`] |
+//! | p, p° | densities of the technique that chose x' and of the other technique, in the same measure | [`Step::pdf`], [`Step::other_pdf`] |
 //!
-//! Estimators are written once over this trait. A scene implements it with rays, a matrix with a random walk on its rows
-//! (von Neumann and Ulam; Forsythe and Leibler 1950), where `T^k E` is known to rounding. Reference for the operators:
-//! Arvo, *Analytic Methods for Simulated Light Transport* (1995); Veach, *Robust Monte Carlo Methods* (1997), ch. 4.
+//! Every estimator is written once, for any type that implements this trait. A scene implements it with rays. A matrix
+//! implements it with a random walk on its rows (von Neumann and Ulam; Forsythe and Leibler 1950); there `T^k E` is known up
+//! to rounding. References for the operators: Arvo, *Analytic Methods for Simulated Light Transport* (1995); Veach, *Robust
+//! Monte Carlo Methods* (1997), ch. 4.
 
 use crate::math::{Columns, Rgb, Rng, Streams, columns};
 
-/// One sample of the kernel of T.
+/// One sample of the kernel of T: the new state, its weight and its densities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step<S> {
-    /// Where the walk goes, or where the connection ends.
+    /// The state x' to which the walk moves, or at which the connection ends.
     pub state: S,
-    /// Kernel over density.
+    /// Kernel of T divided by the density `pdf`.
     pub weight: Rgb,
     /// Density with which this technique chose `state`.
     pub pdf: f32,
-    /// Density with which the other technique would have chosen it, in the same measure; 0 if it could not: after a delta
-    /// vertex, or for a light without area.
+    /// Density with which the other technique would have chosen `state`, in the same measure. It is 0 if the other technique
+    /// cannot choose it: after a delta vertex, or for a light without area.
     pub other_pdf: f32,
 }
 
-/// T as something that can be sampled.
+/// The operator T in a form that can be sampled.
 pub trait Transport: Sync {
-    /// Where radiance is asked for.
+    /// A place and a direction for which the radiance is estimated.
     type State: Copy;
-    /// Many states; `Vec<State>` will do.
+    /// A batch of states; `Vec<State>` is sufficient.
     type Wave: Wave<Self::State>;
 
-    /// E(x): emission, exactly.
+    /// E(x): the exact emission at a state.
     fn emission(&self, at: &Self::State) -> Rgb;
-    /// Samples the kernel of T at `at`; nothing when the sample is zero (absorbed, or gone).
+    /// Samples the kernel of T at `at`. Returns `None` if the sample contributes zero, because the path was absorbed or left
+    /// the scene.
     fn scatter(&self, at: &Self::State, rng: &mut Rng) -> Option<Step<Self::State>>;
-    /// Samples the support of E; nothing when the sample is zero (blocked, facing away).
+    /// Samples the support of E: a next-event connection from `at`. Returns `None` if it contributes zero, because it is
+    /// blocked or an end faces away.
     fn connect(&self, at: &Self::State, rng: &mut Rng) -> Option<Step<Self::State>>;
-    /// A bound on (T 1)(x).
+    /// An upper bound on (T 1)(x), per channel.
     fn albedo(&self, at: &Self::State) -> Rgb;
 
-    /// 1 in the channels in which anything emits, 0 in the others: what a path carries at its start.
+    /// The throughput with which a path starts: 1 in every colour channel in which something emits, 0 in the others.
     fn lit(&self) -> Rgb {
         Rgb::ONE
     }
 
-    /// From which vertex on, and with which probability at least, a path ends that goes by its albedo or its throughput: where albedos
-    /// may be 1, and q is known to keep the variance finite.
+    /// A lower limit on the termination probability q, as `(vertex, q)`: from that vertex on, a path ends with probability
+    /// at least q. It applies to Russian roulette by albedo or by throughput, which may never end a path where albedos
+    /// are 1. `None` where it is not needed, or where no q is known that keeps the variance finite.
     fn last_resort(&self) -> Option<(usize, f32)> {
         None
     }
 
-    /// The probability that a walk is absorbed at `at`, where that is a property of the place; elsewhere roulette decides.
+    /// The probability that a walk is absorbed at `at`, if the transport defines one for each state. `None` if Russian
+    /// roulette decides.
     fn absorption(&self, _at: &Self::State) -> Option<f32> {
         None
     }
 
-    /// Whether [`Transport::connect`] finds all of E from every state: no delta vertices, so that hits need not be looked at.
+    /// Returns true if [`Transport::connect`] finds all of E from every state, which requires that no vertex is a delta
+    /// vertex. A light hit by scattering then need not be counted.
     fn connects_to_all(&self) -> bool {
         true
     }
 
-    /// `value[i] = E(state i)`. An override of this or the next two must give the same bits as the default.
+    /// Sets `value[i] = E(state i)` for i < `n`. An override of this method or of the next two must return the same bits as
+    /// the default.
     fn emission_wave(&self, wave: &mut Self::Wave, n: usize, value: &mut Columns) {
         for i in 0..n {
             value.set(i, self.emission(&wave.get(i)));
         }
     }
 
-    /// `out.value[i]` = one sample of (T E)(state i), with both densities; the states stay.
+    /// Sets `out.value[i]` to one sample of (T E)(state i), with both densities. The states do not change.
     fn connect_wave(&self, wave: &mut Self::Wave, streams: Streams, out: &mut Samples) {
         connect_one_by_one(self, wave, streams, out);
     }
 
-    /// State i moves on and `out.value[i]` is its weight; the indices of paths that live are pushed to `alive`, ascending.
+    /// Scatters every state i and stores the weight of the step in `out.value[i]`. The new state replaces the old one. The
+    /// indices of the paths that continue are pushed to `alive` in ascending order.
     fn scatter_wave(&self, wave: &mut Self::Wave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
         scatter_one_by_one(self, wave, streams, out, alive);
     }
 }
 
-/// The default of [`Transport::connect_wave`].
+/// Default implementation of [`Transport::connect_wave`]: one state after the other.
 pub(crate) fn connect_one_by_one<T: Transport + ?Sized>(
     t: &T,
     wave: &mut T::Wave,
@@ -100,7 +108,7 @@ pub(crate) fn connect_one_by_one<T: Transport + ?Sized>(
     }
 }
 
-/// The default of [`Transport::scatter_wave`].
+/// Default implementation of [`Transport::scatter_wave`]: one state after the other.
 pub(crate) fn scatter_one_by_one<T: Transport + ?Sized>(
     t: &T,
     wave: &mut T::Wave,
@@ -117,15 +125,16 @@ pub(crate) fn scatter_one_by_one<T: Transport + ?Sized>(
     }
 }
 
-/// Many states.
+/// A batch of states.
 pub trait Wave<S>: Default + Send {
-    /// Room for `n` states.
+    /// Changes the number of states to `n`.
     fn resize(&mut self, n: usize);
-    /// State `i`.
+    /// Returns state `i`.
     fn get(&self, i: usize) -> S;
     /// Replaces state `i`.
     fn set(&mut self, i: usize, state: S);
-    /// Stable compaction: state `j` becomes the old state `indices[j]`, ascending.
+    /// Keeps only the states listed in `indices` (ascending), in the same order: state `j` becomes the old state
+    /// `indices[j]`.
     fn keep(&mut self, indices: &[u32]);
 }
 
@@ -144,19 +153,19 @@ impl<S: Copy + Default + Send> Wave<S> for Vec<S> {
     }
 }
 
-/// What a batched method gives back for each path.
+/// Results of a batched method: one value and two densities per path.
 #[derive(Clone, Debug, Default)]
 pub struct Samples {
-    /// A radiance or a weight.
+    /// A radiance or a weight, per path.
     pub value: Columns,
-    /// Density of the technique used.
+    /// Density of the technique that chose the sample.
     pub pdf: Vec<f32>,
-    /// Density of the other technique.
+    /// Density of the other technique for the same sample.
     pub other_pdf: Vec<f32>,
 }
 
 impl Samples {
-    /// Room for `n`.
+    /// Room for the results of `n` paths.
     pub fn new(n: usize) -> Self {
         Self { value: Columns::new(n), pdf: vec![1.0; n], other_pdf: vec![0.0; n] }
     }
@@ -170,44 +179,45 @@ impl Samples {
     }
 }
 
-/// A state as a sensor sees it.
+/// A state projected onto a sensor: the pixel that sees it, its importance and its density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen<S> {
-    /// By which pixel.
+    /// Number of the pixel that sees the state.
     pub pixel: u32,
-    /// Stands for the sensor where a state's neighbour is asked for.
+    /// A state at the position of the sensor, for methods that need the neighbour of a state.
     pub eye: S,
-    /// W over the cosine at the state, with the geometry between.
+    /// Importance W divided by the cosine at the state; the geometry between sensor and state is included.
     pub importance: f32,
-    /// Density with which a path of that pixel starts there, in the measure of the state.
+    /// Density with which a path of that pixel starts at the state, in the measure of the state.
     pub density: f32,
 }
 
-/// Where paths start, over any transport: one state per (pixel, sample), or nothing where radiance is zero.
+/// The starts of paths, for any transport: one state per pair (pixel, sample), or `None` where the radiance is zero.
 pub trait Sensor<T: Transport>: Sync {
-    /// Width and height; pixels are numbered row by row.
+    /// Width and height in pixels; pixels are numbered row by row.
     fn size(&self) -> [u32; 2];
-    /// The start of one path.
+    /// Samples the first state of one path of `pixel`.
     fn start(&self, t: &T, pixel: u32, rng: &mut Rng) -> Option<T::State>;
-    /// The pixel that sees a state, were nothing between; nothing for a sensor that light cannot be led to.
+    /// The pixel that sees a state if nothing blocks the view. `None` if no pixel does, or if paths from the light cannot be
+    /// connected to this sensor.
     fn project(&self, _t: &T, _at: &T::State) -> Option<Seen<T::State>> {
         None
     }
-    /// Density with which a path of the pixel that sees it starts at a state, in the measure of the state.
+    /// Density with which a path starts at a state, for the pixel that sees it, in the measure of the state.
     fn density(&self, t: &T, at: &T::State) -> f32 {
         self.project(t, at).map_or(0.0, |seen| seen.density)
     }
-    /// Whether nothing stands between the sensor and a state that it projects to a pixel.
+    /// Returns true if nothing blocks the view from the sensor to a state that [`Sensor::project`] maps to a pixel.
     fn sees(&self, _t: &T, _at: &T::State) -> bool {
         true
     }
-    /// The starts of a wave; indices of those that exist are pushed to `alive`, ascending.
+    /// Samples the first states of a wave. The indices of the paths that have one are pushed to `alive` in ascending order.
     fn start_wave(&self, t: &T, wave: &mut T::Wave, streams: Streams, alive: &mut Vec<u32>) {
         start_one_by_one(self, t, wave, streams, alive);
     }
 }
 
-/// The default of [`Sensor::start_wave`].
+/// Default implementation of [`Sensor::start_wave`]: one path after the other.
 pub(crate) fn start_one_by_one<T: Transport, W: Sensor<T> + ?Sized>(
     sensor: &W,
     t: &T,

@@ -1,4 +1,4 @@
-//! What can go wrong when a result is written or read back: the file, the cause, and what to do.
+//! Errors when a result is written, read or drawn: the file, the cause, and what to do next.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 pub struct ReportError {
     /// The file (or the name of the figure) concerned.
     pub path: PathBuf,
-    /// What happened.
+    /// Cause of the error.
     pub cause: String,
     /// What to do next.
     pub help: String,

@@ -1,4 +1,4 @@
-//! Files appear whole or not at all.
+//! Files are written completely or not at all.
 
 use std::{fs, path::Path};
 
@@ -16,7 +16,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
     };
     let temporary = path.with_file_name(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));
     fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, path)).map_err(|e| {
-        // The first error is the one to report; what is left of the temporary file is of no use.
+        // Report the first error. The rest of the temporary file is useless.
         let _ = fs::remove_file(&temporary);
         ReportError::new(path, e, HELP)
     })

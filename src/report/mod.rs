@@ -1,18 +1,19 @@
-//! What a reader sees: pictures, plots, tables, and the files that hold them.
+//! Output for readers: pictures, plots, tables, and the files that contain them.
 //!
-//! Everything here consumes plain data and returns plain data or a file. Nothing upstream imports from this folder,
-//! nothing here prints, and equal input gives equal bytes: no time stamps, no system fonts, no hash order.
+//! Everything in this folder takes plain data and returns plain data or writes a file. No module outside it and `cli`
+//! imports from it, and nothing here prints. Equal input gives equal bytes: the files contain no time stamps, no system
+//! fonts and no hash order.
 //!
 //! ```text
 //! text → image → plot → figures → page
 //! ```
 //!
-//! | folder | makes |
+//! | folder | contents |
 //! |---|---|
 //! | [`text`] | tables for the terminal and the book, CSV, `summary.json` |
-//! | [`image`] | EXR, PNG, sheets of pictures with words |
+//! | [`image`] | EXR, PNG, sheets of pictures with labels |
 //! | [`plot`] | axes, marks and curves: the parts of a figure |
-//! | [`figures`] | what belongs to one study: its figure, its table, its CSV |
+//! | [`figures`] | for each study its figure, its table and its CSV |
 //! | [`page`] | `index.html` |
 //!
 //! | file | module |
@@ -24,17 +25,17 @@
 //! | `bias.svg`, `equilibrium.svg` and their PNGs | [`figures::watch`], [`figures::equilibrium`] |
 //! | `variance.svg` of a sweep over spp | [`figures::sweep::fall`] |
 //! | `covariance.svg`, `split.csv` | [`figures::split`] |
-//! | sheets of one image as it grows | [`figures::stages`] |
+//! | contact sheets of one image after more and more paths | [`figures::stages`] |
 //! | `roulette.csv`, `roulette.svg`, and its table | [`figures::roulette`] |
 //! | `diagnosis.svg` | [`figures::diagnosis`] |
 //! | `NAME-ratios.svg` of the zoo and its PNG | [`figures::signature`] |
-//! | which `_se` layers can be trusted | [`text::pixel_errors`] |
+//! | list of the `_se` layers that can be trusted | [`text::pixel_errors`] |
 //! | `summary.json` | [`text::summary`] |
 //! | `modes.svg`, `modes-painted.png` | [`figures::modes`] |
 //! | `eigenvalues.svg`, `eigenvalues.csv` of a sweep over patches | [`figures::drift`] |
 //! | `mesh.csv`, `norms.csv`, `F.npy` | [`figures::patches`] |
 //! | `solvers.svg`, its PNG, `history.csv` | [`figures::solvers`] |
-//! | the whole from its first terms | [`figures::extrapolation`] |
+//! | the whole image extrapolated from its first terms | [`figures::extrapolation`] |
 //! | `index.html` | [`page::html`] |
 
 mod error;

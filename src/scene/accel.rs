@@ -1,8 +1,8 @@
-//! The first surface on a ray, and whether a segment is free.
+//! Ray tracing with a tree of boxes: the first surface on a ray, and a test whether a segment is free.
 //!
-//! Wraps the `obvhs` crate's two-wide BVH over [`Shape`](super::shape::Shape)s. Its compressed wide BVH is faster on large
-//! meshes but loses hits on axis-aligned boxes, so it is not used. Ties go to the primitive with the lower number, whatever
-//! the order of traversal.
+//! The module wraps the two-wide BVH of the crate `obvhs` over [`Shape`](super::shape::Shape)s. The crate's compressed wide
+//! BVH is faster on large meshes but loses hits on axis-aligned boxes, so it is not used. If two primitives are hit at the
+//! same distance, the one with the lower number is returned, whatever the order of traversal.
 
 use super::rounding::{EPSILON, WIDER};
 use super::shape::{Hit, Shape};
@@ -14,17 +14,18 @@ pub(crate) struct Accel {
     bvh: Bvh2,
 }
 
-/// The box around a primitive, so wide that the rounding of its own test never loses a hit: 4 ε of every coordinate that a ray may
-/// start from, and what hits may reach over the edges of the primitive. `farthest` is the largest coordinate of the scene.
+/// The bounding box of a primitive, enlarged so that the rounding of the box test never loses a hit. The margin is 4 ε times
+/// the largest coordinate from which a ray may start, plus the distance by which hits may lie beyond the edges of the
+/// primitive. `farthest` is the largest coordinate of the scene, `touch` the distance at which two corners count as one.
 pub(crate) fn widened([low, high]: [DVec3; 2], farthest: f64, touch: f64) -> [Vec3; 2] {
     let most = low.abs().max(high.abs());
-    // rays start at most three scenes away
+    // rays start at most three scene sizes away
     let by = 32.0 * EPSILON * most + 16.0 * EPSILON * farthest + touch + 2.0 * WIDER * (high - low);
     [(low - by).as_vec3(), (high + by).as_vec3()]
 }
 
 impl Accel {
-    /// `bounds` are those of the shapes, [`widened`].
+    /// Builds the tree; `bounds` are the [`widened`] boxes of the shapes.
     pub(crate) fn new(shapes: Vec<Shape>, bounds: &[[Vec3; 2]]) -> Self {
         let boxes: Vec<Aabb> = bounds.iter().map(|b| Aabb::new(b[0].into(), b[1].into())).collect();
         let bvh = obvhs::bvh2::builder::build_bvh2(
@@ -35,7 +36,7 @@ impl Accel {
         Self { shapes, bvh }
     }
 
-    /// The nearest hit with t > 0.
+    /// The nearest hit with t > 0 on the ray `o + t·d`.
     #[inline(always)]
     pub(crate) fn closest(&self, o: Vec3, d: Vec3) -> Hit {
         let mut best = Hit::NONE;
@@ -45,7 +46,7 @@ impl Accel {
             let (t, met) = self.shapes[prim as usize].meet(o, d);
             if met && (t < best.t || (t == best.t && prim < best.prim)) {
                 best = Hit { t, prim };
-                // a hair more than t, so that a tie with a lower number is still visited
+                // slightly more than t, so that a hit at the same t with a lower number is still visited
                 return t * (1.0 + 1e-6);
             }
             f32::INFINITY
@@ -53,7 +54,7 @@ impl Accel {
         best
     }
 
-    /// Whether anything lies on `o + t·d`, 0 < t < 1.
+    /// Returns true if a primitive lies on `o + t·d` with 0 < t < 1.
     #[inline(always)]
     pub(crate) fn occluded(&self, o: Vec3, d: Vec3) -> bool {
         !self.bvh.ray_traverse_miss(Ray::new(o.into(), d.into(), 0.0, 1.0), |_, i| {

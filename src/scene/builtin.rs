@@ -1,11 +1,11 @@
-//! The scenes that travel inside the binary: the files of `scenes/`, one constant each.
+//! The built-in scenes: the files of `scenes/`, embedded in the program.
 
 /// A scene file embedded in the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Builtin {
-    /// What the command line calls it.
+    /// The name on the command line.
     pub name: &'static str,
-    /// One line on what it shows.
+    /// A description in one line.
     pub summary: &'static str,
     /// The text of `scenes/<name>.toml`.
     pub source: &'static str,
@@ -15,12 +15,12 @@ pub struct Builtin {
 pub const ALL: [Builtin; 14] = [
     Builtin {
         name: "cornell",
-        summary: "a Cornell box of quads and two blocks, colours bleeding",
+        summary: "a Cornell box of quads with two blocks: colour bleeding between the walls",
         source: include_str!("../../scenes/cornell.toml"),
     },
     Builtin {
         name: "furnace",
-        summary: "a closed box where every surface glows and reflects half: T^k E = 0.5^k everywhere",
+        summary: "a closed box where every surface emits and has albedo 0.5: T^k E = 0.5^k everywhere",
         source: include_str!("../../scenes/furnace.toml"),
     },
     Builtin {
@@ -40,32 +40,32 @@ pub const ALL: [Builtin; 14] = [
     },
     Builtin {
         name: "veach-mis",
-        summary: "glossy plates under lamps of equal power and unequal size: combined techniques",
+        summary: "glossy plates under lamps of equal power, unequal size: multiple importance sampling",
         source: include_str!("../../scenes/veach-mis.toml"),
     },
     Builtin {
         name: "veach-ajar",
-        summary: "a room lit only through a door ajar: a long series, the lamp out of sight",
+        summary: "a room lit through a slightly open door: the lamp is hidden and the series is long",
         source: include_str!("../../scenes/veach-ajar.toml"),
     },
     Builtin {
         name: "env-ggx",
-        summary: "gold, copper and plastic under a sky and a point light: GGX at four widths",
+        summary: "gold, copper and plastic under a sky and a point light: GGX at four roughnesses",
         source: include_str!("../../scenes/env-ggx.toml"),
     },
     Builtin {
         name: "caustic",
-        summary: "a glass sphere focuses a small lamp: easy from the light, hard from the eye",
+        summary: "a glass sphere focuses a small lamp: easy to sample from the light, hard from the eye",
         source: include_str!("../../scenes/caustic.toml"),
     },
     Builtin {
         name: "glass-furnace",
-        summary: "a glass ball in a sky of radiance 1: every pixel sums to 1, terms known",
+        summary: "a glass ball in a sky of radiance 1: every pixel sums to 1, and all terms are known",
         source: include_str!("../../scenes/glass-furnace.toml"),
     },
     Builtin {
         name: "mirror-corridor",
-        summary: "two parallel mirrors of 0.9: T^k E decays slowly",
+        summary: "two parallel mirrors of reflectance 0.9: T^k E decays slowly",
         source: include_str!("../../scenes/mirror-corridor.toml"),
     },
     Builtin {
@@ -75,12 +75,12 @@ pub const ALL: [Builtin; 14] = [
     },
     Builtin {
         name: "many-lights",
-        summary: "96 lamps from 0.01 to 10 W: choosing lights by power or uniformly",
+        summary: "96 lamps from 0.01 to 10 W: light selection by power or uniform",
         source: include_str!("../../scenes/many-lights.toml"),
     },
     Builtin {
         name: "cube",
-        summary: "a closed cube under a glowing ceiling: means of L and r(T) known without patches",
+        summary: "a closed cube with an emitting ceiling: means of L and r(T) known without a mesh",
         source: include_str!("../../scenes/cube.toml"),
     },
 ];
@@ -100,7 +100,7 @@ pub fn names() -> &'static [&'static str] {
     &NAMES
 }
 
-/// The built-in scene of that name.
+/// The built-in scene with this name.
 ///
 /// ```
 /// assert!(fredholm::scene::builtin::find("cornell").is_some());

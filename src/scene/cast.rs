@@ -1,30 +1,31 @@
-//! Rays in a scene: G of T = K G. One ray, a packet, or a wave of them; what is seen, and whether anything stands between.
+//! Rays in a scene: the operator G of T = K G, for single rays, packets and waves. A ray gives the first visible surface; a
+//! segment is tested for occlusion.
 
 use super::vertex::{Rays, Vertex};
 use super::{Scene, packets, rounding::offset_origin, rounding::segment, shape};
 use glam::Vec3;
 
 impl Scene {
-    /// The first surface seen from `o` in unit direction `d`, or nothing.
+    /// The first surface hit from `o` in the unit direction `d`; `None` if there is none.
     #[inline(always)]
     pub fn trace(&self, o: Vec3, d: Vec3) -> Option<Vertex> {
         let hit = self.accel.closest(o, d);
         (hit.prim != u32::MAX).then(|| self.arrive(o, d, hit))
     }
 
-    /// The first surface seen from `o` in unit direction `d`, or the sky if there is one.
+    /// The first surface hit from `o` in the unit direction `d`, or the sky if nothing is hit and the scene has one.
     #[inline(always)]
     pub fn look(&self, o: Vec3, d: Vec3) -> Option<Vertex> {
         let seen = self.trace(o, d);
         if seen.is_none() && self.has_environment() { Some(Vertex::escaped(self.beyond(o, d), d)) } else { seen }
     }
 
-    /// Whether waves are traced in packets.
+    /// Returns true if waves are traced in packets of rays.
     pub(crate) fn in_packets(&self) -> bool {
         self.packets
     }
 
-    /// This scene without packets, for tests: the plain twin.
+    /// The same scene without packets: the reference with which tests compare them.
     #[doc(hidden)]
     #[must_use]
     pub fn one_by_one(mut self) -> Self {
@@ -32,7 +33,8 @@ impl Scene {
         self
     }
 
-    /// The first surfaces seen along the first `n` rays of a wave; `at(i, vertex)` is called in order for rays that see one.
+    /// Traces the first `n` rays of a wave in packets. `at(i, vertex)` is called, in ascending order of i, for every ray
+    /// that hits a surface.
     #[inline(always)]
     pub(crate) fn trace_packets(&self, rays: &mut Rays, n: usize, mut at: impl FnMut(usize, Vertex)) {
         packets::closest(&self.accel.shapes, rays, n);
@@ -43,13 +45,14 @@ impl Scene {
         }
     }
 
-    /// For each ray named by the first `n` of `rays.list`: `rays.prim[ray] = 1` if its segment is blocked, else 0.
+    /// Tests the segments of the rays in the first `n` entries of `rays.list`: sets `rays.prim[ray]` to 1 if the segment is
+    /// blocked, else to 0.
     #[inline(always)]
     pub(crate) fn block_packets(&self, rays: &mut Rays, n: usize) {
         packets::occluded(&self.accel.shapes, rays, n);
     }
 
-    /// [`Scene::trace_packets`], or one by one where packets do not suit the scene.
+    /// The same as [`Scene::trace_packets`], but traces rays one by one if the scene is not traced in packets.
     pub(crate) fn trace_wave(&self, rays: &mut Rays, n: usize, mut at: impl FnMut(usize, Vertex)) {
         if self.packets {
             return self.trace_packets(rays, n, at);
@@ -61,7 +64,7 @@ impl Scene {
         }
     }
 
-    /// [`Scene::block_packets`], or one by one where packets do not suit the scene.
+    /// The same as [`Scene::block_packets`], but tests segments one by one if the scene is not traced in packets.
     pub(crate) fn block_wave(&self, rays: &mut Rays, n: usize) {
         if self.packets {
             return self.block_packets(rays, n);
@@ -81,13 +84,15 @@ impl Scene {
         Vertex { p, n: if back { -n } else { n }, omega: -d, side: 2 * hit.prim + u32::from(back) }
     }
 
-    /// Where a ray that leaves `p` on the side of `n` starts: off the surface by the bound on its error.
+    /// Start of a ray that leaves `p` on the side of the normal `n`: the point is moved off the surface by the bound on its
+    /// error.
     #[inline(always)]
     pub fn offset_origin(p: Vec3, n: Vec3) -> Vec3 {
         offset_origin(p, n)
     }
 
-    /// Whether the segment from `p` to `q` is blocked; both ends are lifted off their surfaces.
+    /// Returns true if the segment from `p` to `q` is blocked. Both ends are moved off their surfaces along the normals `n`
+    /// and `m`.
     #[inline(always)]
     pub fn blocked(&self, p: Vec3, n: Vec3, q: Vec3, m: Vec3) -> bool {
         let (o, d) = segment(p, n, q, m);

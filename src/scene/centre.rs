@@ -1,63 +1,64 @@
-//! A scene about a point in its middle, so that single precision is spent on the scene and not on where it stands.
+//! A scene in coordinates about its middle, so that single precision resolves the scene well wherever it lies in the file's
+//! coordinates.
 //!
 //! ```text
-//! x' = (x − a) − c        a: the least coordinates of the scene's points        c: the middle of what is left
+//! x' = (x − a) − c        a: the smallest coordinates of the scene's points        c: the middle after subtraction of a
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | x | a point in the coordinates of the file, `f64` | [`Description`] |
-//! | x' | the same for rays and patches | [`Scene`](super::Scene), [`Patches`](crate::operator::patches::Patches) |
-//! | a + c | where x' = 0 lies in the file | [`Centred::origin`] |
-//! | η | how far rounding x' to `f32` moves a point of a shape, over the shape's least height | [`Coarse`] |
+//! | x' | the same point in the coordinates of rays and patches | [`Scene`](super::Scene), [`Patches`](crate::operator::patches::Patches) |
+//! | a + c | position of x' = 0 in the coordinates of the file | [`Centred::origin`] |
+//! | η | largest movement of a point of a shape when x' is rounded to `f32`, divided by the shape's smallest height | [`Coarse`] |
 //!
-//! Both differences are taken point by point: a scene moved by a vector that `f64` holds exactly has the same x', bit for bit. Where
-//! the middle of the scene would round some shape by more than 10⁻⁶ of its height, c is the middle of that shape: a lamp of 2 cm
-//! keeps its size beside a ground of 20 km.
+//! Both differences are computed point by point. So a scene that is moved by a vector which `f64` holds exactly has the same
+//! x', bit for bit. If x' about the middle of the scene would give some shape an η above 10⁻⁶, c is the middle of that
+//! shape, provided this reduces the largest η. A lamp of 2 cm then keeps its size next to a ground of 20 km.
 //!
-//! Corners of meshes that differ by no more than the rounding of the file's own coordinates become one, coordinate by
-//! coordinate, so that triangles of different shapes that share an edge share it to the last bit.
+//! Corners of meshes that differ by no more than the rounding of the file's coordinates are made equal, coordinate by
+//! coordinate. Triangles of different shapes that share an edge then share it to the last bit.
 
 use super::description::{Description, Geometry, LightDescription};
 use super::rounding::EPSILON;
 use glam::DVec3;
 
-/// A scene about its middle.
+/// A scene in coordinates about its middle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Centred {
-    /// The scene; its points are relative to [`Self::origin`].
+    /// The scene; all its points are relative to [`Self::origin`].
     pub scene: Description,
-    /// The middle, in the coordinates of the file.
+    /// The middle of the scene, in the coordinates of the file, m.
     pub origin: DVec3,
-    /// By how much two corners that are meant to be one may differ, m: the rounding of the file's coordinates.
+    /// Largest difference of two corners that are meant to be the same, m: the rounding of the file's coordinates.
     pub touch: f64,
 }
 
-/// A shape that single precision rounds.
+/// Effect of rounding to single precision on one shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coarse {
-    /// Its number.
+    /// Index of the shape.
     pub shape: usize,
-    /// How far a point of it moves, m.
+    /// Largest distance by which a point of the shape moves, m.
     pub moved: f64,
-    /// Its least height, m.
+    /// Smallest height of the shape, m.
     pub height: f64,
 }
 
 impl Coarse {
-    /// η.
+    /// η: movement divided by height.
     pub fn share(&self) -> f64 {
         self.moved / self.height
     }
 }
 
-/// A shape is refused where rounding moves one of its points by more than this part of its least height.
+/// Largest η of an accepted shape; the loader refuses a shape with a larger one.
 pub const TOO_COARSE: f64 = 1e-4;
-/// Up to this share the middle of the scene will do.
+/// Largest η at which the middle of the scene is used as the origin.
 const FINE: f64 = 1e-6;
 
 impl Description {
-    /// The scene about its middle.
+    /// The scene in coordinates about its middle.
     ///
     /// ```
     /// use fredholm::scene::load;
@@ -89,7 +90,7 @@ impl Description {
         Centred { scene, origin: least + origin, touch }
     }
 
-    /// The shape that `f32` coordinates about `origin` round most, relative to its height.
+    /// The shape with the largest η for `f32` coordinates about `origin`; `None` if there are no shapes.
     pub fn coarsest(&self, origin: DVec3) -> Option<Coarse> {
         let all = self.shapes.iter().enumerate().map(|(shape, s)| {
             let (moved, height) = s.geometry.rounding(origin);
@@ -113,7 +114,7 @@ impl Description {
         }
     }
 
-    /// Coordinates of mesh corners that differ by no more than `touch` become equal.
+    /// Makes coordinates of mesh corners equal if they differ by no more than `touch`.
     fn weld(&mut self, touch: f64) {
         for axis in 0..3 {
             let mut all: Vec<&mut f64> = vec![];
@@ -140,7 +141,7 @@ fn middle(bounds: impl Iterator<Item = [DVec3; 2]>) -> DVec3 {
 }
 
 impl Geometry {
-    /// The points that a file gives for it.
+    /// The points that a file gives for this geometry.
     fn points(&self) -> Vec<DVec3> {
         match self {
             Self::Mesh { vertices, faces, .. } => faces.iter().flatten().map(|i| vertices[*i as usize]).collect(),
@@ -166,8 +167,9 @@ impl Geometry {
         }
     }
 
-    /// How far `f32` coordinates about `origin` move a point of it, and its least height, m. The height of a mesh is its area over
-    /// its diameter: that of a needle is the needle's.
+    /// The largest distance by which `f32` coordinates about `origin` move a point of this geometry, and its smallest
+    /// height, both in m. The height of a mesh is its area divided by its diameter, which for a needle is the width of the
+    /// needle.
     fn rounding(&self, origin: DVec3) -> (f64, f64) {
         let corner = |p: DVec3| (p - origin - (p - origin).as_vec3().as_dvec3()).length();
         let corners = |points: &[DVec3]| points.iter().map(|p| corner(*p)).fold(0.0, f64::max);
@@ -189,7 +191,7 @@ impl Geometry {
                     self.primitives().iter().flat_map(super::Primitive::bounds).map(corner).fold(0.0, f64::max);
                 (corners, (*max - *min).min_element())
             }
-            // its points are anywhere on it
+            // any point of the sphere may be used, so a bound replaces the exact rounding
             Self::Sphere { center, radius, .. } => {
                 (EPSILON * ((*center - origin).abs().max_element() + radius), 2.0 * radius)
             }

@@ -1,7 +1,7 @@
-//! A scene as plain data: what a file says, before anything is built from it.
+//! A scene as plain data: the content of a scene file, before anything is built from it.
 //!
-//! Positions in metres, right-handed, `f64`; colours linear Rec. 709. [`Scene::new`](super::Scene::new)
-//! turns a description into something rays can hit.
+//! Positions are in metres, right-handed, in `f64`; colours are linear Rec. 709. [`Scene::new`](super::Scene::new) converts
+//! a description to a scene for ray tracing.
 
 pub use super::bsdf::colour::Colour;
 pub use super::bsdf::conductor::{ConductorSurface, Metal};
@@ -16,10 +16,10 @@ use super::raster::Raster;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
-/// Everything a scene file can say.
+/// The content of a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
-    /// Short name, used for the output folder.
+    /// Short name, also used for the output folder.
     pub name: String,
     /// The pinhole camera.
     pub camera: CameraDescription,
@@ -29,24 +29,25 @@ pub struct Description {
     pub shapes: Vec<Shape>,
     /// Lights without a surface, in file order; at most one of them is an environment.
     pub lights: Vec<LightDescription>,
-    /// Closed-form image means the scene claims for itself, if any.
+    /// Closed-form image means that the file gives for tests, if any.
     pub expect: Option<Expect>,
 }
 
 impl Description {
-    /// Why a radiosity matrix cannot hold this scene, if it cannot: Lambertian surfaces of one colour, lit by surfaces.
+    /// Returns an error with the reason if a radiosity matrix cannot represent this scene. It needs Lambertian surfaces of
+    /// one colour, and only surfaces as lights.
     pub fn radiosity_suits(&self) -> Result<(), String> {
         if !self.lights.is_empty() {
-            return Err("it has lights that are no surfaces".into());
+            return Err("it has lights without a surface".into());
         }
         let used = |m: &Material| self.shapes.iter().any(|s| self.materials[s.material].name == m.name);
         match self.materials.iter().find(|m| used(m) && m.lambertian().is_none()) {
-            Some(m) => Err(format!("material `{}` is not Lambertian of one colour", m.name)),
+            Some(m) => Err(format!("material `{}` is not a Lambertian surface of one colour", m.name)),
             None => Ok(()),
         }
     }
 
-    /// 1 in the channels in which anything emits, 0 in the others.
+    /// 1 in the colour channels in which a light or surface emits, 0 in the others.
     pub fn lit(&self) -> DVec3 {
         let light = |l: &LightDescription| match l {
             LightDescription::Point { intensity, .. } => *intensity,
@@ -61,7 +62,7 @@ impl Description {
     }
 }
 
-/// A pinhole camera; a pixel is the mean radiance over its square.
+/// A pinhole camera. A pixel is the mean radiance over its square.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraDescription {
     /// Position of the pinhole.
@@ -76,7 +77,7 @@ pub struct CameraDescription {
     pub size: [u32; 2],
 }
 
-/// Which sides of a surface take part in light transport. The other side blocks light and is black.
+/// The sides of a surface that take part in light transport. The other side blocks light and is black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
     /// Both sides reflect.
@@ -88,11 +89,11 @@ pub enum Sides {
 /// A named surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// The name shapes use.
+    /// The name by which shapes refer to it.
     pub name: String,
-    /// How it scatters.
+    /// Its scattering.
     pub bsdf: BsdfDescription,
-    /// Sides that scatter; of a dielectric always both.
+    /// The sides that scatter; for a dielectric always both.
     pub sides: Sides,
 }
 
@@ -103,12 +104,13 @@ impl Material {
         Self { name: name.into(), bsdf: surface.into(), sides }
     }
 
-    /// Whether both sides scatter.
+    /// Returns true if both sides scatter.
     pub fn both_sides(&self) -> bool {
         self.sides == Sides::Both || self.bsdf.lets_through()
     }
 
-    /// The albedo, if the surface is Lambertian and of one colour: what a radiosity matrix can hold.
+    /// The albedo, if the surface is Lambertian and of one colour; `None` otherwise. Only such surfaces can be in a
+    /// radiosity matrix.
     pub fn lambertian(&self) -> Option<DVec3> {
         match &self.bsdf {
             BsdfDescription::Diffuse(DiffuseSurface { reflectance: Colour::Uniform(rho) }) => Some(*rho),
@@ -122,35 +124,35 @@ impl Material {
 pub enum LightDescription {
     /// Light from a point, the same in every direction.
     Point {
-        /// Where.
+        /// Position.
         position: DVec3,
         /// Radiant intensity, W/sr.
         intensity: DVec3,
     },
     /// Parallel light from infinity.
     Directional {
-        /// Direction the light travels in, any length.
+        /// Direction in which the light travels, of any length.
         direction: DVec3,
         /// Irradiance on a surface perpendicular to it, W/m².
         irradiance: DVec3,
     },
     /// Light from every direction at infinity.
     Environment {
-        /// What the sky looks like.
+        /// The radiance of the sky by direction.
         sky: Sky,
-        /// Degrees about the vertical, counter-clockwise seen from +y.
+        /// Rotation about the vertical in degrees, counter-clockwise seen from +y.
         rotate: f64,
-        /// Factor on the radiance.
+        /// Factor by which the radiance is multiplied.
         scale: f64,
     },
 }
 
-/// What an environment looks like.
+/// The radiance of the sky by direction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sky {
-    /// The same radiance from everywhere.
+    /// The same radiance from every direction.
     Constant(DVec3),
-    /// u = ½ + atan2(x, −z)/2π, v = acos(y)/π, row 0 at +y, constant per texel.
+    /// An image by latitude and longitude: u = ½ + atan2(x, −z)/2π, v = acos(y)/π, row 0 at +y, constant in each texel.
     LatLong(Arc<Raster>),
     /// A photograph of a mirror sphere, seen along −z and filling the image.
     MirrorBall(Arc<Raster>),
@@ -161,15 +163,15 @@ pub enum Sky {
 pub struct Shape {
     /// A name for messages: the OBJ group, or `shapes[3]`.
     pub name: String,
-    /// Where it is.
+    /// Its geometry.
     pub geometry: Geometry,
     /// Index into [`Description::materials`].
     pub material: usize,
-    /// Radiance leaving the front side, W·sr⁻¹·m⁻²; zero for what does not emit.
+    /// Radiance that leaves the front side, W·sr⁻¹·m⁻²; zero if the shape does not emit.
     pub emission: DVec3,
 }
 
-/// The shapes a scene can hold. Normals of box and sphere point outwards unless `inward`.
+/// Geometry of a shape. Normals of box and sphere point outwards unless `inward` is true.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Geometry {
     /// Triangles, counter-clockwise seen from the front.
@@ -181,7 +183,7 @@ pub enum Geometry {
         /// Texture coordinates of the corners of each triangle; empty if there are none.
         uvs: Vec<[DVec2; 3]>,
     },
-    /// The parallelogram `origin + u·edge_u + v·edge_v`, u, v in [0, 1]; normal `edge_u × edge_v`.
+    /// The parallelogram `origin + u·edge_u + v·edge_v` with u, v in [0, 1]; its normal is `edge_u × edge_v`.
     Quad {
         /// A corner.
         origin: DVec3,
@@ -190,26 +192,27 @@ pub enum Geometry {
         /// Second edge.
         edge_v: DVec3,
     },
-    /// An axis-aligned box, turned by `rotate_y` degrees about its centre (counter-clockwise seen from +y).
+    /// An axis-aligned box, rotated by `rotate_y` degrees about the vertical through its centre (counter-clockwise seen from
+    /// +y).
     Box {
-        /// Smallest corner before the turn.
+        /// Smallest corner before the rotation.
         min: DVec3,
-        /// Largest corner before the turn.
+        /// Largest corner before the rotation.
         max: DVec3,
-        /// Degrees about the vertical through the centre.
+        /// Rotation in degrees about the vertical through the centre.
         rotate_y: f64,
-        /// Normals point to the inside.
+        /// True if normals point to the inside.
         inward: bool,
     },
-    /// A sphere, or the band of it with `z` between the two fractions of the radius.
+    /// A sphere, or a band of it with z between two fractions of the radius.
     Sphere {
         /// Centre.
         center: DVec3,
         /// Radius.
         radius: f64,
-        /// Lowest and highest `(p.z − center.z)/radius` kept; `[-1, 1]` for the whole sphere.
+        /// Range of `(p.z − center.z)/radius` that belongs to the band; `[-1, 1]` for the whole sphere.
         z: [f64; 2],
-        /// Normals point to the inside.
+        /// True if normals point to the inside.
         inward: bool,
     },
     /// A flat disk.
@@ -223,13 +226,13 @@ pub enum Geometry {
     },
 }
 
-/// Closed-form values of a scene: grey image means of the first terms.
+/// Closed-form values of a scene: image means of the first terms, the same in all channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expect {
     /// Mean over the image of T^k E, k = 0, 1, ….
     pub terms: Vec<f64>,
-    /// The exact ratio of consecutive terms, where there is one.
+    /// The exact ratio of consecutive terms, if it is constant.
     pub gamma: Option<f64>,
-    /// Where the numbers come from.
+    /// Reference for the numbers.
     pub source: String,
 }

@@ -1,8 +1,9 @@
-//! What can be wrong with a scene, with the place and what to do next.
+//! The error type for wrong scenes: the problem, its place, and what to do next.
 
 use std::{fmt, path::PathBuf};
 
-/// Bad input: `error: what`, where, `help: what to do next`. The binary prints it and exits with 3.
+/// An error in the user's input: `error: what`, the place, `help: what to do next`. The program prints it and exits with
+/// code 3.
 ///
 /// ```
 /// use fredholm::scene::SceneError;
@@ -12,9 +13,9 @@ use std::{fmt, path::PathBuf};
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
-    /// What is wrong, with the offending value.
+    /// The problem, with the wrong value.
     pub what: String,
-    /// The file it is in, if it came from one.
+    /// The file with the problem, if it came from one.
     pub file: Option<PathBuf>,
     /// 1-based line in that file.
     pub line: Option<usize>,
@@ -25,7 +26,7 @@ pub struct SceneError {
 }
 
 impl SceneError {
-    /// An error with nothing but its message.
+    /// An error that consists only of its message.
     pub fn new(what: impl Into<String>) -> Self {
         Self { what: what.into(), file: None, line: None, key: None, help: None }
     }

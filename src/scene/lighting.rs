@@ -1,4 +1,4 @@
-//! Light from the point of view of a receiver, and from where it starts.
+//! Lights as seen by a receiver, and the start of paths at lights.
 //!
 //! ```text
 //! (T E)(x) = E[ f cos θ · L / p_ω ]      for a light chosen by Scene::sample_light with density p_ω
@@ -6,44 +6,46 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | p_ω | density of a choice in solid angle at the receiver | `light_pdf`, the same number for what a ray has hit |
-//! | p(y_0) | density of where light starts, in the measure of the state | `emit_density` |
+//! | p_ω | density in solid angle at the receiver of a light chosen by next-event estimation | `light_pdf`, the same density for a light that a ray has hit |
+//! | p(y_0) | density of the start of a path at a light, in the measure of the state | `emit_density` |
 //!
-//! The densities per light are those of [`emitter`](super::emitter).
+//! The densities for each light are those of [`emitter`](super::emitter).
 
 use super::emitter::{Light, cone};
 use super::{ESCAPED, LIGHT, Scene, Vertex, connection, solid_angle};
 use glam::Vec3;
 
-/// What next-event estimation chose.
+/// A point on a light, chosen by next-event estimation.
 pub struct LightSample {
-    /// On the light, leaving towards the receiver.
+    /// The point on the light, with its direction towards the receiver.
     pub state: Vertex,
-    /// Unit direction from the receiver.
+    /// Unit direction from the receiver to the light.
     pub to: Vec3,
-    /// Density in solid angle; r² P for a point and P for a direction, so that f cos θ/pdf is the weight in every case.
+    /// Density in solid angle. It is r² P for a point light and P for a directional light, so that f cos θ/pdf is the weight
+    /// in every case.
     pub pdf: f32,
-    /// Whether it has an area, so that a ray can hit it.
+    /// True if the light has an area, so that a ray can hit it.
     pub can_be_hit: bool,
 }
 
 impl Scene {
-    /// Next-event estimation: the light that four uniform numbers choose for a receiver, before anybody looks whether it is
-    /// hidden; nothing where the receiver is the light and cannot see itself.
+    /// Next-event estimation: the point on a light that four uniform numbers choose for a receiver. Occlusion is not tested.
+    /// `None` if the front of the light faces away, or if the receiver lies on this convex light.
     #[inline(always)]
     pub(crate) fn sample_light(&self, at: &Vertex, u: [f32; 4]) -> Option<LightSample> {
-        // a density that is not positive: the light's front looks away; infinite: it is seen from exactly beside it
+        // a density of 0 or less: the front of the light faces away; an infinite one: the light is seen exactly edge-on
         self.propose_light(at, u).filter(|sample| sample.pdf > 0.0 && sample.pdf < f32::INFINITY)
     }
 
-    /// The same before anybody looks at its density, which is negative where the light's front looks away.
+    /// The same as [`Self::sample_light`], but returned for every density; the density is negative if the front of the light
+    /// faces away.
     #[inline(always)]
     pub(crate) fn propose_light(&self, at: &Vertex, u: [f32; 4]) -> Option<LightSample> {
         let x = at.p;
         let light = self.lights.choose(u[0]);
         let probability = self.lights.probability(light);
         Some(match self.lights.lights[light as usize] {
-            // rounding must not let a convex light shine on itself
+            // rounding must not let a convex light illuminate itself
             Light::Ball { prim, .. } if prim == at.side / 2 => return None,
             Light::Point { position, .. } => {
                 let (to, r2, ..) = connection(x, Vec3::ZERO, position, Vec3::ZERO);
@@ -69,7 +71,7 @@ impl Scene {
                     let n = self.accel.shapes[prim as usize].normal(p);
                     let (to, r2, ..) = connection(x, Vec3::ZERO, p, n);
                     let state = Vertex { p, n, omega: -to, side: 2 * prim };
-                    // seen from its own surface, rounding may choose x itself: there is no direction to it
+                    // for a receiver on the sphere itself, rounding may choose x as the point: no direction leads to it
                     let pdf = if r2 > 0.0 { pdf * probability } else { 0.0 };
                     LightSample { state, to, pdf, can_be_hit: true }
                 }
@@ -79,7 +81,7 @@ impl Scene {
         })
     }
 
-    /// A point of a primitive, uniformly by area. The density is not positive where the front looks away.
+    /// A point of a primitive, chosen uniformly by area. The density is 0 or negative if the front faces away.
     #[inline(always)]
     fn by_area(&self, x: Vec3, prim: u32, u: [f32; 2]) -> LightSample {
         let shape = &self.accel.shapes[prim as usize];
@@ -94,7 +96,8 @@ impl Scene {
         self.lights.environment.as_ref().map_or((Vec3::Y, 0.0), |(sky, _)| sky.sample(u))
     }
 
-    /// Density with which [`Self::sample_light`] chooses what a ray from `x` has arrived at, in solid angle; 0 where it cannot.
+    /// Density in solid angle with which [`Self::sample_light`] chooses the point `at` that a ray from `x` has hit; 0 if it
+    /// cannot choose it.
     #[inline(always)]
     pub(crate) fn light_pdf(&self, x: Vec3, at: &Vertex) -> f32 {
         if !at.on_surface() {
@@ -115,7 +118,7 @@ impl Scene {
         solid_angle(density, r2, cos.abs())
     }
 
-    /// The light without a surface that a vertex stands for.
+    /// The light without a surface that a vertex represents; `None` for a vertex on a surface.
     #[inline(always)]
     pub(crate) fn light_of(&self, at: &Vertex) -> Option<&Light> {
         match at.side {
@@ -125,7 +128,7 @@ impl Scene {
         }
     }
 
-    /// The number of the light that a ray has arrived at: of what it has hit, or of the sky.
+    /// The number of the light that a ray has found: of the surface that it hit, or of the sky. `None` if it is not a light.
     #[inline(always)]
     pub(crate) fn light_number(&self, at: &Vertex) -> Option<u32> {
         match at.side {
@@ -135,8 +138,8 @@ impl Scene {
         }
     }
 
-    /// Where light starts, as four uniform numbers choose, and the density in the measure of the state: m⁻² on a surface,
-    /// sr⁻¹ for the sky, a probability for a point or a direction.
+    /// The start of a path at a light, chosen by four uniform numbers, and its density in the measure of the state. The
+    /// density is in m⁻² on a surface, in sr⁻¹ for the sky, and a probability for a point or directional light.
     pub(crate) fn emit(&self, u: [f32; 4]) -> Option<(Vertex, f32)> {
         if self.lights.is_empty() {
             return None;
@@ -165,7 +168,7 @@ impl Scene {
         })
     }
 
-    /// The density of [`Self::emit`] at a state.
+    /// The density with which [`Self::emit`] chooses a state.
     pub(crate) fn emit_density(&self, at: &Vertex) -> f32 {
         match (at.side, &self.lights.environment) {
             (side, _) if side < LIGHT => self.light_density(side),
@@ -175,17 +178,17 @@ impl Scene {
         }
     }
 
-    /// Centre of a sphere around the shapes.
+    /// Centre of a sphere that encloses the shapes.
     pub(crate) fn center(&self) -> Vec3 {
         self.center
     }
 
-    /// Its radius, metres.
+    /// Radius of a sphere that encloses the shapes, m.
     pub(crate) fn radius(&self) -> f32 {
         self.radius
     }
 
-    /// The same where it is a sphere that is sampled by solid angle.
+    /// The result of [`Self::light_pdf`] if the light is a sphere that is sampled by solid angle; `None` otherwise.
     #[inline(always)]
     pub(crate) fn cone_pdf(&self, x: Vec3, at: &Vertex) -> Option<f32> {
         if !at.on_surface() || at.side & 1 == 1 {

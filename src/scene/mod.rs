@@ -1,6 +1,6 @@
-//! What exists: surfaces, lights, sensors.
+//! The scene: surfaces, lights and sensors.
 //!
-//! A [`Description`] is what a file says; a [`Scene`] is what rays meet.
+//! A [`Description`] is the content of a scene file. A [`Scene`] is built from it and is what rays hit.
 //!
 //! | notation | type | place |
 //! |---|---|---|
@@ -54,13 +54,15 @@ pub(crate) use vertex::Rays;
 
 pub(crate) use packets::{cosine_directions, numbers};
 
-/// The change of measure: a density per area at y, seen from a point at distance r, per solid angle.
+/// Change of measure: converts a density per area at a point y to one per solid angle at a point at distance r, with `r2` =
+/// r².
 #[inline(always)]
 pub(crate) fn solid_angle(per_area: f32, r2: f32, cos_y: f32) -> f32 {
     per_area * r2 / cos_y
 }
 
-/// A connection from x (normal n) to y (normal m): unit direction, distance squared, cosines at both ends.
+/// Geometry of a connection from x (normal n) to y (normal m): unit direction, squared distance, and the cosines at x and at
+/// y.
 #[inline(always)]
 pub(crate) fn connection(x: Vec3, n: Vec3, y: Vec3, m: Vec3) -> (Vec3, f32, f32, f32) {
     let d = y - x;
@@ -69,42 +71,42 @@ pub(crate) fn connection(x: Vec3, n: Vec3, y: Vec3, m: Vec3) -> (Vec3, f32, f32,
     (d, r2, d.x * n.x + d.y * n.y + d.z * n.z, -(d.x * m.x + d.y * m.y + d.z * m.z))
 }
 
-/// Surfaces ready for rays, and their lights.
+/// A scene ready for ray tracing, with its lights.
 pub struct Scene {
     /// The camera of the description.
     pub camera: Camera,
-    /// What emits.
+    /// All lights.
     pub lights: Lights,
     accel: Accel,
-    /// Whether waves are traced in packets.
+    /// True if waves are traced in packets of rays.
     packets: bool,
-    /// By side: BSDF, largest albedo, emission, whether it takes part in transport.
+    /// For every side: its BSDF, largest albedo and emission, and whether it takes part in light transport.
     bsdf: Vec<Bsdf>,
     albedo: Vec<Rgb>,
     emission: Vec<Rgb>,
     takes_part: Vec<bool>,
     area: Vec<f64>,
     textures: Option<Textures>,
-    /// Where its coordinates begin, in those of the file, m.
+    /// Position of the scene's coordinate origin in the coordinates of the file, m.
     origin: DVec3,
-    /// A sphere around the shapes.
+    /// Centre and radius of a sphere that encloses the shapes.
     center: Vec3,
     radius: f32,
-    /// A distance that leaves the scene from everywhere in it, point lights included.
+    /// A distance that leads out of the scene from every point of it, including point lights.
     beyond: f32,
-    /// Whether some surface has a delta part.
+    /// True if some surface has a delta part.
     any_delta: bool,
-    /// Shapes that coincide and differ.
+    /// Pairs of coincident shapes that look different.
     conflicts: Vec<Relation>,
-    /// 1 in the channels in which anything emits.
+    /// 1 in the colour channels in which anything emits, 0 in the others.
     lit: Rgb,
-    /// How paths end that nothing else ends.
+    /// First vertex and smallest probability of termination, for paths that nothing else ends.
     last_resort: Option<(usize, f32)>,
 }
 
 impl Scene {
-    /// Builds what rays need, in coordinates about the middle of the scene ([`Description::centred`]). The description must have
-    /// passed the checks of the loader: finite, no empty shapes, none that single precision rounds away.
+    /// Builds the scene in coordinates about its middle ([`Description::centred`]). The description must have passed the
+    /// checks of the loader: all numbers are finite, no shape is empty, and single precision deforms none.
     pub fn new(description: &Description) -> Self {
         let centre::Centred { scene, origin, touch } = description.centred();
         let description = &scene;
@@ -134,7 +136,7 @@ impl Scene {
             Some(t) => t.brightest(side / 2).map_or(*b, |rho| b.with_reflectance(rho)).max_albedo(),
             None => b.max_albedo(),
         });
-        // lights without area shine on the shapes; what is beyond lies beyond point lights, too
+        // lights without area illuminate the shapes too, so `beyond` must also lead past point lights
         let outside = description.lights.iter().filter_map(|l| match l {
             LightDescription::Point { position, .. } => Some(*position),
             _ => None,
@@ -162,12 +164,13 @@ impl Scene {
         }
     }
 
-    /// Where its coordinates begin, in those of the file: positions of vertices and of [`Camera`] are relative to it.
+    /// Position of the scene's coordinate origin in the coordinates of the file, m. Positions of vertices and of [`Camera`]
+    /// are relative to it.
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
-    /// The shapes that coincide and differ, whether anybody sees them or not.
+    /// Pairs of coincident shapes that look different, including pairs that are hidden from the camera.
     pub fn conflicts(&self) -> &[Relation] {
         &self.conflicts
     }
@@ -177,7 +180,8 @@ impl Scene {
         self.takes_part.len() as u32
     }
 
-    /// Whether a side takes part in transport. One that does not blocks light and is black.
+    /// Returns true if a side takes part in light transport: every front, and the back of a two-sided surface. All other sides
+    /// block light and are black.
     pub fn takes_part(&self, side: Side) -> bool {
         self.takes_part[side as usize]
     }
@@ -187,7 +191,7 @@ impl Scene {
         self.area[(side / 2) as usize]
     }
 
-    /// How the surface scatters at a vertex; black where there is none.
+    /// The BSDF at a vertex; black if the vertex is not on a surface.
     #[inline(always)]
     pub fn bsdf(&self, at: &Vertex) -> Bsdf {
         if !at.on_surface() {
@@ -203,8 +207,8 @@ impl Scene {
         }
     }
 
-    /// What arrives from a vertex by its own light: E on a surface, the sky's radiance where a ray has escaped, W/sr of a
-    /// point, W/m² of a direction.
+    /// The light that a vertex emits itself. The quantity depends on the vertex: radiance E on a surface, radiance of the
+    /// sky for an escaped ray, intensity (W/sr) of a point light, irradiance (W/m²) of a directional light.
     #[inline(always)]
     pub fn light(&self, at: &Vertex) -> Rgb {
         match at.side {
@@ -218,13 +222,13 @@ impl Scene {
         }
     }
 
-    /// The largest albedo of a side in any direction: ρ of a Lambertian one.
+    /// The largest albedo of a side over all directions and, for a texture, all its texels; ρ for a Lambertian side.
     #[inline(always)]
     pub fn albedo(&self, side: Side) -> Rgb {
         self.albedo[side as usize]
     }
 
-    /// The largest albedo of any side, per channel: the bound on ‖T‖₁ and ‖T‖∞.
+    /// The largest albedo of all sides, per channel: the bound on ‖T‖₁ and ‖T‖∞.
     pub fn max_albedo(&self) -> Rgb {
         self.albedo.iter().fold(Rgb::ZERO, |a, &b| a.max(b))
     }
@@ -235,20 +239,21 @@ impl Scene {
         self.emission[side as usize]
     }
 
-    /// Density of next-event estimation at a point of this side, per area: 0 where it cannot choose.
+    /// Density per area (m⁻²) with which next-event estimation chooses a point of this side; 0 if it cannot choose it.
     #[inline(always)]
     pub fn light_density(&self, side: Side) -> f32 {
         if side & 1 == 0 { self.lights.density[(side / 2) as usize] } else { 0.0 }
     }
 
-    /// Lights selected in another way.
+    /// The same scene with another rule for the choice of a light.
     #[must_use]
     pub fn select_lights(mut self, selection: Selection) -> Self {
         self.lights.select(selection);
         self
     }
 
-    /// Whether some surface is a mirror or glass, at least in part: no connection finds what it shows.
+    /// Returns true if some surface has a delta part, such as a mirror or smooth glass. No connection finds light that
+    /// arrives over it.
     pub fn any_delta_surface(&self) -> bool {
         self.any_delta
     }
@@ -259,24 +264,25 @@ impl Scene {
         self.lit
     }
 
-    /// From which vertex on, and with which probability at least, paths end that nothing else ends; see `engine::known::resort`.
+    /// The first vertex at which paths end that nothing else ends, and their smallest probability of termination there; see
+    /// `engine::known::resort`.
     #[inline(always)]
     pub fn last_resort(&self) -> Option<(usize, f32)> {
         self.last_resort
     }
 
-    /// The same scene with such an end.
+    /// The same scene, but paths that nothing else ends are terminated from `vertex` on with a probability of at least `q`.
     #[must_use]
     pub fn ending_at(self, vertex: usize, q: f32) -> Self {
         Self { last_resort: Some((vertex, q)), ..self }
     }
 
-    /// Whether a ray can leave for the sky and bring light from there.
+    /// Returns true if the scene has an environment light, which rays that leave the scene find.
     pub fn has_environment(&self) -> bool {
         self.lights.environment.is_some()
     }
 
-    /// A uniformly distributed point of a side, and the normal there.
+    /// A uniformly distributed point of a side, and the normal of this side there.
     #[inline(always)]
     pub fn point(&self, side: Side, u: [f32; 2]) -> (Vec3, Vec3) {
         let shape = &self.accel.shapes[(side / 2) as usize];
@@ -291,7 +297,8 @@ impl Scene {
         x + d * self.beyond
     }
 
-    /// The light points of a wave: positions in `rays.o`, normals in `rays.d`, densities in `rays.t`, primitives in `rays.prim`.
+    /// Chooses a point on a light for each path of a wave. Writes positions to `rays.o`, normals to `rays.d`, densities
+    /// (m⁻²) to `rays.t` and primitives to `rays.prim`.
     #[inline(always)]
     pub(crate) fn light_points(&self, rays: &mut Rays, n: usize) {
         if let Some(prim) = self.lights.only() {

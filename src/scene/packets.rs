@@ -1,8 +1,9 @@
-//! Rays in packets: every primitive of a small scene against sixteen rays at once.
+//! Ray tracing in packets: every primitive of a small scene is tested against sixteen rays at once.
 //!
-//! The plain twin is [`Accel`](super::accel::Accel), one ray at a time through the tree; both use the same formulas of
-//! [`shape`](super::shape) and give ties to the lower number, so they give the same bits (tested). The loops over lanes are
-//! plain Rust that the compiler vectorises; `pulp` compiles them for several instruction sets and chooses at run time.
+//! [`Accel`](super::accel::Accel) traces one ray at a time through the tree and gives the same bits (tested). Both use the
+//! same formulas of [`shape`](super::shape), and for hits at the same distance both return the lower number. The loops over
+//! SIMD lanes are plain Rust that the compiler vectorises. `pulp` compiles them for several instruction sets and chooses one
+//! at run time.
 
 use super::shape::{Flat, Shape};
 use super::vertex::Rays;
@@ -10,12 +11,12 @@ use crate::math::{Columns, Points, Streams};
 use glam::Vec3;
 use pulp::{Arch, Simd};
 
-/// Rays in a packet.
+/// Number of rays in a packet.
 const LANES: usize = 16;
-/// Beyond this many primitives the tree is faster.
+/// Largest number of primitives for packets; beyond it the tree is faster.
 const SMALL: usize = 64;
 
-/// Whether a scene is worth tracing in packets: few primitives, all of them flat.
+/// Returns true if a scene should be traced in packets: it has few primitives, and all are flat.
 pub(crate) fn suit(shapes: &[Shape]) -> bool {
     shapes.len() <= SMALL && shapes.iter().all(|s| matches!(s, Shape::Flat(_) | Shape::Triangle(_)))
 }
@@ -46,7 +47,7 @@ fn nearest(
     }
 }
 
-/// The same for a parallelogram: lanes that pass next to an edge are rare, and looked at one by one.
+/// The same for a parallelogram. Lanes with a ray close to an edge are rare and are tested one by one.
 #[inline(always)]
 fn nearest_flat(s: &Flat, id: u32, o: &[Lane; 3], d: &[Lane; 3], t: &mut Lane, prim: &mut [u32; LANES]) {
     let at = |i: usize| (Vec3::new(o[0][i], o[1][i], o[2][i]), Vec3::new(d[0][i], d[1][i], d[2][i]));
@@ -71,7 +72,7 @@ fn nearest_flat(s: &Flat, id: u32, o: &[Lane; 3], d: &[Lane; 3], t: &mut Lane, p
     }
 }
 
-/// The nearest hits of the first `n` rays, `prim = u32::MAX` where there is none. Reads and writes whole packets.
+/// The nearest hits of the first `n` rays; `prim` is `u32::MAX` if there is none. Reads and writes whole packets.
 #[pulp::with_simd(closest = Arch::new())]
 #[inline(always)]
 pub(crate) fn closest_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], rays: &'a mut Rays, n: usize) {
@@ -120,7 +121,8 @@ fn block_flat(s: &Flat, r: &[Lane; 6], blocked: &mut [u32; LANES]) {
     }
 }
 
-/// For each of the first `n` rays in `rays.list`: `rays.prim[ray] = 1` where something lies on `o + t·d`, 0 < t < 1, else 0.
+/// For each ray in the first `n` entries of `rays.list`: sets `rays.prim[ray]` to 1 if a primitive lies on `o + t·d` with 0
+/// < t < 1, else to 0.
 #[pulp::with_simd(occluded = Arch::new())]
 #[inline(always)]
 pub(crate) fn occluded_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], rays: &'a mut Rays, n: usize) {
@@ -147,7 +149,7 @@ pub(crate) fn occluded_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], ray
     }
 }
 
-/// The four numbers of the first draw of every stream, as columns.
+/// The four numbers of the first draw of every random stream, as columns.
 #[pulp::with_simd(numbers = Arch::new())]
 #[inline(always)]
 pub(crate) fn numbers_with_simd<'a, S: Simd>(_simd: S, streams: Streams<'a>, u: &'a mut [Vec<f32>; 4]) {
@@ -156,7 +158,7 @@ pub(crate) fn numbers_with_simd<'a, S: Simd>(_simd: S, streams: Streams<'a>, u: 
     let [a, b, c, d] = u.each_mut().map(|u| &mut u[..n]);
     let streams = Streams { pixel, sample, ..streams };
     if streams.key.points() == Points::Sobol {
-        // table look-ups: nothing for the vector units
+        // Sobol points are table look-ups, which do not vectorise
         for i in 0..n {
             [a[i], b[i], c[i], d[i]] = streams.rng(i).four();
         }
@@ -167,7 +169,7 @@ pub(crate) fn numbers_with_simd<'a, S: Simd>(_simd: S, streams: Streams<'a>, u: 
     }
 }
 
-/// Cosine-distributed directions about the normals, from the first two columns of numbers.
+/// Cosine-distributed directions about the normals, computed from the first two columns of random numbers.
 #[pulp::with_simd(cosine_directions = Arch::new())]
 #[inline(always)]
 pub(crate) fn cosine_directions_with_simd<'a, S: Simd>(
@@ -187,7 +189,8 @@ pub(crate) fn cosine_directions_with_simd<'a, S: Simd>(
     }
 }
 
-/// Uniform points of one shape from the last two columns of numbers: positions, normals and a density for all.
+/// Uniform points of one shape, computed from the last two columns of random numbers. Writes positions, normals and the same
+/// density for all.
 #[pulp::with_simd(points_on = Arch::new())]
 #[inline(always)]
 pub(crate) fn points_on_with_simd<'a, S: Simd>(_simd: S, shape: &'a Shape, density: f32, rays: &'a mut Rays, n: usize) {

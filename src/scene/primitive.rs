@@ -1,14 +1,15 @@
-//! The primitives a description expands to. Their order numbers them, for rays and for patches alike.
+//! The primitives of a scene: the surfaces into which its shapes are divided. Rays and patches number them by their order
+//! here.
 
 use super::description::{Description, Geometry};
 use glam::{DQuat, DVec3};
 
-/// A surface rays can hit. Its front is where the normal points.
+/// A surface that rays can hit. Its front is the side to which the normal points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Primitive {
-    /// Corners counter-clockwise seen from the front.
+    /// A triangle; its corners are counter-clockwise as seen from the front.
     Triangle([DVec3; 3]),
-    /// `origin + u·edge_u + v·edge_v`, u, v in [0, 1]; normal `edge_u × edge_v`.
+    /// The parallelogram `origin + u·edge_u + v·edge_v` with u, v in [0, 1]; its normal is `edge_u × edge_v`.
     Parallelogram {
         /// A corner.
         origin: DVec3,
@@ -23,9 +24,9 @@ pub enum Primitive {
         center: DVec3,
         /// Radius.
         radius: f64,
-        /// The band; `[-1, 1]` is the whole sphere.
+        /// Range of z in the band; `[-1, 1]` for the whole sphere.
         z: [f64; 2],
-        /// The front is the inside.
+        /// True if the front is the inside.
         inward: bool,
     },
     /// A flat disk.
@@ -45,13 +46,13 @@ impl Primitive {
         match *self {
             Self::Triangle([a, b, c]) => 0.5 * (b - a).cross(c - a).length(),
             Self::Parallelogram { edge_u, edge_v, .. } => edge_u.cross(edge_v).length(),
-            // Archimedes: a band of a sphere has the area of the band of its cylinder
+            // Archimedes: a band of a sphere has the same area as the band of the enclosing cylinder
             Self::Sphere { radius, z, .. } => std::f64::consts::TAU * radius * radius * (z[1] - z[0]),
             Self::Disk { radius, .. } => std::f64::consts::PI * radius * radius,
         }
     }
 
-    /// Corners of the smallest axis-aligned box around it.
+    /// Lowest and highest corner of the smallest axis-aligned box that contains the primitive.
     pub fn bounds(&self) -> [DVec3; 2] {
         let hull =
             |p: &[DVec3]| p.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], &p| [a.min(p), b.max(p)]);
@@ -71,7 +72,7 @@ impl Primitive {
 }
 
 impl Geometry {
-    /// The primitives of the shape, in a fixed order: mesh faces in file order, box faces −x, +x, −y, +y, −z, +z.
+    /// The primitives of the shape in a fixed order: mesh faces in file order, box faces −x, +x, −y, +y, −z, +z.
     pub fn primitives(&self) -> Vec<Primitive> {
         match self {
             Self::Mesh { vertices, faces, .. } => {
@@ -112,7 +113,8 @@ fn box_faces(min: DVec3, max: DVec3, rotate_y: f64, inward: bool) -> Vec<Primiti
 }
 
 impl Description {
-    /// Every primitive with the index of its shape. The position in this list is the primitive's number everywhere.
+    /// Every primitive with the index of its shape. The position in this list is the number of the primitive in the whole
+    /// program.
     pub fn primitives(&self) -> Vec<(usize, Primitive)> {
         let one =
             |(i, s): (usize, &super::description::Shape)| s.geometry.primitives().into_iter().map(move |p| (i, p));

@@ -1,4 +1,4 @@
-//! An image as numbers: textures and skies.
+//! Images in linear colour, used for textures and skies.
 //!
 //! `L(u, v) = Σ b(uw − ½ − i) b((1 − v)h − ½ − j) t[i mod w, j mod h]`, b(x) = max(0, 1 − |x|)
 //!
@@ -6,22 +6,22 @@
 //! |---|---|---|
 //! | t\[i, j\] | column i, row j; row 0 on top | [`Raster::texel`] |
 //! | w, h | width and height | [`Raster::size`] |
-//! | u, v | from the bottom left corner; texel centres at half-integers of uw and vh | [`Raster::bilinear`] |
+//! | u, v | position from the bottom left corner; texel centres are at half-integers of uw and vh | [`Raster::bilinear`] |
 
 use crate::math::{Rgb, fnv1a};
 use glam::DVec3;
 use std::fmt;
 
-/// Linear Rec. 709 texels, row 0 on top.
+/// An image of linear Rec. 709 texels, row 0 on top.
 #[derive(Clone, PartialEq)]
 pub struct Raster {
     /// Width and height, both at least 1.
     pub size: [u32; 2],
-    /// Row by row.
+    /// The texels, row by row.
     pub texels: Vec<Rgb>,
 }
 
-/// Size and a hash of the texels: equal images have equal text.
+/// Prints the size and a hash of the texels, so that equal images have equal text.
 impl fmt::Debug for Raster {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let bytes = self.texels.iter().flat_map(|t| t.to_array()).flat_map(|x| x.to_bits().to_le_bytes());
@@ -53,13 +53,14 @@ impl Raster {
         mix(row(top), row(bottom), down)
     }
 
-    /// Mean of the texels: the integral of [`Self::bilinear`] over the unit square.
+    /// Mean of the texels, which equals the integral of [`Self::bilinear`] over the unit square.
     pub fn mean(&self) -> DVec3 {
         self.texels.iter().map(|t| t.as_dvec3()).sum::<DVec3>() / self.texels.len() as f64
     }
 }
 
-/// The texels with centres on both sides of x in [0, 1], and how far x is from the first to the second.
+/// The two texels whose centres lie on both sides of x in [0, 1], and the position of x between the first and the second, in
+/// [0, 1).
 fn neighbours(x: f32, n: u32) -> ([u32; 2], f32) {
     let at = x * n as f32 - 0.5;
     let first = at.floor();
@@ -72,7 +73,7 @@ mod tests {
     use super::*;
     use glam::Vec3;
 
-    /// 2 × 2: 1 2 above 3 4.
+    /// A test image of 2 × 2 texels: 1 and 2 in the upper row, 3 and 4 in the lower.
     fn four() -> Raster {
         Raster::new([2, 2], [1.0, 2.0, 3.0, 4.0].map(Vec3::splat).to_vec())
     }
@@ -83,9 +84,9 @@ mod tests {
         let at = |u: f32, v: f32| r.bilinear([u, v]).x;
         assert_eq!([at(0.25, 0.75), at(0.75, 0.75), at(0.25, 0.25), at(0.75, 0.25)], [1.0, 2.0, 3.0, 4.0]);
         assert_eq!([at(0.5, 0.75), at(0.25, 0.5), at(0.5, 0.5)], [1.5, 2.0, 2.5]);
-        // the corner is between all four, whichever copy of it
+        // the corner is the middle of all four texels, in every copy of the image
         assert_eq!([at(0.0, 0.0), at(1.0, 1.0), at(-3.0, 5.0)], [2.5; 3]);
-        // three quarters of the last column and one of the first
+        // three quarters of the last column and one quarter of the first
         assert_eq!([at(0.875, 0.75), at(-0.125, 0.75), at(0.25, 1.125)], [1.75, 1.75, 2.5]);
         assert_eq!([at(1.25, -0.25), at(-0.75, 1.75)], [1.0; 2]);
     }
@@ -105,7 +106,7 @@ mod tests {
         }
         assert_eq!(sum / f64::from(n * n), r.mean());
         assert_eq!(r.mean(), DVec3::splat(2.5));
-        // a number that floor leaves at 1
+        // a number whose fractional part rounds to 1
         assert!(r.bilinear([-1e-9, -1e-9]).is_finite());
     }
 }

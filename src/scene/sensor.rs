@@ -1,9 +1,9 @@
-//! Where paths start: the pinhole camera and the surface sensor.
+//! Sensors, at which paths start: the pinhole camera and the surface sensor.
 //!
-//! | sensor | asks for | its mean over everything |
+//! | sensor | measures | mean over all samples |
 //! |---|---|---|
-//! | [`Camera`] | radiance towards the eye, uniform in the square of a pixel | the image mean |
-//! | [`SurfaceSensor`] | radiance leaving a uniform surface point in a cosine-distributed direction | `∫ L cos θ dω dA / (πA)`, the L1 norm in the throughput measure over πA |
+//! | [`Camera`] | radiance towards the eye, uniform over the square of a pixel | the image mean |
+//! | [`SurfaceSensor`] | radiance that leaves a uniform surface point in a cosine-distributed direction | `∫ L cos θ dω dA / (πA)`: the L1 norm in the throughput measure, divided by πA |
 
 use super::{Scene, Vertex, description::CameraDescription};
 use crate::math::{Rng, direction::cosine_hemisphere};
@@ -11,31 +11,31 @@ use glam::{DVec3, Vec3};
 
 /// A pinhole camera. Pixel (0, 0) is top left; right = forward × up; pixels are square.
 ///
-/// Its rays are made in `f64`. Those of a distant camera start where they enter a sphere around the scene, so that a camera may stand
-/// as far away as it likes and its pixels may be as narrow as `f64` can tell apart.
+/// Camera rays are computed in `f64`. For a distant camera they start where they enter a sphere around the scene. So the
+/// camera may be at any distance, and its pixels may be as narrow as `f64` can resolve.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
-    /// The pinhole, about the middle of the scene.
+    /// The pinhole, relative to the middle of the scene, m.
     pub origin: DVec3,
-    /// Direction to the top left corner of the image, and across one pixel to the right and down.
+    /// Direction to the top left corner of the image; `across` and `down` are the steps of one pixel to the right and down.
     corner: DVec3,
     across: DVec3,
     down: DVec3,
-    /// Unit directions of the picture: right, down, forward.
+    /// Unit directions of the image: right, down, forward.
     axes: [DVec3; 3],
     /// Width of a pixel at distance 1.
     width: f64,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// A sphere around the shapes.
+    /// Centre and radius of a sphere that encloses the shapes.
     center: DVec3,
     radius: f64,
-    /// The pinhole is at most three radii from the middle: rays may start there without loss.
+    /// True if the pinhole is at most three radii from the middle, so that rays may start there without loss of precision.
     near: bool,
 }
 
 impl Camera {
-    /// The camera a description asks for, before a scene within `radius` of `center`.
+    /// The camera of a description, for a scene inside the sphere of this centre and radius.
     pub fn new(c: &CameraDescription, center: DVec3, radius: f64) -> Self {
         let forward = (c.target - c.origin).normalize();
         let right = forward.cross(c.up).normalize();
@@ -51,15 +51,16 @@ impl Camera {
             width,
             size: c.size,
             center,
-            // a little more, so that no surface lies before the start of a ray
+            // slightly enlarged, so that no surface lies in front of the start of a ray
             radius: radius * 1.001,
             near: c.origin.distance(center) <= 3.0 * radius,
         }
     }
 
-    /// The pixel that sees what lies along `d`, of any length, if it is in the picture, and the density per solid angle with which
-    /// its paths take that direction: the inverse of the solid angle of the pixel there, `l³/|pixel|²` with l the length of the
-    /// direction to the plane at 1.
+    /// The pixel that sees the direction `d` (of any length), and the density per solid angle with which its paths take that
+    /// direction. The pixel is `None` if `d` is outside the image; the result is `None` if `d` points backwards. The density
+    /// is the inverse of the pixel's solid angle in this direction: `l³/|pixel|²`, with l the length of `d` up to the plane
+    /// at distance 1.
     pub(crate) fn pixel(&self, d: DVec3) -> Option<(Option<u32>, f32)> {
         let [right, down, forward] = self.axes;
         let along = d.dot(forward);
@@ -75,7 +76,8 @@ impl Camera {
         Some((inside.then(|| y as u32 * self.size[0] + x as u32), per_angle as f32))
     }
 
-    /// Start and unit direction of the ray through a point of a pixel, `u` in [0, 1)² from its top left corner.
+    /// Start and unit direction of the ray through a point of a pixel; `u` in [0, 1)² is measured from the pixel's top left
+    /// corner.
     #[inline(always)]
     pub fn ray(&self, pixel: u32, u: [f32; 2]) -> (Vec3, Vec3) {
         let (column, row) = (pixel % self.size[0], pixel / self.size[0]);
@@ -85,7 +87,8 @@ impl Camera {
         (self.enter(d), d.as_vec3())
     }
 
-    /// Where the ray from the pinhole in unit direction `d` comes near the scene: the pinhole itself if it is near already.
+    /// The point where the ray from the pinhole in the unit direction `d` comes near the scene. It is the pinhole itself if
+    /// that is near.
     #[inline(always)]
     pub(crate) fn enter(&self, d: DVec3) -> Vec3 {
         if self.near {
@@ -94,23 +97,23 @@ impl Camera {
         let to = self.center - self.origin;
         let (along, r2) = (to.dot(d), self.radius * self.radius);
         let before = along - (r2 - (to - d * along).length_squared()).max(0.0).sqrt();
-        // what lies behind the camera is not before it
+        // a part of the sphere behind the camera does not move the start backwards
         (self.origin + d * before.max(0.0)).as_vec3()
     }
 }
 
-/// Every side of every surface, seen uniformly by area with a cosine-distributed direction: camera-free.
+/// A sensor without a camera: all sides of all surfaces, with points uniform by area and cosine-distributed directions.
 #[derive(Clone, Debug)]
 pub struct SurfaceSensor {
     sides: Vec<u32>,
-    /// Cumulative share of the area.
+    /// Cumulative fraction of the area.
     cdf: Vec<f64>,
-    /// Area of all sides that take part, m².
+    /// Area of all sides that take part in light transport, m².
     pub area: f64,
 }
 
 impl SurfaceSensor {
-    /// All sides that take part in transport: both of a two-sided surface, else the front.
+    /// All sides that take part in light transport: both of a two-sided surface, else the front.
     pub fn new(scene: &Scene) -> Self {
         Self::of(scene, (0..scene.sides()).filter(|&s| scene.takes_part(s)).collect())
     }
@@ -127,10 +130,10 @@ impl SurfaceSensor {
         Self { cdf: cdf.collect(), sides, area }
     }
 
-    /// A uniform point with a cosine-distributed direction.
+    /// A uniformly distributed point with a cosine-distributed direction.
     pub fn vertex(&self, scene: &Scene, rng: &mut Rng) -> Vertex {
         let (u, w) = (rng.four(), rng.four());
-        // 48 bits choose the side, so that small ones get their share
+        // 48 bits choose the side, so that small sides are chosen with their exact probability
         let share = f64::from(u[0]) + f64::from(u[1]) / 16_777_216.0;
         let side = self.sides[self.cdf.partition_point(|&c| c <= share).min(self.sides.len() - 1)];
         let (p, n) = scene.point(side, [u[2], u[3]]);

@@ -1,25 +1,26 @@
-//! Where a ray meets a primitive: one formula per kind, used by every engine with the same bits.
+//! Intersection of a ray with a primitive: one formula per kind. All ways of tracing use the same formula and give the same
+//! bits.
 //!
-//! `o + t·d` is on the surface, `t > 0`.
+//! The point `o + t·d` is on the surface, with `t > 0`.
 //!
 //! | kind | test | reference |
 //! |---|---|---|
-//! | [`Flat`] | plane, then |u|, |v| ≤ 1 in coordinates centred on the parallelogram; next to an edge, where these are rounded, the test of a triangle | – |
-//! | [`Triangle`] | signs of edge·direction volumes; the sign of a shared edge is the same from both sides, so meshes have no cracks | Plücker test in the robust form of Embree (Wald et al. 2014); Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection* (2013) |
+//! | [`Flat`] | plane, then |u|, |v| ≤ 1 in coordinates centred on the parallelogram; close to an edge, where rounding matters, the test of a triangle | – |
+//! | [`Triangle`] | signs of the volumes between ray and edges; a shared edge has the same sign for both triangles, so meshes have no cracks | Plücker test in the robust form of Embree (Wald et al. 2014); Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection* (2013) |
 //! | [`Ball`] | quadratic, in `f64` | – |
 //! | [`Disc`] | plane, then distance from the centre | – |
 //!
-//! A hit is projected onto its surface, which moves it by no more than rounding ([`rounding`](super::rounding)), and kept a few units in
-//! the last place inside the edges of its primitive, so that the next ray starts inside a closed room and cannot slip out through a
-//! corner. Where primitives share corners, the test by edges closes the seam, however narrow they are; and no primitive reaches over
-//! its edges, where it would catch rays that have just left its neighbour.
+//! A hit is projected onto its surface, which moves it by no more than rounding ([`rounding`](super::rounding)). It is also
+//! kept a few units in the last place inside the edges of its primitive. The next ray then starts inside a closed room and
+//! cannot leave through a corner. If primitives share corners, the edge test leaves no gap between them, however narrow they
+//! are. No primitive extends beyond its edges, because there it would catch rays that have just left its neighbour.
 
 use super::primitive::Primitive;
 pub(crate) use super::rounding::dot;
 use super::rounding::{KEEP, MOST_KEEP, UNSURE, across, onto};
 use glam::{DVec3, Vec3};
 
-/// A hit: distance in units of the direction's length, and the two surface coordinates where the kind needs them.
+/// A hit: the distance `t` in units of the direction's length, and the number of the primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hit {
     pub(crate) t: f32,
@@ -35,14 +36,15 @@ pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
     Vec3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 }
 
-/// Volume between a ray and an edge, its ends given from the start of the ray: exactly opposite for the edge taken backwards.
+/// Volume between a ray and an edge, whose ends are given relative to the start of the ray. The sign is exactly opposite if
+/// the ends are exchanged.
 #[inline(always)]
 fn edge(a: Vec3, b: Vec3, d: Vec3) -> f32 {
     dot(cross(a - b, a + b), d)
 }
 
-/// A parallelogram, ready for rays: plane `n·p = h`; where `a·p + a0` and `b·p + b0` are in [−1, 1], a hit is certain. They run
-/// across it from −1/s to 1/s, s = 1 − R.
+/// A parallelogram, ready for rays, in the plane `n·p = h`. The coordinates `a·p + a0` and `b·p + b0` run from −1/s to 1/s
+/// across it, with s = 1 − R and R in units of half the width. If both are in [−1, 1], a hit is certain.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flat {
     n: Vec3,
@@ -51,20 +53,20 @@ pub(crate) struct Flat {
     a0: f32,
     b: Vec3,
     b0: f32,
-    /// Up to here, in these coordinates, rounding may be to blame for either answer.
+    /// Largest coordinate at which rounding may decide the result; from 1 up to here the edge test is used.
     band: f32,
-    /// s for both.
+    /// s for both coordinates.
     sure: [f32; 2],
     corners: [Vec3; 4],
     center: Vec3,
     half_u: Vec3,
     half_v: Vec3,
-    /// (1 − M)/s
+    /// (1 − M)/s for both coordinates: hits are kept inside this range.
     keep: [f32; 2],
 }
 
 impl Flat {
-    /// `touch`: by how much two corners that are meant to be one may differ, m.
+    /// `touch` is the largest difference of two corners that are meant to be the same, m.
     fn new(origin: DVec3, u: DVec3, v: DVec3, touch: f64) -> Self {
         let g = u.cross(v);
         let (gg, n) = (g.length_squared(), g.normalize());
@@ -94,8 +96,8 @@ impl Flat {
         }
     }
 
-    /// Distance, whether the ray meets the parallelogram there or next to its edges, and whether that is certain: if not, the
-    /// [edges](Self::edges) say. Also used lane by lane in packets.
+    /// Returns the distance t, whether the ray passes inside the parallelogram or close to its edges, and whether this is
+    /// certain. If not, [`Self::edges`] decides. Packets use this function lane by lane.
     #[inline(always)]
     pub(crate) fn look(&self, o: Vec3, d: Vec3) -> (f32, bool, bool) {
         let t = (self.h - dot(self.n, o)) / dot(self.n, d);
@@ -105,13 +107,15 @@ impl Flat {
         (t, (most <= self.band) & (t > 0.0), most <= 1.0)
     }
 
-    /// Whether the ray's line passes between the edges, each with the same sign as in the primitive beyond it.
+    /// Returns true if the line of the ray passes between the edges. An edge that a neighbouring primitive shares has the
+    /// same sign there.
     #[inline(always)]
     pub(crate) fn edges(&self, o: Vec3, d: Vec3) -> bool {
         self.between(o.x, o.y, o.z, d.x, d.y, d.z)
     }
 
-    /// By numbers, which travel in registers: a ray in memory made the loops around a rare call half as fast.
+    /// The same with plain numbers as arguments, which are passed in registers. With a ray in memory, the loops around this
+    /// rare call were half as fast.
     #[cold]
     #[inline(never)]
     fn between(&self, ox: f32, oy: f32, oz: f32, dx: f32, dy: f32, dz: f32) -> bool {
@@ -145,13 +149,13 @@ impl Flat {
     }
 }
 
-/// A triangle by its corners, with its plane `n·p = h`.
+/// A triangle with its corners and its plane `n·p = h`, ready for rays.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle {
     p: [Vec3; 3],
     n: Vec3,
     h: f32,
-    /// M for the edge opposite to each corner, m.
+    /// M (m) for the edge opposite to each corner.
     keep: [f32; 3],
 }
 
@@ -164,7 +168,7 @@ impl Triangle {
             let height = twice.length() / edge.length();
             (KEEP * across(n.cross(edge).normalize(), &p)).min(0.5 * MOST_KEEP * height) as f32
         });
-        // the plane passes through the middle: no corner is preferred
+        // the plane passes through the centroid, so that no corner is preferred
         let h = n.dot((p[0] + p[1] + p[2]) / 3.0);
         Self { p: p.map(|p| p.as_vec3()), n: n.as_vec3(), h: h as f32, keep }
     }
@@ -174,13 +178,13 @@ impl Triangle {
         let v = self.p.map(|p| p - o);
         let w = Vec3::new(edge(v[2], v[1], d), edge(v[0], v[2], d), edge(v[1], v[0], d));
         let same = ((w.x >= 0.0) & (w.y >= 0.0) & (w.z >= 0.0)) | ((w.x <= 0.0) & (w.y <= 0.0) & (w.z <= 0.0));
-        // a triangle that rounding has made a line or a point has no inside
+        // a triangle that rounding has reduced to a line or a point has no inside
         let some = (w.x != 0.0) | (w.y != 0.0) | (w.z != 0.0);
         let t = (self.h - dot(self.n, o)) / dot(self.n, d);
         (t, same & some & (t > 0.0) & (t < f32::INFINITY))
     }
 
-    /// Twice the areas about the normal between a point and the edges opposite to the corners.
+    /// Twice the signed areas of the triangles between the point `p` and the edge opposite to each corner.
     #[inline(always)]
     fn parts(&self, p: Vec3) -> [f32; 3] {
         let area = |a: Vec3, b: Vec3| dot(cross(a - p, b - p), self.n);
@@ -205,17 +209,18 @@ impl Triangle {
     }
 }
 
-/// A band of a sphere. Its radius may be far larger than the distances that matter on it, so it is met in `f64`.
+/// A band of a sphere, ready for rays. Its radius may be far larger than the distances that matter on it, so intersections
+/// are computed in `f64`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ball {
     center: DVec3,
     radius: f64,
     z: [f64; 2],
-    /// +1 outwards, −1 inwards
+    /// +1 if the front is outside, −1 if it is inside.
     sign: f64,
 }
 
-/// 32 units of rounding of `f64`.
+/// 32 units of rounding of `f64`, relative to the radius.
 const SELF: f64 = 1.0 / 281_474_976_710_656.0;
 
 impl Ball {
@@ -229,13 +234,13 @@ impl Ball {
         if disc < 0.0 {
             return (f32::INFINITY, false);
         }
-        // |f|² − r² as a product: exact to rounding also next to the surface
+        // |f|² − r² as a product, which is exact up to rounding even close to the surface
         let length = f.length();
         let c = (length - self.radius) * (length + self.radius);
         let q = b + (a * disc).sqrt().copysign(b);
         let (t0, t1) = (c / q, q / a);
         let (near, far) = if t0 < t1 { (t0, t1) } else { (t1, t0) };
-        // a root nearer than the rounding of this is the surface that the ray leaves
+        // a root nearer than this rounding is the surface that the ray leaves
         let least = self.radius * SELF / a.sqrt();
         let on_band = |t: f64| {
             let z = (f.z + d.z * t) / self.radius;
@@ -256,7 +261,7 @@ impl Ball {
     }
 }
 
-/// A flat disk with its plane `n·p = h`.
+/// A flat disk with its plane `n·p = h`, ready for rays.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Disc {
     center: Vec3,
@@ -284,7 +289,7 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
-    /// `touch`: by how much two corners that are meant to be one may differ, m.
+    /// Prepares a primitive for rays. `touch` is the largest difference of two corners that are meant to be the same, m.
     pub(crate) fn new(p: &Primitive, touch: f64) -> Self {
         match *p {
             Primitive::Parallelogram { origin, edge_u, edge_v } => Self::Flat(Flat::new(origin, edge_u, edge_v, touch)),
@@ -292,7 +297,7 @@ impl Shape {
             Primitive::Sphere { center, radius, z, inward } => Self::Ball(Ball {
                 center,
                 radius,
-                // the poles are kept whatever the rounding
+                // the poles are kept in spite of rounding
                 z: [if z[0] <= -1.0 { -2.0 } else { z[0] }, if z[1] >= 1.0 { 2.0 } else { z[1] }],
                 sign: if inward { -1.0 } else { 1.0 },
             }),
@@ -326,7 +331,8 @@ impl Shape {
         }
     }
 
-    /// Where a point of the surface lies: u, v along the edges of a parallelogram, the weights of a triangle's corners.
+    /// Coordinates of a point of the surface: u, v along the edges of a parallelogram, or the barycentric weights of a
+    /// triangle's corners.
     pub(crate) fn coordinates(&self, p: Vec3) -> [f32; 3] {
         match self {
             Self::Flat(s) => {
@@ -351,7 +357,7 @@ impl Shape {
         }
     }
 
-    /// A uniformly distributed point.
+    /// A uniformly distributed point of the surface, chosen by `u`.
     #[inline(always)]
     pub(crate) fn point(&self, u: [f32; 2]) -> Vec3 {
         match self {

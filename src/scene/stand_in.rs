@@ -1,14 +1,16 @@
-//! A scene with every surface Lambertian, of one colour: what a matrix can hold.
+//! The stand-in of a scene: the same shapes with every surface Lambertian and of one colour, which a radiosity matrix can
+//! represent.
 //!
-//! `ρ = ∫ f cos θ dω` at normal incidence, the mean of an image where there is one; glass is black, because what lies behind it is not
-//! where a Lambertian surface would send light. It is another scene with another solution: what a guide believes in, which decides where
-//! to look and never what is seen, and what `--lambertian` asks for.
+//! The reflectance is `ρ = ∫ f cos θ dω` at normal incidence, with the mean colour of an image. Glass becomes black, because
+//! a Lambertian surface would send light to other places than glass does. The stand-in is a different scene with a different
+//! solution. A guide is computed from it, which decides only where to sample and does not change the estimated image. The
+//! option `--lambertian` renders the stand-in itself.
 
 use super::bsdf::Bsdf;
 use super::description::{BsdfDescription, Description, Material};
 use glam::{DVec3, Vec3};
 
-/// The same shapes and lights with Lambertian surfaces; those that are stay as they are.
+/// The same shapes and lights with Lambertian surfaces of one colour. Surfaces that already are so stay unchanged.
 pub fn stand_in(description: &Description) -> Description {
     let rho = |m: &Material| m.lambertian().unwrap_or_else(|| albedo(&m.bsdf));
     let materials = description.materials.iter().map(|m| Material::diffuse(m.name.clone(), rho(m), m.sides));

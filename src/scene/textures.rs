@@ -1,6 +1,7 @@
-//! Reflectance from images: which primitive has which, and where on it a point lies.
+//! Reflectance from images: the image of each primitive, and the texture coordinates of a point.
 //!
-//! (u, v) runs along the edges of a parallelogram; on a triangle it is interpolated with the areas of the three parts.
+//! (u, v) runs along the edges of a parallelogram. On a triangle it is interpolated from its corners with barycentric
+//! weights.
 
 use super::description::{Colour, Description, Geometry};
 use super::primitive::Primitive;
@@ -12,12 +13,12 @@ use std::sync::Arc;
 
 pub(crate) struct Textures {
     images: Vec<Arc<Raster>>,
-    /// By primitive: which image, and the coordinates of a triangle's corners.
+    /// For every primitive with a texture: the number of its image, and the texture coordinates of a triangle's corners.
     of_prim: Vec<Option<(usize, [[f32; 2]; 3])>>,
 }
 
 impl Textures {
-    /// Nothing if no material has a texture.
+    /// Collects the images of a scene; `None` if no material has a texture.
     pub(crate) fn new(description: &Description, prims: &[(usize, Primitive)]) -> Option<Self> {
         let mut all = Self { images: vec![], of_prim: vec![None; prims.len()] };
         let mut first = 0;
@@ -42,7 +43,7 @@ impl Textures {
         (!all.images.is_empty()).then_some(all)
     }
 
-    /// The image's value at a point of a primitive that has one.
+    /// The colour of the image at a point of a primitive; `None` if the primitive has no image.
     pub(crate) fn reflectance(&self, prim: u32, shape: &Shape, p: Vec3) -> Option<Rgb> {
         let (image, [a, b, c]) = self.of_prim[prim as usize]?;
         let w = shape.coordinates(p);
@@ -53,7 +54,7 @@ impl Textures {
         Some(self.images[image].bilinear(uv))
     }
 
-    /// The largest value per channel of a primitive's image.
+    /// The largest value per channel in the image of a primitive; `None` if it has no image.
     pub(crate) fn brightest(&self, prim: usize) -> Option<Rgb> {
         let (image, _) = self.of_prim[prim]?;
         Some(self.images[image].texels.iter().fold(Rgb::ZERO, |a, &b| a.max(b)))

@@ -1,53 +1,55 @@
-//! A point of ray space: where radiance is asked for.
+//! The vertex: a surface point with a direction, at which radiance is evaluated.
 
 use crate::math::{Columns, columns};
 use glam::Vec3;
 
-/// One side of one primitive: `2·primitive`, plus 1 for the back. From [`LIGHT`] on there is no surface.
+/// Number of one side of one primitive: `2·primitive`, plus 1 for the back. Numbers from [`LIGHT`] on do not denote a
+/// surface.
 pub type Side = u32;
-/// `LIGHT + i` is light i, where it is a point or a direction.
+/// `LIGHT + i` denotes light i if it is a point or directional light.
 pub const LIGHT: Side = 1 << 31;
-/// The ray has left the scene: what comes from there is the sky's.
+/// Denotes a ray that has left the scene; its radiance is that of the sky.
 pub const ESCAPED: Side = u32::MAX;
 
-/// A surface point with the direction radiance leaves in.
+/// A surface point x with the direction ω in which radiance leaves it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vertex {
-    /// Position, on the surface.
+    /// Position on the surface.
     pub p: Vec3,
-    /// Unit normal of the side that is seen, `n·ω > 0`.
+    /// Unit normal of the visible side, `n·ω > 0`.
     pub n: Vec3,
-    /// Unit direction ω away from the surface, towards whoever asks.
+    /// Unit direction ω away from the surface, back along the path.
     pub omega: Vec3,
-    /// Which side of which primitive, or which light without a surface, or [`ESCAPED`].
+    /// Side of a primitive, or a light without a surface, or [`ESCAPED`].
     pub side: Side,
 }
 
 impl Vertex {
-    /// Where a ray in unit direction `d` leaves the scene.
+    /// The vertex of a ray in the unit direction `d` that leaves the scene at `p`.
     pub(crate) fn escaped(p: Vec3, d: Vec3) -> Self {
         Self { p, n: -d, omega: -d, side: ESCAPED }
     }
 
-    /// Whether it lies on a surface.
+    /// Returns true if the vertex lies on a surface.
     #[inline(always)]
     pub fn on_surface(&self) -> bool {
         self.side < LIGHT
     }
 }
 
-/// A wave of vertices as columns, with room for the rays between them.
+/// A wave of vertices stored as columns, with buffers for the rays between them.
 #[derive(Clone, Debug, Default)]
 pub struct VertexWave {
     pub(crate) p: Columns,
     pub(crate) n: Columns,
     pub(crate) omega: Columns,
     pub(crate) side: Vec<Side>,
-    /// Scratch of the batched methods: origins, directions, distances, primitives, list of indices.
+    /// Buffers of the batched methods.
     pub(crate) rays: Rays,
 }
 
-/// Rays of a wave.
+/// Buffers for the rays of a wave: origins `o`, directions `d`, distances `t`, primitives, a list of ray indices, and
+/// cosines.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rays {
     pub(crate) o: Columns,
@@ -56,7 +58,7 @@ pub(crate) struct Rays {
     pub(crate) prim: Vec<u32>,
     pub(crate) list: Vec<u32>,
     pub(crate) cosine: Vec<f32>,
-    /// Four random numbers each.
+    /// Four columns of random numbers.
     pub(crate) u: [Vec<f32>; 4],
 }
 

@@ -1,4 +1,4 @@
-//! Acceleration of the series itself: the limit of S_n from the first few terms, and what it does to their noise.
+//! Extrapolation of the series: estimates the limit of S_n from the first few terms, and the effect on their noise.
 //!
 //! ```text
 //! Aitken      A = S_{n−1} + t_n / (1 − g),  g = t_{n+1}/t_n      exact for one eigenvalue:       t_k = c λ^k
@@ -11,66 +11,67 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | t_k | a term: ⟨W, T^k E⟩, or one entry of T^k E | argument `terms` |
-//! | S_n | Σ_{k≤n} t_k | |
-//! | A | the accelerated value | [`Accelerated::value`] |
-//! | ∇A | ∂A/∂t_k | [`Accelerated::gradient`] |
+//! | S_n | partial sum Σ_{k≤n} t_k | |
+//! | A | the extrapolated value | [`Accelerated::value`] |
+//! | ∇A | the derivatives ∂A/∂t_k | [`Accelerated::gradient`] |
+//! | r | a decay rate of the terms that is assumed to be known | [`known_rate`] |
 //!
-//! Terms before the last two count once in Aitken's A; ∂A/∂t_n = (1 − 2g)/(1 − g)² and ∂A/∂t_{n+1} = 1/(1 − g)², 25 at
-//! g = 0.8, where a tail of known rate has 1 + r/(1 − r) = 5. To first order, that is: a quotient of noisy terms is also
-//! biased, and means little where the noise of t_n is not small beside t_n − t_{n+1}. None is exact for a continuous
-//! spectrum, and none is a bound.
+//! In Aitken's A, each term before the last two counts once. The last two have the derivatives ∂A/∂t_n = (1 − 2g)/(1 − g)²
+//! and ∂A/∂t_{n+1} = 1/(1 − g)². The latter is 25 at g = 0.8, whereas the last term with a tail of known rate has 1 + r/(1 −
+//! r) = 5. This holds to first order: a quotient of noisy terms is also biased. It means little if the noise of t_n is not
+//! small compared with t_n − t_{n+1}. None of the methods is exact for a continuous spectrum, and none gives a bound.
 //!
-//! Where every other term vanishes (two plates, one of them lit), t_n = t_{n+1} or 0 and Aitken has nothing to extrapolate:
-//! [`two_step`] applies it to S₀, S₂, S₄, ….
+//! If every other term vanishes (two plates, one of them emits), t_n = t_{n+1} or t_n = 0, and Aitken has nothing to
+//! extrapolate. [`two_step`] applies Aitken to S₀, S₂, S₄, … instead.
 //!
 //! Reference: Aitken (1926); Wynn, *On a device for computing the e_m(S_n) transformation* (1956); Brezinski and Redivo
 //! Zaglia, *Extrapolation Methods* (1991).
 
 use nalgebra::{DMatrix, DVector};
 
-/// A limit, with its derivative by every term.
+/// An extrapolated limit, with its derivative with respect to every term.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Accelerated {
     /// The extrapolated Σ t_k.
     pub value: f64,
-    /// ∂/∂t_k, one per term given.
+    /// The derivatives ∂A/∂t_k, one per term given.
     pub gradient: Vec<f64>,
 }
 
 impl Accelerated {
-    /// Standard error to first order, from the covariance of the terms.
+    /// Standard error of the limit, to first order, from the covariance C of the terms.
     ///
     /// # Panics
-    /// If C is not as large as the gradient.
+    /// If the size of C is not the length of the gradient.
     pub fn std_error(&self, covariance: &DMatrix<f64>) -> f64 {
         let g = DVector::from_column_slice(&self.gradient);
         (covariance * &g).dot(&g).sqrt()
     }
 
-    /// √(Var(A)/Var(S_n)): how much noisier than the sum of the same terms.
+    /// √(Var(A)/Var(S_n)): the standard error of the limit divided by that of the plain sum of the same terms.
     ///
     /// # Panics
-    /// If C is not as large as the gradient.
+    /// If the size of C is not the length of the gradient.
     pub fn amplification(&self, covariance: &DMatrix<f64>) -> f64 {
         self.std_error(covariance) / covariance.sum().sqrt()
     }
 }
 
-/// The names of what [`all`] returns.
+/// The names of the values that [`all`] returns, in the same order.
 pub const METHODS: [&str; 5] = ["S_n", "Aitken", "two-step", "known rate", "Wynn"];
 
-/// The plain sum and every extrapolation of it; r is the rate that is held to be known.
+/// The plain sum and every extrapolation of it; r is the decay rate that is assumed to be known.
 pub fn all(terms: &[f64], r: f64) -> [Option<Accelerated>; 5] {
     [Some(plain(terms)), aitken(terms), two_step(terms), known_rate(terms, r), wynn(terms)]
 }
 
-/// Σ t_k, for comparison.
+/// The plain sum Σ t_k, for comparison.
 pub fn plain(terms: &[f64]) -> Accelerated {
     Accelerated { value: terms.iter().sum(), gradient: vec![1.0; terms.len()] }
 }
 
-/// Aitken's Δ² on the last three partial sums: the last two terms as a geometric series. `None` where they are equal or
-/// fewer than two.
+/// Aitken's Δ² method on the last three partial sums: it continues the last two terms as a geometric series. `None` if these
+/// are equal, or if there are fewer than two terms.
 ///
 /// ```
 /// use fredholm::solver::accelerate::aitken;
@@ -88,8 +89,8 @@ pub fn aitken(terms: &[f64]) -> Option<Accelerated> {
     Some(Accelerated { value: before.iter().sum::<f64>() + t0 * t0 / d, gradient })
 }
 
-/// Aitken's Δ² on every second partial sum, S_{n−4}, S_{n−2}, S_n: for series whose odd terms have a rate of their own.
-/// `None` with fewer than five terms, or where nothing can be extrapolated.
+/// Aitken's Δ² method on every second partial sum, S_{n−4}, S_{n−2}, S_n. Use it for series whose odd and even terms decay
+/// separately. `None` with fewer than five terms, or if nothing can be extrapolated.
 ///
 /// ```
 /// use fredholm::solver::accelerate::{aitken, two_step};
@@ -107,7 +108,7 @@ pub fn two_step(terms: &[f64]) -> Option<Accelerated> {
     Some(Accelerated { value: before.iter().sum::<f64>() + pairs.value, gradient })
 }
 
-/// S_n plus the tail of a mode that decays with the known rate r: t_n r/(1 − r).
+/// S_n plus the tail t_n r/(1 − r) of a mode that decays with the known rate r.
 ///
 /// ```
 /// let a = fredholm::solver::accelerate::known_rate(&[1.0, 0.5], 0.5);
@@ -121,8 +122,9 @@ pub fn known_rate(terms: &[f64], r: f64) -> Option<Accelerated> {
     Some(out)
 }
 
-/// Wynn's ε: the last even column of the table, for as many eigenvalues as half the number of terms after the first. With
-/// an even number of terms the first partial sum is left out. `None` without a term, or where the table divides by zero.
+/// Wynn's ε algorithm: the last even column of the table. It is exact for half as many eigenvalues as there are terms after
+/// the first. With an even number of terms the first partial sum is left out. `None` without a term, or if the table divides
+/// by zero.
 ///
 /// ```
 /// use fredholm::solver::accelerate::wynn;
@@ -147,7 +149,7 @@ pub fn wynn(terms: &[f64]) -> Option<Accelerated> {
     column.pop()
 }
 
-/// ε_{k+1}^{(j)} = ε_{k−1}^{(j+1)} + 1/(ε_k^{(j+1)} − ε_k^{(j)}), and its derivatives.
+/// One entry of the table, ε_{k+1}^{(j)} = ε_{k−1}^{(j+1)} + 1/(ε_k^{(j+1)} − ε_k^{(j)}), and its derivatives.
 fn step(pair: &[Accelerated], old: &Accelerated) -> Option<Accelerated> {
     let d = pair[1].value - pair[0].value;
     if d == 0.0 {

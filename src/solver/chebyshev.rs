@@ -1,4 +1,4 @@
-//! Chebyshev's semi-iteration: the best that can be done with the ends of the spectrum alone.
+//! Chebyshev's semi-iteration: the best method that uses only the ends of the spectrum.
 //!
 //! ```text
 //! L − xₙ = Pₙ(T) (L − x₀)        Pₙ(λ) = Cₙ((λ − m)/h) / Cₙ((1 − m)/h)        m, h: middle and half length of [a, b]
@@ -9,11 +9,11 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | [a, b] | holds every eigenvalue of T | [`Chebyshev::new`]; see [`extremes`](crate::operator::matrix::extremes) |
-//! | Cₙ | Chebyshev polynomial; Pₙ(1) = 1, so that L stays L | |
+//! | [a, b] | an interval that contains every eigenvalue of T | [`Chebyshev::new`]; see [`extremes`](crate::operator::matrix::extremes) |
+//! | Cₙ, Pₙ | Chebyshev polynomial, and its scaled form with Pₙ(1) = 1, so that the iteration leaves L unchanged | |
 //!
-//! No inner products: each step is one application and some sums. The price is that b must be known. An eigenvalue above b
-//! is not damped as the bound says, and one far above makes the iteration slower than the Neumann series.
+//! The method needs no inner products: each step is one application of T and some sums. The price is that b must be known.
+//! The bound does not hold for an eigenvalue above b; one far above makes the iteration slower than the Neumann series.
 //!
 //! Reference: Golub and Varga (1961); Varga, *Matrix Iterative Analysis* (1962), chapter 5.
 
@@ -36,7 +36,7 @@ pub struct Chebyshev<'a, T: ?Sized> {
 }
 
 impl<'a, T: LinearOperator + ?Sized> Chebyshev<'a, T> {
-    /// Starts at E; `[a, b]` should hold every eigenvalue of T, with a < b < 1.
+    /// Starts at x₀ = E. `[a, b]` should contain every eigenvalue of T, with a < b < 1.
     pub fn new(operator: &'a T, emission: &[f64], [a, b]: [f64; 2]) -> Self {
         let vector = || emission.to_vec();
         Self {
@@ -52,7 +52,7 @@ impl<'a, T: LinearOperator + ?Sized> Chebyshev<'a, T> {
         }
     }
 
-    /// 2 qⁿ/(1 + q²ⁿ) for eigenvalues in [a, b].
+    /// The factor 2 qⁿ/(1 + q²ⁿ) by which n steps reduce the error at least, if all eigenvalues lie in [a, b].
     ///
     /// ```
     /// use fredholm::solver::Chebyshev;
@@ -68,8 +68,8 @@ impl<'a, T: LinearOperator + ?Sized> Chebyshev<'a, T> {
 }
 
 impl<T: LinearOperator + ?Sized> Iteration for Chebyshev<'_, T> {
-    /// With z = (T x + E − m x)/h, τ = Cₙ(σ)/Cₙ₊₁(σ) and the recurrence Cₙ₊₁ = 2 z Cₙ − Cₙ₋₁:
-    /// xₙ₊₁ = τ (2 z − (Cₙ₋₁(σ)/Cₙ(σ)) xₙ₋₁), which leaves L where it is.
+    /// With z = (T x + E − m x)/h, τ = Cₙ(σ)/Cₙ₊₁(σ) and the recurrence Cₙ₊₁ = 2 z Cₙ − Cₙ₋₁: xₙ₊₁ = τ (2 z −
+    /// (Cₙ₋₁(σ)/Cₙ(σ)) xₙ₋₁). This step leaves L unchanged.
     fn advance(&mut self) -> bool {
         let Self { operator, emission, middle, half, ratio, x, before, image, steps } = self;
         operator.apply(x, image);

@@ -1,19 +1,19 @@
-//! Every solver on the same system, step by step, against its solution to rounding.
+//! Runs every solver on the same system and compares each step with a solution that is exact up to rounding.
 //!
 //! ```text
-//! error of a step = ‖x − L‖_w / ‖L‖_w        ⟨u, v⟩_w = Σ Aᵢ uᵢ vᵢ/ρᵢ        L by LU, or by GMRES to rounding
+//! error of a step = ‖x − L‖_w / ‖L‖_w        ⟨u, v⟩_w = Σ Aᵢ uᵢ vᵢ/ρᵢ        L by LU, or by GMRES up to rounding
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | applications | products with T, or work worth as much | [`Point::applications`] |
-//! | λ_min, λ_max | ends of the spectrum, by Lanczos, once if at all; Chebyshev and SOR are charged for them | [`System::ends`] |
+//! | applications | products with T, or other work in units of one product | [`Point::applications`] |
+//! | λ_min, λ_max | ends of the spectrum by Lanczos, computed once and only if needed; their cost is added to that of Chebyshev and SOR | [`System::ends`] |
 //!
-//! The weight 1/ρ is that in which T is self-adjoint: there the error of every stationary method falls by its eigenvalues,
-//! and the bounds of Chebyshev's iteration hold.
+//! T is self-adjoint in the weight 1/ρ. In this norm the eigenvalues give the rate at which the error of every stationary
+//! method falls, and the bounds for Chebyshev's iteration hold.
 //!
-//! T as sampled is self-adjoint within its noise only. There is no LU of it and no [`ConjugateGradients`]; the ends are those of
-//! its symmetric part, which hold the real parts of all eigenvalues.
+//! A sampled T is self-adjoint only within its noise. For it, LU and [`ConjugateGradients`] are not available. The ends of
+//! the spectrum are then those of its symmetric part; they enclose the real parts of all eigenvalues.
 
 mod history;
 
@@ -26,70 +26,70 @@ pub use history::{History, Point, Solver, Solvers};
 use std::sync::OnceLock;
 use std::time::Instant;
 
-/// Where L comes from.
+/// The method that computed the reference solution L.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reference {
-    /// LU.
+    /// LU factorisation.
     Lu {
-        /// Its time.
+        /// Its run time.
         seconds: f64,
     },
-    /// GMRES, until its residual fell no more.
+    /// GMRES, until its residual stopped falling.
     Gmres {
-        /// Products with T.
+        /// Number of products with T.
         applications: usize,
     },
 }
 
-/// (I − T) L = E with what is known about it.
+/// The system (I − T) L = E of one channel, with its reference solution and its spectrum.
 #[derive(Clone, Debug)]
 pub struct System<'a, T> {
-    /// T of one channel.
+    /// The operator T of one colour channel.
     pub operator: &'a T,
-    /// E.
+    /// The emission E per patch.
     pub emission: Vec<f64>,
-    /// L.
+    /// The reference solution L per patch.
     pub light: Vec<f64>,
-    /// Who found L.
+    /// The method that computed L.
     pub reference: Reference,
     weight: Weight,
     ends: OnceLock<Ends>,
 }
 
-/// Ends of the spectrum, and what they took.
+/// The ends of the spectrum, and the cost of computing them.
 #[derive(Clone, Copy, Debug)]
 pub struct Ends {
     /// λ_min and λ_max.
     pub found: Extremes,
-    /// Products with T.
+    /// Number of products with T.
     pub applications: usize,
-    /// Seconds.
+    /// Run time in seconds.
     pub seconds: f64,
 }
 
-/// When a study stops.
+/// Limits at which the run of a solver stops.
 #[derive(Clone, Copy)]
 pub struct Limits<'a> {
-    /// Error that is good enough.
+    /// Stop when the relative error is at most this.
     pub error: f64,
-    /// Applications that are too many.
+    /// Stop when this number of applications is reached.
     pub applications: f64,
-    /// Asked before every step.
+    /// Called before every step; the run stops if it returns true.
     pub stopped: &'a dyn Fn() -> bool,
 }
 
-/// The residual to which Lanczos finds the ends: an eigenvalue is off by about its square, and more would cost more than
-/// it saves.
+/// Residual at which Lanczos stops. The error of an eigenvalue is about the square of this, and a more accurate result would
+/// cost more than it saves.
 const ENDS: f64 = 1e-3;
 
-/// Steps that Lanczos may take.
+/// Maximum number of Lanczos steps.
 const STEPS: usize = 200;
 
 impl<'a> System<'a, PatchOperator<'a>> {
-    /// Solves by LU.
+    /// Computes the reference solution by LU.
     ///
     /// # Errors
-    /// [`Singular`] if the channel keeps all its light.
+    /// [`Singular`] if a part of the scene neither absorbs light nor lets it escape.
     pub fn new(operator: &'a PatchOperator<'a>, emission: Vec<f64>) -> Result<Self, Singular> {
         let clock = Instant::now();
         let light = direct::solve(operator, &emission)?.x;
@@ -99,10 +99,10 @@ impl<'a> System<'a, PatchOperator<'a>> {
 }
 
 impl<'a> System<'a, RayOperator<'a>> {
-    /// Solves by GMRES to rounding.
+    /// Computes the reference solution by GMRES, up to rounding.
     ///
     /// # Errors
-    /// [`Singular`] if the channel keeps all its light.
+    /// [`Singular`] if a part of the scene neither absorbs light nor lets it escape.
     pub fn sampled(operator: &'a RayOperator<'a>, emission: Vec<f64>) -> Result<Self, Singular> {
         let settled = settle(operator, &emission)?;
         let reference = Reference::Gmres { applications: settled.applications };
@@ -112,25 +112,25 @@ impl<'a> System<'a, RayOperator<'a>> {
 }
 
 impl<T: Transposed> System<'_, T> {
-    /// The solvers that are possible here.
+    /// The solvers that can be used with this operator.
     pub fn solvers(&self) -> Vec<Solver> {
         Solver::ALL.into_iter().filter(|s| self.dense() || s.suits_rays()).collect()
     }
 
-    /// ‖E − (I − T) L‖/‖E‖ in the area inner product.
+    /// Relative residual of the reference solution, ‖E − (I − T) L‖/‖E‖ in the area inner product.
     pub fn residual(&self) -> f64 {
         let left = super::residual(self.operator, &self.emission, &self.light);
         self.operator.norm(&left) / self.operator.norm(&self.emission)
     }
 
-    /// The ends of the spectrum, found once, by the first who asks.
+    /// The ends of the spectrum. They are computed at the first call and stored.
     pub fn ends(&self) -> &Ends {
         self.ends.get_or_init(|| {
             let clock = Instant::now();
             let (found, each) = if self.dense() {
                 (extremes(self.operator, &self.weight, ENDS, STEPS), 1)
             } else {
-                // T and its adjoint
+                // each application needs T and its adjoint
                 let symmetric = Expression::from(self.operator).symmetric_part(&self.weight);
                 (extremes(&symmetric, &self.weight, ENDS, STEPS), 2)
             };
@@ -138,23 +138,24 @@ impl<T: Transposed> System<'_, T> {
         })
     }
 
-    /// [a, b] that holds the spectrum, b < 1.
+    /// An interval [a, b] that contains the spectrum, with b < 1.
     pub fn bracket(&self) -> [f64; 2] {
         let ends = self.ends().found;
         let [a, b] = ends.bracket();
         [a, b.min(0.5 * (1.0 + ends.largest))]
     }
 
-    /// ‖x − L‖_w/‖L‖_w.
+    /// The relative error ‖x − L‖_w/‖L‖_w.
     pub fn error(&self, x: &[f64]) -> f64 {
         let difference: Vec<f64> = x.iter().zip(&self.light).map(|(x, l)| x - l).collect();
         self.weight.norm(&difference) / self.weight.norm(&self.light)
     }
 
-    /// Runs a solver until its error is small enough, or it can go no further. One that is not possible here has no steps.
+    /// Runs a solver until its error is small enough, another limit is reached, or it cannot improve further. A solver that
+    /// cannot be used here returns no steps.
     pub fn history(&self, solver: Solver, limits: Limits<'_>) -> History {
         let (t, e) = (self.operator, &self.emission);
-        // the ends are known before the first step, and have to be paid for
+        // the ends are known before the first step; their cost is added to every step
         let informed = || (self.ends().applications as f64, self.ends().seconds);
         let radius = || self.bracket().map(f64::abs).into_iter().fold(0.0, f64::max);
         let points = match solver {
@@ -199,7 +200,7 @@ impl<T: Transposed> System<'_, T> {
                 error,
                 seconds: s.seconds + seconds,
             });
-            // written so that NaN ends it, too
+            // this form of the condition also stops at NaN
             if !(error > limits.error && s.applications < limits.applications) {
                 break;
             }
@@ -211,7 +212,7 @@ impl<T: Transposed> System<'_, T> {
         matches!(self.reference, Reference::Lu { .. })
     }
 
-    /// LU: n³/3 multiplications, n/3 products with T.
+    /// The single step of LU: n³/3 multiplications, which count as n/3 products with T.
     fn direct(&self) -> Option<Point> {
         let Reference::Lu { seconds } = self.reference else { return None };
         let residual = super::residual(self.operator, &self.emission, &self.light);

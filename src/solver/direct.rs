@@ -1,36 +1,36 @@
-//! The direct solve: LU of I − T.
+//! The direct solver: LU factorisation of I − T.
 //!
 //! ```text
 //! P (I − T) = L U        x = U⁻¹ L⁻¹ P E        residual  maxᵢ |E − (I − T) x|ᵢ
 //! ```
 //!
-//! nalgebra's LU is the reference; faer's blocked LU takes over above [`LARGE`] unknowns where the feature is on
-//! (measured: 7 times faster at 2000, 29 times at 5000).
+//! The LU factorisation of nalgebra is the reference. Above [`LARGE`] unknowns, the blocked LU of faer is used if that
+//! feature is enabled (measured: 7 times faster at 2000 unknowns, 29 times at 5000).
 
 use crate::operator::matrix::{LinearOperator, PatchOperator, Rows};
 use nalgebra::{DMatrix, DVector};
 
-/// From this size on [`solve`] prefers faer.
+/// Above this number of unknowns, [`solve`] uses faer.
 pub const LARGE: usize = 1000;
 
-/// A solution with its own check.
+/// A solution with its residual.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direct {
-    /// x with (I − T) x = E.
+    /// The solution x of (I − T) x = E.
     pub x: Vec<f64>,
-    /// max |E − (I − T) x|.
+    /// The residual max |E − (I − T) x|.
     pub residual: f64,
 }
 
-/// I − T has no inverse: 1 is an eigenvalue, and the light never leaves.
+/// I − T has no inverse: 1 is an eigenvalue of T, because a part of the scene neither absorbs light nor lets it escape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("I − T is singular: a part of the scene keeps all its light")]
+#[error("I − T is singular: a part of the scene neither absorbs light nor lets it escape")]
 pub struct Singular;
 
-/// Solves (I − T) x = E by the fastest LU at hand.
+/// Solves (I − T) x = E by the fastest available LU.
 ///
 /// # Errors
-/// [`Singular`] if 1 is an eigenvalue of T to rounding.
+/// [`Singular`] if 1 is an eigenvalue of T, up to rounding.
 pub fn solve(t: &PatchOperator<'_>, emission: &[f64]) -> Result<Direct, Singular> {
     #[cfg(feature = "faer")]
     if t.len() > LARGE {
@@ -39,10 +39,10 @@ pub fn solve(t: &PatchOperator<'_>, emission: &[f64]) -> Result<Direct, Singular
     solve_nalgebra(t, emission)
 }
 
-/// Solves by nalgebra.
+/// Solves (I − T) x = E with nalgebra.
 ///
 /// # Errors
-/// [`Singular`] if 1 is an eigenvalue of T to rounding.
+/// [`Singular`] if 1 is an eigenvalue of T, up to rounding.
 pub fn solve_nalgebra(t: &PatchOperator<'_>, emission: &[f64]) -> Result<Direct, Singular> {
     let n = t.len();
     let matrix = DMatrix::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - t.entry(i, j));
@@ -50,10 +50,10 @@ pub fn solve_nalgebra(t: &PatchOperator<'_>, emission: &[f64]) -> Result<Direct,
     checked(t, emission, x.as_slice().to_vec())
 }
 
-/// Solves by faer.
+/// Solves (I − T) x = E with faer.
 ///
 /// # Errors
-/// [`Singular`] if 1 is an eigenvalue of T to rounding.
+/// [`Singular`] if 1 is an eigenvalue of T, up to rounding.
 #[cfg(feature = "faer")]
 pub fn solve_faer(t: &PatchOperator<'_>, emission: &[f64]) -> Result<Direct, Singular> {
     use faer::{Mat, linalg::solvers::Solve};
@@ -69,7 +69,7 @@ fn checked(t: &PatchOperator<'_>, emission: &[f64], x: Vec<f64>) -> Result<Direc
     if residual.is_finite() && residual <= 1e-8 * scale { Ok(Direct { x, residual }) } else { Err(Singular) }
 }
 
-/// max |E − (I − T) x|.
+/// The residual max |E − (I − T) x|.
 pub fn residual<T: LinearOperator + ?Sized>(t: &T, emission: &[f64], x: &[f64]) -> f64 {
     let mut y = vec![0.0; x.len()];
     t.apply(x, &mut y);

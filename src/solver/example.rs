@@ -1,4 +1,5 @@
-//! The worked example of `CONTRIBUTING.md`: the iteration of Richardson; compiled and tested, not listed among the others.
+//! The worked example of `CONTRIBUTING.md`: Richardson's iteration. It is compiled and tested, but the program does not
+//! offer it.
 //!
 //! ```text
 //! x ← x + ω (E − (I − T) x)        converges if |1 − ω (1 − λ)| < 1 for every eigenvalue λ of T;  ω = 1 is the Neumann series
@@ -30,8 +31,8 @@ impl<T: LinearOperator + ?Sized> Iteration for Richardson<'_, T> {
     }
 }
 
-/// Two plates with ρ = 1/2 that see only each other: L = 4/3, 2/3; the eigenvalues of T are ±1/2, so the error falls by
-/// max |1 − ω (1 ∓ 1/2)| a step: 0.6 for ω = 0.8.
+/// Two plates with ρ = 1/2 that see only each other. The solution is L = 4/3, 2/3. The eigenvalues of T are ±1/2, so the
+/// error falls by the factor max |1 − ω (1 ∓ 1/2)| per step: 0.6 for ω = 0.8.
 #[test]
 fn it_converges_as_fast_as_its_formula_says() {
     use super::Watched;
@@ -41,9 +42,9 @@ fn it_converges_as_fast_as_its_formula_says() {
     let start = || Richardson { operator: &t, emission: &light, omega: 0.8, x: light.to_vec(), products: 0.0 };
     let mut watched = Watched::new(&t, &light, start);
     let steps: Vec<f64> = watched.by_ref().take(20).map(|s| s.residual).collect();
-    // 19 steps: 0.6^19 is left of an error below 1
+    // after 19 steps, a factor 0.6^19 remains of an error below 1
     assert!((watched.iteration().iterate()[0] - 4.0 / 3.0).abs() < 0.6f64.powi(19));
-    // both modes are in the start; of the faster one, 1 − 0.8 · 3/2, nothing is left after a while
+    // the start contains both modes; the faster one, with the factor 1 − 0.8 · 3/2, has vanished after a while
     let rate = steps[19] / steps[18];
     assert!((rate - 0.6).abs() < 1e-6, "{rate}");
 }

@@ -1,4 +1,4 @@
-//! An iteration for `(I − T) x = E` that can be stopped and inspected after every step.
+//! Iterations for `(I − T) x = E` that can be stopped and inspected after every step.
 //!
 //! ```text
 //! x₀ = E,  x₁, x₂, … → L        residual  r = E − (I − T) x        error  L − x = (I − T)⁻¹ r
@@ -8,43 +8,44 @@
 //! |---|---|---|
 //! | x | the iterate | [`Iteration::iterate`] |
 //! | applications | products with T so far, n² multiplications each | [`Iteration::applications`] |
-//! | ‖x‖, ‖r‖ | in the area inner product | [`IterationStep`] |
+//! | ‖x‖, ‖r‖ | norms in the area inner product | [`IterationStep`] |
 //!
-//! Every iteration starts at x₀ = E, so that patches that reflect nothing are right from the start. [`Watched`] runs one and
-//! measures it from outside: the residual of a step is computed afresh from its iterate, by a product of its own which
-//! neither counts as an application nor runs on the clock. No iteration can be wrong about itself.
+//! Every iteration starts at x₀ = E, so that patches that reflect nothing are right from the start. [`Watched`] runs an
+//! iteration and measures it independently. It computes the residual of each step from the iterate with a separate product
+//! with T. This product counts neither as an application nor as time. A wrong residual inside an iteration can therefore not
+//! hide its error.
 
 use crate::operator::matrix::LinearOperator;
 use std::time::{Duration, Instant};
 
-/// A way to solve (I − T) x = E step by step.
+/// An iterative solver for (I − T) x = E.
 pub trait Iteration {
-    /// One step; `false` if there is nothing left to improve, and then nothing has changed.
+    /// Performs one step. Returns false if there is nothing left to improve; then nothing has changed.
     fn advance(&mut self) -> bool;
 
-    /// x, one value per patch.
+    /// The iterate x, one value per patch.
     fn iterate(&self) -> &[f64];
 
-    /// Products with T so far; work that is no product counts as the share of n² multiplications that it takes.
+    /// Number of products with T so far. Other work counts as a fraction: its multiplications divided by n².
     fn applications(&self) -> f64;
 }
 
-/// What one step has come to.
+/// Measurements after one step of an iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IterationStep {
-    /// Steps so far; 0 is the start.
+    /// Number of steps so far; 0 is the start.
     pub step: usize,
     /// Products with T so far.
     pub applications: f64,
     /// ‖x‖ in the area inner product.
     pub norm: f64,
-    /// ‖E − (I − T) x‖ in the area inner product, computed afresh.
+    /// ‖E − (I − T) x‖ in the area inner product, computed independently of the iteration.
     pub residual: f64,
-    /// Seconds spent in the steps, without the inspection.
+    /// Seconds spent in the steps, without the measurements.
     pub seconds: f64,
 }
 
-/// An iteration under inspection: an iterator over its steps, the start included.
+/// An iteration with measurements: an iterator over its steps, beginning with the start x₀.
 ///
 /// ```
 /// use fredholm::operator::{form_factor::FormFactors, matrix::PatchOperator};
@@ -67,14 +68,14 @@ pub struct Watched<'a, T: ?Sized, I> {
 }
 
 impl<'a, T: LinearOperator + ?Sized, I: Iteration> Watched<'a, T, I> {
-    /// Watches an iteration; making it is on the clock.
+    /// Measures the iteration that `make` returns; the time of `make` is included.
     pub fn new(operator: &'a T, emission: &'a [f64], make: impl FnOnce() -> I) -> Self {
         let start = Instant::now();
         let iteration = make();
         Self { operator, emission, iteration, steps: 0, spent: start.elapsed(), started: false }
     }
 
-    /// The iteration as it stands: after [`Iterator::next`] has returned a step, the iterate of that step.
+    /// The current state of the iteration: after [`Iterator::next`] has returned a step, the iterate of that step.
     pub fn iteration(&self) -> &I {
         &self.iteration
     }
@@ -96,7 +97,8 @@ impl<T: LinearOperator + ?Sized, I: Iteration> Iterator for Watched<'_, T, I> {
     type Item = IterationStep;
 
     fn next(&mut self) -> Option<IterationStep> {
-        // the first call shows the start; a step is taken only when it is asked for, so that `iteration` shows the last
+        // the first call returns the start; a step is taken only when it is requested, so that `iteration` shows the last
+        // step returned
         if std::mem::replace(&mut self.started, true) {
             let clock = Instant::now();
             let moved = self.iteration.advance();
@@ -110,7 +112,7 @@ impl<T: LinearOperator + ?Sized, I: Iteration> Iterator for Watched<'_, T, I> {
     }
 }
 
-/// E − (I − T) x.
+/// The residual E − (I − T) x.
 pub fn residual<T: LinearOperator + ?Sized>(t: &T, emission: &[f64], x: &[f64]) -> Vec<f64> {
     let mut r = vec![0.0; x.len()];
     t.apply(x, &mut r);

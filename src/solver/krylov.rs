@@ -1,4 +1,4 @@
-//! Iterations that look for the best x in E + span{T E, T² E, …}.
+//! Krylov iterations: they find the best x in E + span{T E, T² E, …}.
 //!
 //! ```text
 //! CG          self-adjoint in ⟨u, v⟩_w = Σ wᵢ uᵢ vᵢ:      ‖L − xₙ‖_e ≤ 2 qⁿ/(1 + q²ⁿ) ‖L − x₀‖_e,  ‖u‖_e² = ⟨u, (I − T) u⟩_w
@@ -9,11 +9,11 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | D^½ A^½ F A^−½ D^½ | the symmetrised T; in ⟨·,·⟩_w it is T itself | [`ConjugateGradients`] |
-//! | V, H | orthonormal basis of the Krylov space and T in it, by Arnoldi | [`Gmres`] |
+//! | D^½ A^½ F A^−½ D^½ | the symmetrised T, with D = diag(ρ); it corresponds to T in the inner product ⟨·,·⟩_w | [`ConjugateGradients`] |
+//! | V, H | orthonormal basis of the Krylov space, and I − T in this basis, by Arnoldi | [`Gmres`] |
 //!
-//! The weight w = A/ρ leaves black patches out: there L = E, which the start x₀ = E has right already, and every direction
-//! T p vanishes there. The first residual, T E, costs one application.
+//! The weight w = A/ρ leaves out black patches (ρ = 0). There L = E, which the start x₀ = E already contains, and every
+//! direction T p is zero. The first residual, T E, costs one application of T.
 //!
 //! Reference: Hestenes and Stiefel (1952); Saad and Schultz (1986); Saad, *Iterative Methods for Sparse Linear Systems*
 //! (2003), chapter 6.
@@ -21,10 +21,10 @@
 use super::iteration::Iteration;
 use crate::operator::matrix::{LinearOperator, Weight};
 
-/// Conjugate gradients on I − T in the inner product in which T is self-adjoint.
+/// Conjugate gradients for I − T, in the inner product in which T is self-adjoint.
 ///
-/// Needs r(T) < 1 and a weight in which T is self-adjoint: A/ρ for dense form factors, and for what is built of them by sums
-/// and powers. Sampled rows are self-adjoint only within their noise; use [`Gmres`] there.
+/// Requires a spectral radius r(T) < 1 and a weight in which T is self-adjoint. For dense form factors, and for sums and
+/// powers of their T, this weight is A/ρ. Sampled rows are self-adjoint only within their noise; use [`Gmres`] for them.
 #[derive(Clone, Debug)]
 pub struct ConjugateGradients<'a, T: ?Sized> {
     operator: &'a T,
@@ -39,7 +39,7 @@ pub struct ConjugateGradients<'a, T: ?Sized> {
 }
 
 impl<'a, T: LinearOperator + ?Sized> ConjugateGradients<'a, T> {
-    /// Starts at E.
+    /// Starts at x₀ = E.
     pub fn new(operator: &'a T, weight: Weight, emission: &[f64]) -> Self {
         let mut residual = vec![0.0; emission.len()];
         operator.apply(emission, &mut residual);
@@ -78,7 +78,7 @@ impl<T: LinearOperator + ?Sized> Iteration for ConjugateGradients<'_, T> {
     }
 }
 
-/// Generalised minimal residuals, without restarts, in the area inner product.
+/// Generalised minimal residuals (GMRES), without restarts, in the area inner product.
 #[derive(Clone, Debug)]
 pub struct Gmres<'a, T: ?Sized> {
     operator: &'a T,
@@ -86,17 +86,17 @@ pub struct Gmres<'a, T: ?Sized> {
     x: Vec<f64>,
     /// V: v₀ = T E/‖T E‖, v₁, ….
     basis: Vec<Vec<f64>>,
-    /// H turned into a triangle by the rotations, column by column.
+    /// H, made triangular by the rotations, column by column.
     triangle: Vec<Vec<f64>>,
     rotations: Vec<[f64; 2]>,
-    /// The rotated right-hand side; its last entry is ± the residual.
+    /// The rotated right-hand side; the magnitude of its last entry is the norm of the residual.
     right: Vec<f64>,
     applications: usize,
     over: bool,
 }
 
 impl<'a, T: LinearOperator + ?Sized> Gmres<'a, T> {
-    /// Starts at E.
+    /// Starts at x₀ = E.
     pub fn new(operator: &'a T, emission: &[f64]) -> Self {
         let mut first = vec![0.0; emission.len()];
         operator.apply(emission, &mut first);
@@ -115,12 +115,12 @@ impl<'a, T: LinearOperator + ?Sized> Gmres<'a, T> {
         }
     }
 
-    /// The residual by the recurrence, ‖E − (I − T) x‖_A.
+    /// The norm of the residual ‖E − (I − T) x‖_A, as the recurrence gives it.
     pub fn recurrence(&self) -> f64 {
         self.right.last().map_or(0.0, |r| r.abs())
     }
 
-    /// x = E + V y with y from the triangle.
+    /// Computes x = E + V y, where y solves the triangular system.
     fn assemble(&mut self) {
         let m = self.triangle.len();
         let mut y = self.right[..m].to_vec();
@@ -140,7 +140,7 @@ impl<T: LinearOperator + ?Sized> Iteration for Gmres<'_, T> {
         if self.over {
             return false;
         }
-        // Arnoldi: w = (I − T) v_m made orthogonal to the basis, twice for the sake of rounding
+        // Arnoldi: w = (I − T) v_m is made orthogonal to the basis, twice because of rounding
         let mut w = vec![0.0; self.x.len()];
         self.operator.apply(&self.basis[m], &mut w);
         self.applications += 1;
@@ -155,7 +155,7 @@ impl<T: LinearOperator + ?Sized> Iteration for Gmres<'_, T> {
             }
         }
         let below = self.operator.norm(&w);
-        // Givens: the rotations so far, and a new one that clears the entry below the diagonal
+        // Givens: apply the previous rotations, then a new one that sets the entry below the diagonal to zero
         for (i, [c, s]) in self.rotations.iter().enumerate() {
             (h[i], h[i + 1]) = (c * h[i] + s * h[i + 1], c * h[i + 1] - s * h[i]);
         }
@@ -168,7 +168,7 @@ impl<T: LinearOperator + ?Sized> Iteration for Gmres<'_, T> {
         self.rotations.push([c, s]);
         self.triangle.push(h);
         self.assemble();
-        // the space is exhausted when nothing new is left but rounding: then x is L
+        // if only rounding remains, the space is exhausted: then x is L
         self.over = below <= 1e-14 * whole;
         w.iter_mut().for_each(|w| *w /= below);
         self.basis.push(w);

@@ -1,17 +1,17 @@
-//! Deterministic L.
+//! Deterministic solvers for the radiance L, on patches.
 //!
 //! ```text
 //! (I − T) L = E        L = Σ_{k≥0} T^k E
 //! ```
 //!
-//! | way | place |
+//! | method | place |
 //! |---|---|
 //! | term by term | [`Neumann`] |
-//! | by LU | [`direct`] |
-//! | to rounding without a matrix | [`settle`] |
-//! | step by step, to be watched ([`Watched`]) | [`PartialSums`], [`Jacobi`], [`Sor`], [`Southwell`], [`Chebyshev`], [`ConjugateGradients`], [`Gmres`] |
-//! | all of them beside each other | [`comparison`] |
-//! | by extrapolation of the series | [`accelerate`] |
+//! | LU factorisation | [`direct`] |
+//! | up to rounding, without a matrix | [`settle`] |
+//! | iterations whose steps can be inspected ([`Watched`]) | [`PartialSums`], [`Jacobi`], [`Sor`], [`Southwell`], [`Chebyshev`], [`ConjugateGradients`], [`Gmres`] |
+//! | comparison of all these methods | [`comparison`] |
+//! | extrapolation of the series | [`accelerate`] |
 
 pub mod accelerate;
 mod chebyshev;

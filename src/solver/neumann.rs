@@ -23,7 +23,7 @@ pub struct Neumann<'a, T: ?Sized> {
 }
 
 impl<'a, T: LinearOperator + ?Sized> Neumann<'a, T> {
-    /// Starts at `emission`.
+    /// The first term is `emission`.
     pub fn new(operator: &'a T, emission: Vec<f64>) -> Self {
         Self { operator, next: emission }
     }

@@ -1,11 +1,11 @@
-//! L to rounding where there is no matrix to factorise: GMRES, and again on what it left.
+//! Solves for L up to rounding when there is no matrix to factorise: GMRES, applied repeatedly to the remaining residual.
 //!
 //! ```text
-//! d ≈ (I − T)⁻¹ r        x ← x + d        r ← E − (I − T) x        until ‖r‖ is rounding, or falls no more
+//! d ≈ (I − T)⁻¹ r        x ← x + d        r ← E − (I − T) x        until ‖r‖ is at rounding level, or stops falling
 //! ```
 //!
-//! The residual is recomputed in every round, so that rounding within a round does not add up. L − x = (I − T)⁻¹ r, so that
-//! max |L − x| ≤ max |r|/(1 − ‖T‖∞) where ‖T‖∞ < 1.
+//! The residual is recomputed in every round, so that rounding errors of the rounds do not add up. The error is L − x = (I −
+//! T)⁻¹ r, so that max |L − x| ≤ max |r|/(1 − ‖T‖∞) if ‖T‖∞ < 1.
 //!
 //! Reference: Saad, *Iterative Methods for Sparse Linear Systems* (2003), section 6.5.5.
 
@@ -14,28 +14,28 @@ use super::iteration::{Iteration, residual};
 use super::krylov::Gmres;
 use crate::operator::matrix::LinearOperator;
 
-/// Steps of a round: so many vectors are held at once.
+/// Maximum number of GMRES steps per round; this many vectors are stored at once.
 const STEPS: usize = 30;
-/// What a round gains, if its steps allow: half the digits, so that two rounds find all.
+/// A round ends early when it has reduced the residual by this factor: half of the digits, so that two rounds find all.
 const GAIN: f64 = 1e-8;
-/// Rounds at most; the slowest scene takes a few.
+/// Maximum number of rounds; the slowest scene needs a few.
 const ROUNDS: usize = 200;
 
-/// A solution with its own check.
+/// A solution with its residual.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
-    /// x with (I − T) x = E.
+    /// The solution x of (I − T) x = E.
     pub x: Vec<f64>,
-    /// ‖E − (I − T) x‖/‖E‖ in the area inner product.
+    /// The relative residual ‖E − (I − T) x‖/‖E‖ in the area inner product.
     pub residual: f64,
-    /// Applications of T.
+    /// Number of applications of T.
     pub applications: usize,
 }
 
-/// Solves (I − T) x = E until the residual is rounding, or falls no more.
+/// Solves (I − T) x = E until the residual is at rounding level or stops falling.
 ///
 /// # Errors
-/// [`Singular`] if it stays above 10⁻⁸ ‖E‖.
+/// [`Singular`] if the residual stays above 10⁻⁸ ‖E‖.
 pub fn settle<T: LinearOperator + ?Sized>(t: &T, emission: &[f64]) -> Result<Settled, Singular> {
     let size = t.norm(emission);
     let (mut x, mut r) = (vec![0.0; emission.len()], emission.to_vec());

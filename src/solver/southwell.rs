@@ -1,4 +1,5 @@
-//! Southwell's relaxation, known to rendering as progressive shooting: the brightest unshot patch sends its light first.
+//! Southwell's relaxation, in rendering called progressive shooting: the patch with the largest unshot power sends its light
+//! first.
 //!
 //! ```text
 //! j = argmax Aᵢ rᵢ        δ = rⱼ / (1 − Tⱼⱼ)        xⱼ ← xⱼ + δ        r ← r − δ (I − T) eⱼ
@@ -6,12 +7,14 @@
 //!
 //! | symbol | meaning |
 //! |---|---|
-//! | r = E − (I − T) x | what has arrived and has not been sent on: *unshot* radiance |
-//! | Aᵢ rᵢ | unshot power, up to π |
+//! | r = E − (I − T) x | *unshot* radiance: light that has arrived at a patch and has not been sent on |
+//! | Aᵢ rᵢ | unshot power divided by π |
+//! | j, δ | the patch that shoots, and the radiance that it shoots |
 //!
-//! With E ≥ 0 and T ≥ 0 the residual stays ≥ 0, every shot only adds, and x ≤ L throughout: the picture gets brighter and is
-//! never too bright. It starts at x₀ = 0, r = E, so nothing is shot yet. A shot takes a column of T, and counts as its share
-//! of an application: 1/n of a matrix, the share of the rays that arrive of stored rays. Both are copied by columns first.
+//! If E ≥ 0 and T ≥ 0, the residual stays ≥ 0, every shot only adds light, and x ≤ L throughout. The picture gets brighter
+//! with every shot and is never too bright. The start is x₀ = 0, r = E, because nothing has been shot yet. A shot uses one
+//! column of T and counts as a fraction of an application. For a matrix this is 1/n. For stored rays it is the fraction of
+//! the rays that hit patch j. Both operators are first copied by columns.
 //!
 //! Reference: Southwell (1940); Cohen, Chen, Wallace, Greenberg, *A Progressive Refinement Approach to Fast Radiosity Image
 //! Generation* (1988); Gortler, Cohen, Slusallek, *Radiosity and Relaxation Methods* (1994).
@@ -28,7 +31,7 @@ pub struct Southwell<C> {
     diagonal: Vec<f64>,
     x: Vec<f64>,
     unshot: Vec<f64>,
-    /// Unshot power of every patch, as a tournament.
+    /// Unshot power of every patch, in a tree that finds the largest.
     power: Tournament,
     shots: usize,
     multiplications: usize,
@@ -36,12 +39,12 @@ pub struct Southwell<C> {
 }
 
 impl<C: Columns> Southwell<C> {
-    /// Starts with everything unshot; a step is n shots, about the work of one application.
+    /// Starts with all emission unshot. A step is n shots, about the work of one application of T.
     pub fn new<T: Transposed<Columns = C> + ?Sized>(operator: &T, emission: &[f64]) -> Self {
         Self::with_shots(operator, emission, emission.len())
     }
 
-    /// The same with `per_step` shots in a step.
+    /// The same with `per_step` shots per step.
     pub fn with_shots<T: Transposed<Columns = C> + ?Sized>(operator: &T, emission: &[f64], per_step: usize) -> Self {
         let (area, unshot) = (operator.area().to_vec(), emission.to_vec());
         let power = Tournament::new(unshot.iter().zip(&area).map(|(r, a)| a * r.abs()));
@@ -58,7 +61,7 @@ impl<C: Columns> Southwell<C> {
         }
     }
 
-    /// E − (I − T) x as it is kept up to date.
+    /// The residual E − (I − T) x, which every shot updates.
     pub fn unshot(&self) -> &[f64] {
         &self.unshot
     }
@@ -100,7 +103,7 @@ impl<C: Columns> Iteration for Southwell<C> {
     }
 }
 
-/// The largest of n numbers of which a few change at a time: a binary tree of maxima over the leaves `size..`.
+/// Finds the largest of n numbers of which a few change at a time: a binary tree of maxima over the leaves `size..`.
 #[derive(Clone, Debug)]
 struct Tournament {
     size: usize,
@@ -115,7 +118,7 @@ impl Tournament {
         out
     }
 
-    /// Whether so many leaves are sooner set one by one than all at once.
+    /// Returns true if setting `leaves` leaves one by one is faster than setting all leaves at once.
     fn is_cheaper(&self, leaves: usize) -> bool {
         leaves * self.size.ilog2() as usize <= self.size
     }
@@ -140,7 +143,7 @@ impl Tournament {
         }
     }
 
-    /// The first leaf with the largest value; none if all are 0.
+    /// The first leaf with the largest value; `None` if all are 0.
     fn first(&self) -> Option<usize> {
         let most = *self.nodes.get(1).filter(|m| **m > 0.0)?;
         let mut at = 1;

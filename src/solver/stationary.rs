@@ -1,4 +1,4 @@
-//! Iterations that do the same in every step.
+//! Stationary iterations: every step uses the same formula.
 //!
 //! ```text
 //! partial sums   x ← E + T x                                        x_n = S_n = Σ_{k≤n} T^k E,  residual T^{n+1} E
@@ -6,22 +6,22 @@
 //! SOR            xᵢ ← xᵢ + ω ((E + T x − Tᵢᵢ xᵢ)ᵢ / (1 − Tᵢᵢ) − xᵢ)  one i after the other, new values at once
 //! ```
 //!
-//! Jacobi is the Neumann series exactly if no patch sees itself (Tᵢᵢ = 0: flat patches). On curved patches it sums the
-//! light that a patch sends to itself in one go, and its iterates are no partial sums.
+//! Jacobi's iteration is exactly the Neumann series if no patch sees itself (Tᵢᵢ = 0, as on flat patches). On curved patches
+//! it sums the light that a patch sends to itself in one step, so its iterates are not partial sums.
 //!
-//! Gauss–Seidel is SOR with ω = 1. For T ≥ 0 and a start below L it is never behind Jacobi, patch by patch; its asymptotic
-//! rate is at least as good (Stein and Rosenberg 1948). An iterate of it is no sum of bounces.
+//! Gauss–Seidel is SOR with ω = 1. If T ≥ 0 and the start is below L, its iterate is on every patch at least as close to L
+//! as Jacobi's. Its asymptotic rate is at least as good (Stein and Rosenberg 1948). Its iterates are not sums of bounces.
 //!
 //! Reference: Varga, *Matrix Iterative Analysis* (1962), chapters 3 and 4.
 
 use super::iteration::Iteration;
 use crate::operator::matrix::{LinearOperator, Rows};
 
-/// The Neumann series as an iteration: x_n = Σ_{k≤n} T^k E, one application per step.
+/// The Neumann series as an iteration: x_n = Σ_{k≤n} T^k E, with one application per step.
 #[derive(Clone, Debug)]
 pub struct PartialSums<'a, T: ?Sized> {
     operator: &'a T,
-    /// T^n E.
+    /// The last term, T^n E.
     term: Vec<f64>,
     image: Vec<f64>,
     sum: Vec<f64>,
@@ -54,7 +54,7 @@ impl<T: LinearOperator + ?Sized> Iteration for PartialSums<'_, T> {
     }
 }
 
-/// All patches at once, each with what it sends to itself summed exactly.
+/// Jacobi's iteration: updates all patches at once and sums the light that each sends to itself exactly.
 #[derive(Clone, Debug)]
 pub struct Jacobi<'a, T: ?Sized> {
     operator: &'a T,
@@ -66,7 +66,7 @@ pub struct Jacobi<'a, T: ?Sized> {
 }
 
 impl<'a, T: Rows + ?Sized> Jacobi<'a, T> {
-    /// Starts at E.
+    /// Starts at x₀ = E.
     pub fn new(operator: &'a T, emission: &[f64]) -> Self {
         let [emission, x] = [emission.to_vec(), emission.to_vec()];
         Self { operator, diagonal: diagonal(operator), image: vec![0.0; x.len()], emission, x, steps: 0 }
@@ -92,7 +92,7 @@ impl<T: Rows + ?Sized> Iteration for Jacobi<'_, T> {
     }
 }
 
-/// Successive over-relaxation; Gauss–Seidel for ω = 1.
+/// Successive over-relaxation (SOR); with ω = 1 it is Gauss–Seidel.
 #[derive(Clone, Debug)]
 pub struct Sor<'a, T: ?Sized> {
     operator: &'a T,
@@ -104,19 +104,19 @@ pub struct Sor<'a, T: ?Sized> {
 }
 
 impl<'a, T: Rows + ?Sized> Sor<'a, T> {
-    /// Gauss–Seidel, from E.
+    /// Gauss–Seidel (ω = 1), starting at x₀ = E.
     pub fn gauss_seidel(operator: &'a T, emission: &[f64]) -> Self {
         Self::new(operator, emission, 1.0)
     }
 
-    /// Starts at E; converges only for 0 < ω < 2.
+    /// Starts at x₀ = E; the iteration can converge only for 0 < ω < 2.
     pub fn new(operator: &'a T, emission: &[f64], omega: f64) -> Self {
         let [emission, x] = [emission.to_vec(), emission.to_vec()];
         Self { operator, diagonal: diagonal(operator), emission, omega, x, steps: 0 }
     }
 
-    /// Young's ω = 2 / (1 + √(1 − r²)) of the spectral radius r. It is optimal for matrices that can be coloured with two
-    /// colours; a room cannot, and there it is only a fair guess.
+    /// Young's ω = 2 / (1 + √(1 − r²)) for the spectral radius r. It is optimal for matrices whose graph can be coloured
+    /// with two colours. The matrix of a room cannot, so there it is only a fair guess.
     pub fn young(radius: f64) -> f64 {
         2.0 / (1.0 + (1.0 - radius * radius).sqrt())
     }
@@ -141,6 +141,7 @@ impl<T: Rows + ?Sized> Iteration for Sor<'_, T> {
     }
 }
 
+/// The diagonal entries Tᵢᵢ.
 pub(super) fn diagonal<T: Rows + ?Sized>(t: &T) -> Vec<f64> {
     (0..t.len()).map(|i| t.entry(i, i)).collect()
 }

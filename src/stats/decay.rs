@@ -6,18 +6,20 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | m_k | ‖T^k E‖ or ⟨W, T^k E⟩, as measured | [`TermMeans::mean`] |
-//! | C | covariance of the m_k: prefix reuse makes them move together | [`TermMeans::covariance`] |
-//! | R, ν | replicates behind C, ν = R − 1 | [`TermMeans::replicates`] |
+//! | m_k | measured value of ‖T^k E‖ or ⟨W, T^k E⟩ | [`TermMeans::mean`] |
+//! | C | covariance of the m_k; terms from prefixes of the same paths are correlated | [`TermMeans::covariance`] |
+//! | R, ν | number of replicates behind C; degrees of freedom ν = R − 1 | [`TermMeans::replicates`] |
 //! | γ | the observed rate | [`Rate::rate`] |
 //!
-//! γ is *observed*: it is no bound and no norm. ‖T^k E‖ = γ ‖T^{k−1}E‖ holds in a furnace; elsewhere the ratio drifts to
-//! the spectral radius as k grows, if it converges at all, and `chi_squared` tells whether one rate fits the window.
+//! γ is an *observed* rate: it is neither a bound nor a norm. ‖T^k E‖ = γ ‖T^{k−1}E‖ holds in a furnace. Elsewhere the ratio
+//! of successive terms drifts to the spectral radius as k grows, if it converges at all. `chi_squared` shows whether one
+//! rate fits the window.
 //!
-//! The logarithm is taken to first order (delta method), which the 5 s rule of [`tail_window`] makes good to 2 %. C is
-//! itself estimated from R replicates: with p points, the plain error of generalised least squares is too small by
-//! (ν − p + 2)/ν · (ν − p + 1)/(ν − 1) in variance, and the misfit follows Hotelling's law instead of χ². Both are
-//! corrected here. Rao, *Biometrika* 46 (1959); Grizzle and Allen, *Biometrics* 25 (1969).
+//! The logarithm is linearised (delta method). The rule of 5 standard errors in [`tail_window`] keeps the error of that
+//! below 2 %. C itself is estimated from R replicates. With p points in the window, the plain error of generalised least
+//! squares is therefore too small by (ν − p + 2)/ν · (ν − p + 1)/(ν − 1) in variance, and the misfit follows Hotelling's
+//! distribution instead of χ². Both are corrected here. Rao, *Biometrika* 46 (1959); Grizzle and Allen, *Biometrics* 25
+//! (1969).
 
 use super::{Evidence, Moments, line};
 use crate::terms::{Estimate, functional::Replicates};
@@ -26,21 +28,21 @@ use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::ops::Range;
 
-/// TermMeans k = 0..=K of one channel, measured together.
+/// Means of the terms k = 0..=K in one channel, measured together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TermMeans {
-    /// m_k.
+    /// m_k, for each k.
     pub mean: Vec<f64>,
     /// C, of the means (not of one replicate).
     pub covariance: DMatrix<f64>,
-    /// R; 0 if the terms are exact.
+    /// R, the number of replicates; 0 if the terms are exact.
     pub replicates: u64,
-    /// What each rests on; empty: not counted.
+    /// Evidence behind each mean; empty if events were not counted.
     pub evidence: Vec<Evidence>,
 }
 
 impl TermMeans {
-    /// TermMeans known without error: the matrix world.
+    /// Terms known without error, from the matrix.
     pub fn exact(mean: &[f64]) -> Self {
         Self {
             mean: mean.to_vec(),
@@ -50,7 +52,7 @@ impl TermMeans {
         }
     }
 
-    /// TermMeans whose estimators share no paths (`single`): C is diagonal.
+    /// Terms whose estimators share no paths (estimator `single`): C is diagonal.
     pub fn independent(terms: &[Estimate], channel: usize) -> Self {
         let variance: Vec<f64> = terms.iter().map(|t| t.std_error[channel].powi(2)).collect();
         Self {
@@ -63,7 +65,7 @@ impl TermMeans {
 }
 
 impl From<&Replicates> for TermMeans {
-    /// The mean over channels of every term, without the tail.
+    /// Takes the mean over channels of every term, without the tail.
     fn from(r: &Replicates) -> Self {
         Self::weighed(r, DVec3::splat(1.0 / 3.0))
     }
@@ -92,7 +94,7 @@ impl TermMeans {
 }
 
 impl From<&Moments> for TermMeans {
-    /// TermMeans measured together in every replicate.
+    /// Takes terms that were measured together in every replicate.
     fn from(moments: &Moments) -> Self {
         Self {
             mean: moments.mean().iter().copied().collect(),
@@ -106,40 +108,42 @@ impl From<&Moments> for TermMeans {
 /// An observed rate of decay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rate {
-    /// γ.
+    /// γ, the observed rate.
     pub rate: f64,
     /// Its standard error; 0 if the terms are exact.
     pub std_error: f64,
     /// e^a: the fit is `amplitude · rate^k`.
     pub amplitude: f64,
-    /// The k that were used.
+    /// The values of k in the fit.
     pub window: Range<usize>,
-    /// Misfit of one rate; about `window.len() − 2` if one rate fits. NaN if the terms are exact (any misfit is real).
+    /// Misfit of the fit; about `window.len() − 2` if one rate fits. NaN if the terms are exact (any misfit is then real).
     pub chi_squared: f64,
-    /// P(misfit at least this large | one rate). NaN with two points or exact terms.
+    /// Probability of a misfit at least this large if one rate fits. NaN with two points or exact terms.
     pub p: f64,
 }
 
-/// Why there is no rate.
+/// Reason why there is no rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoRate {
     /// Fewer than two terms rise above their noise.
     #[error("only {0} of the terms k ≥ 1 exceed 5 standard errors; a rate needs two: raise the samples per pixel")]
     TooFewTerms(usize),
-    /// R is too small for the covariance of the window, or some error in it is unknown or zero.
-    #[error("the covariance of the terms in the window is not known well enough (needs more replicates than terms)")]
+    /// R is too small for the covariance of the window, or an error in it is unknown or zero.
+    #[error(
+        "the covariance of the terms in the window is not known well enough: a rate needs more replicates than terms"
+    )]
     Covariance,
 }
 
 impl TermMeans {
-    /// Whether a term has an error.
+    /// Returns true if term k has a known standard error.
     pub fn has_error(&self, k: usize) -> bool {
         self.evidence.get(k).is_none_or(|e| e.no_error.is_none())
     }
 }
 
-/// The window of the fit: of the leading run k = 1, 2, … of terms above 5 standard errors (k = 0 is emission and never
-/// part of it), where these are known, the later half, at least three where the run has them.
+/// The window of the fit. Terms k = 1, 2, … count as long as each is above 5 standard errors and its error is known; k = 0
+/// is emission and never counts. The window is the later half of this run, and has at least three terms if the run has them.
 pub fn tail_window(terms: &TermMeans) -> Range<usize> {
     let visible = |&k: &usize| terms.mean[k] > 5.0 * terms.covariance[(k, k)].sqrt() && terms.has_error(k);
     let end = 1 + (1..terms.mean.len()).take_while(visible).count();
@@ -148,10 +152,10 @@ pub fn tail_window(terms: &TermMeans) -> Range<usize> {
     end - keep..end
 }
 
-/// The rate over [`tail_window`].
+/// Fits the rate over [`tail_window`].
 ///
 /// # Errors
-/// [`NoRate`] if the noise leaves no two terms, or their covariance is degenerate.
+/// [`NoRate`] if noise leaves fewer than two terms, or if their covariance is degenerate.
 ///
 /// ```
 /// use fredholm::stats::{TermMeans, observed_rate};
@@ -170,7 +174,7 @@ pub fn observed_rate(terms: &TermMeans) -> Result<Rate, NoRate> {
     let y: Vec<f64> = m.iter().map(|m| m.ln()).collect();
     let n = m.len();
 
-    // exact terms: nothing to weigh by, and no error to report
+    // exact terms: no weights for the fit, and no error to report
     if terms.replicates == 0 {
         let line = line::fit(&k, &y, DMatrix::identity(n, n)).ok_or(NoRate::Covariance)?;
         let (rate, amplitude) = (line.slope.exp(), line.intercept.exp());
@@ -182,7 +186,7 @@ pub fn observed_rate(terms: &TermMeans) -> Result<Rate, NoRate> {
     let relative = DMatrix::from_fn(n, n, |i, j| terms.covariance[(first + i, first + j)] / (m[i] * m[j]));
     let line = line::fit(&k, &y, relative).ok_or(NoRate::Covariance)?;
 
-    // C came from ν degrees of freedom, and the fit spent `spare` of them on its weights
+    // C has ν degrees of freedom, and the fit uses `spare` of them for its weights
     let (nu, spare) = (terms.replicates as f64 - 1.0, n as f64 - 2.0);
     if nu - spare - 1.0 <= 0.0 {
         return Err(NoRate::Covariance);

@@ -1,4 +1,5 @@
-//! Two results watched batch by batch: is there a bias, and how small a one could still hide?
+//! Comparison of two results while they are sampled batch by batch: is there a bias, and how small a bias could still be
+//! hidden?
 //!
 //! ```text
 //! x_i = φ(first, batch i) − φ(second, batch i)          for every functional φ, quantity and channel
@@ -8,19 +9,20 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | E_n, r_n | e-value and half width of one mean, at any time | [`sequential`](super::sequential) |
+//! | E_n, r_n | e-value of one mean, and half width of its confidence interval; valid at any time | [`sequential`](super::sequential) |
 //! | α_φ | half of α is shared by the image means, half by regions and projections | [`Detector::push`] |
-//! | δ | a part of the term plus a part of the whole image | [`Criterion`] |
-//! | β | chance to miss a bias of the size that is called detectable | [`Finding::min_detectable`] |
-//! | a | error of a second side that is not sampled but was finished before | [`Detector::against_finished`] |
+//! | δ | a fraction of the term plus a fraction of the whole image | [`Criterion`] |
+//! | β | probability to miss a bias of the size that is called detectable | [`Finding::min_detectable`] |
+//! | a | error of a second side that was finished before and is not sampled in batches | [`Detector::against_finished`] |
 //!
-//! **Why a union bound.** Each E_n is a martingale for those who see nothing but its own batches up to their scale, so their average need
-//! not be one. But the events "E_n ≥ 1/α_φ for some n" do not depend on when or why the watch ends, and their probabilities
-//! add: whatever makes one stop, some quantity is rejected wrongly with probability at most α, and all intervals
-//! hold at once, at every n, with probability 1 − α.
+//! **Why a union bound.** Each E_n is a martingale only with respect to its own batches (up to their scale), so the average
+//! of several E_n need not be one. But the events "E_n ≥ 1/α_φ for some n" do not depend on when or why the comparison
+//! stops, and their probabilities add. So for any stopping rule, the probability that some quantity is rejected wrongly is
+//! at most α. All intervals hold at once, at every n, with probability 1 − α.
 //!
-//! Against a finished result half of α_φ goes to its error: it lies within a = t* s, and only what is beyond counts.
-//! As in [`verdict`](super::verdict), a mean whose [evidence](super::evidence) will not carry a verdict rejects nothing.
+//! In a comparison with a finished result, half of α_φ covers its error: the true value lies within a = t* s of the result,
+//! and only a difference beyond a counts. As in [`verdict`](super::verdict), a mean with too little
+//! [evidence](super::evidence) for a verdict rejects nothing.
 
 mod track;
 
@@ -34,50 +36,51 @@ use crate::terms::{Doubt, Estimate, Functional, Series, Variance};
 use serde::Serialize;
 use track::Track;
 
-/// Watches a difference while it accumulates.
+/// Comparison of two sides that is updated with every batch.
 #[derive(Clone, Debug)]
 pub struct Detector {
     criterion: Criterion,
     finished: bool,
     tracks: Vec<Track>,
-    /// The whole image by the first side, per channel.
+    /// Mean of the whole image on the first side, for each channel.
     whole: [MeanSequence; 3],
     batches: u64,
-    /// What batches of one side cannot know: the side in words, the doubt, events to be expected of a batch.
+    /// Doubts about the sampled sides: label of the side, the doubt, expected events per batch.
     doubts: Vec<(String, Doubt, f64)>,
-    /// Whose sums without end have no finite variance, or none that is known: the side in words, and what is known.
+    /// Whether infinite sums (tail and total) have a finite variance: label of the side, and what is known about it.
     variances: Vec<(String, Variance)>,
 }
 
-/// What is known about one quantity, in the words of its clearest functional and channel.
+/// The result for one quantity. It describes the functional and channel that decide about this quantity.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
     /// `T0`, `T1`, …, `tail`, `sum`, `total`.
     pub name: String,
-    /// `image, red`.
+    /// The functional and channel: `image, red`.
     pub functional: String,
-    /// First − second, so far.
+    /// Difference first − second, so far.
     pub effect: f64,
-    /// Where the bias lies, for all quantities and all times at once with probability 1 − α.
+    /// Interval that contains the bias. With probability 1 − α this holds for all quantities and at all times.
     pub interval: (f64, f64),
-    /// ln E_n(0) now: evidence against "no bias" of this one functional and channel.
+    /// ln E_n(0) now: the evidence against "no bias" in this functional and channel.
     pub log_e: f64,
-    /// At most this probable without a bias, whenever one stops and however many quantities are watched: rejected if ≤ α.
+    /// Adjusted p-value. Without a bias, evidence as strong as this has at most this probability, for any stopping rule and
+    /// any number of quantities. The quantity is rejected if p ≤ α.
     pub p: f64,
-    /// The smallest bias that would have been found with probability 1 − β by now.
+    /// The smallest bias that would have been detected by now with probability 1 − β.
     pub min_detectable: f64,
-    /// The value itself: mean of both sides.
+    /// Size of the quantity: mean of the values of both sides.
     pub scale: f64,
-    /// δ.
+    /// δ, the margin of equivalence.
     pub delta: f64,
-    /// What was found.
+    /// The outcome for this quantity.
     pub outcome: Outcome,
-    /// If inconclusive for another reason than noise: which.
+    /// The reason, if the quantity is inconclusive for a reason other than noise.
     pub reason: Option<String>,
 }
 
 impl Detector {
-    /// Watches two sides that are sampled batch by batch.
+    /// Compares two sides that are both sampled batch by batch.
     pub fn new(criterion: Criterion) -> Self {
         Self {
             criterion,
@@ -90,12 +93,12 @@ impl Detector {
         }
     }
 
-    /// Watches one side against a finished result, whose errors are allowed for.
+    /// Compares one sampled side with a finished result, whose error is allowed for.
     pub fn against_finished(criterion: Criterion) -> Self {
         Self { finished: true, ..Self::new(criterion) }
     }
 
-    /// With the doubts of a side that is sampled, whose cost is that of one batch, and with what is known of its variance.
+    /// Adds the doubts of a sampled side, and what is known about its variance. The cost of `side` is that of one batch.
     #[must_use]
     pub fn doubting(mut self, side: &Series) -> Self {
         self.doubts.extend(side.doubts.iter().map(|d| (side.label.clone(), d.clone(), side.expected(d))));
@@ -103,10 +106,10 @@ impl Detector {
         self
     }
 
-    /// Why a quantity can neither agree nor differ yet.
+    /// Reason why a quantity can neither agree nor differ yet.
     fn doubt(&self, quantity: Quantity) -> Option<String> {
         if matches!(quantity, Quantity::Tail | Quantity::Total) {
-            // a mean over batches is nearly normal only where there is a variance
+            // a mean over batches is nearly normal only if its variance is finite
             let endless = |(label, variance): &(String, Variance)| {
                 Evidence::of_variance(*variance).no_verdict.map(|reason| format!("{label}: {reason}"))
             };
@@ -121,18 +124,19 @@ impl Detector {
         self.doubts.iter().find_map(of)
     }
 
-    /// Batches so far.
+    /// Number of batches so far.
     pub fn batches(&self) -> u64 {
         self.batches
     }
 
-    /// Scalars that share α.
+    /// Number of scalars that share α.
     pub fn family(&self) -> usize {
         self.tracks.len()
     }
 
-    /// Takes in one batch of both sides; the second is the same every time if it was finished before. The first functional
-    /// is the image mean, the others are found by name; what the first batches have in common is watched.
+    /// Takes in one batch of both sides. The second is the same every time if it was finished before. The first functional
+    /// is the image mean; the others are matched by name. The first call decides which quantities are compared: those that
+    /// both sides have.
     pub fn push(&mut self, first: &[Functional], second: &[Functional]) {
         if self.batches == 0 {
             self.open(first, second);
@@ -187,8 +191,8 @@ impl Detector {
         }
     }
 
-    /// What is known now, quantity by quantity: a rejection speaks first, by its strongest evidence; otherwise the image
-    /// mean whose bias is bounded worst.
+    /// The present findings, one for each quantity. If any functional and channel of a quantity is rejected, the one with
+    /// the strongest evidence is reported. Otherwise it is the image mean with the widest interval relative to δ.
     pub fn findings(&self) -> Vec<Finding> {
         let mut quantities: Vec<Quantity> = self.tracks.iter().filter(|t| t.is_image()).map(|t| t.quantity).collect();
         quantities.dedup(); // three channels each
@@ -206,13 +210,14 @@ impl Detector {
         quantities.iter().filter_map(row).collect()
     }
 
-    /// The image mean of the whole (or of what comes nearest to it), channel by channel: what a progress line and a curve show.
+    /// The findings for the image mean of the total (or of the last quantity, if there is no total), one for each channel.
+    /// Progress lines and curves show them.
     pub fn image(&self) -> Vec<Finding> {
         let last = self.tracks.iter().filter(|t| t.is_image()).map(|t| t.quantity).next_back();
         self.tracks.iter().filter(|t| t.is_image() && Some(t.quantity) == last).map(|t| self.finding(t)).collect()
     }
 
-    /// Differs if anything is rejected, Agrees if every image mean is bounded within its δ.
+    /// Differs if anything is rejected; Agrees if every image mean is bounded within its δ.
     pub fn outcome(&self) -> Outcome {
         if self.tracks.iter().any(|t| self.rejects(t)) {
             return Outcome::Differs;
@@ -222,7 +227,8 @@ impl Detector {
         if agree { Outcome::Agrees } else { Outcome::Inconclusive }
     }
 
-    /// The largest ln E_n so far, of all that is watched, beyond what its share of α asks for: ≥ 0 is a rejection.
+    /// The largest ln E_n so far, over all scalars, minus the threshold that its share of α demands. A value ≥ 0 is a
+    /// rejection.
     pub fn excess(&self) -> f64 {
         self.tracks.iter().map(|t| t.evidence + t.level.ln()).fold(f64::NEG_INFINITY, f64::max)
     }
@@ -252,7 +258,7 @@ impl Detector {
             _ => None,
         };
         let or_unknown = |x: f64| if known || outcome != Outcome::Inconclusive { x } else { f64::NAN };
-        // α is what this level would be had it no company
+        // α divided by the level of this scalar
         let shared = self.criterion.alpha / track.level;
         Finding {
             name: track.quantity.name(),
@@ -270,7 +276,7 @@ impl Detector {
     }
 }
 
-/// What `f32` may lose of a whole image: never a bias.
+/// Rounding error of `f32` for the whole image; it never counts as a bias.
 fn rounding(whole: &[MeanSequence; 3], channel: usize) -> f64 {
     ROUNDING * whole[channel].mean().abs()
 }
@@ -339,7 +345,7 @@ mod tests {
         assert!(d.findings()[1].reason.as_deref().is_some_and(|why| why.contains("rests on")));
     }
 
-    /// A finished result that is off by less than its own error is no proof of a bias; off by much more, it is.
+    /// A finished result that is off by less than its own error does not prove a bias; one that is off by much more does.
     #[test]
     fn the_error_of_a_finished_result_is_allowed_for() {
         for (std_error, outcome) in [(2e-3, Outcome::Inconclusive), (1e-5, Outcome::Differs)] {

@@ -1,9 +1,9 @@
-//! What a mesh may still matter, as an allowance for verdicts.
+//! The error of a mesh, as an allowance for verdicts.
 
 use crate::terms::{Estimate, Functional, Series};
 
-/// |fine − coarse| of two meshes of one world, as an allowance: where the error falls at least as fast as h, the finer
-/// mesh is closer to the limit than the two are to each other.
+/// Returns |fine − coarse| of two meshes in one world, as an allowance. If the error falls at least as fast as the mesh
+/// width h, the finer mesh is closer to the limit than the two meshes are to each other.
 pub fn discretisation(fine: &Series, coarse: &Series) -> Vec<Functional> {
     let gap = |a: &Estimate, b: &Estimate| Estimate::exact((a.mean - b.mean).abs());
     let functional = |f: &Functional| {

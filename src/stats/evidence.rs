@@ -1,32 +1,34 @@
-//! What does a number rest on? May an error stand beside it, may a verdict rest on it, and if not, why not?
+//! Evidence behind a number: may an error bar be printed with it, can it have a verdict, and if not, why not?
 //!
 //! ```text
-//! n = min( (Σ x)²/Σ x²,  events that are to be expected )       n₄ = (Σ x²)²/Σ x⁴       P(x > t) ~ t^(−1/k̂)
+//! n = min( (Σ x)²/Σ x²,  expected number of events )       n₄ = (Σ x²)²/Σ x⁴       P(x > t) ~ t^(−1/k̂)
 //! ```
 //!
-//! | a number | is printed with ± | may be judged | symbol |
+//! | property of the number | printed with ± | may be judged | symbol |
 //! |---|---|---|---|
-//! | rests on n events | n ≥ 100 | n ≥ 400 | [`SHOWN`], [`JUDGED`] |
-//! | whose variance rests on n₄ events | n₄ ≥ 20 | n₄ ≥ 40 | [`SHOWN_SPREAD`], [`JUDGED_SPREAD`] |
-//! | a variance as a point of a slope | n₄ ≥ 10 | – | [`FITTED_SPREAD`] |
-//! | with a tail k̂ | k̂ < 0.7 | k̂ < 0.7 | [`TAIL`] |
-//! | of fewer than 16 replicates that agree bit for bit | if n ≥ 100 | never told apart from another | [`ALIKE`] |
-//! | of a picture, whose noise n pixels carry | – | n ≥ 10 | [`JUDGED_PIXELS`] |
-//! | of a pixel, where half the pixels rest on n events | n ≥ 12 and k̂ < 0.7, 8 replicates | – | [`SHOWN_PIXEL`] |
-//! | of one replicate | never | never | |
-//! | whose variance is infinite, or not known to be finite | never | never | [`Variance`] |
-//! | that is not finite | never | never | |
+//! | it rests on n events | n ≥ 100 | n ≥ 400 | [`SHOWN`], [`JUDGED`] |
+//! | its variance rests on n₄ events | n₄ ≥ 20 | n₄ ≥ 40 | [`SHOWN_SPREAD`], [`JUDGED_SPREAD`] |
+//! | it is a variance, used as a point of a fitted slope | n₄ ≥ 10 | – | [`FITTED_SPREAD`] |
+//! | its contributions have the tail index k̂ | k̂ < 0.7 | k̂ < 0.7 | [`TAIL`] |
+//! | fewer than 16 replicates, which agree bit for bit | if n ≥ 100 | no difference is ever claimed | [`ALIKE`] |
+//! | it is the mean of a picture whose noise comes from n pixels | – | n ≥ 10 | [`JUDGED_PIXELS`] |
+//! | it is a pixel, and half the pixels rest on n events | n ≥ 12 and k̂ < 0.7, 8 replicates | – | [`SHOWN_PIXEL`] |
+//! | it comes from one replicate | never | never | |
+//! | its variance is infinite, or not known to be finite | never | never | [`Variance`] |
+//! | it is not finite | never | never | |
 //!
-//! **What it knows.** The replicates' means with their scatter; the film's Σ x, Σ x² and its largest contributions; and of what
-//! has not happened yet, how often it is to be expected ([`Doubt`], from the scene and the way of sampling).
+//! An event is one nonzero contribution x = r + g + b. **Used:** the means of the replicates and their scatter; Σ x, Σ x²
+//! and the largest contributions, all from the film; and, for events that have not happened yet, their expected number
+//! ([`Doubt`], from the scene and the sampling method).
 //!
-//! **What it cannot know.** Something rare that has not happened, that no doubt names, and that is no tail of what has happened:
-//! light through a keyhole, say. Then the samples look like those of a scene without the keyhole.
+//! **Not detected:** a rare event that has not happened, that no doubt names, and that is not in the tail of the events so
+//! far. Light through a keyhole is an example. The samples then look like those of a scene without the keyhole.
 //!
-//! **Why these numbers.** A sum of n events has a skewness of at least 1/√n; a t-test at the depth of a family, z ≈ 5.5, is then
-//! wrong by a factor of about exp(z³/6√n): 4 for 400. A 95 % interval asks for less. The numbers of n₄ and n for ± are those with which
-//! intervals of skewed sums cover at least 93 % (`tests/evidence.rs`). From k̂ = 0.7 on even a million samples do not make a
-//! mean normal (Vehtari, Simpson, Gelman, Yao and Gabry, *Pareto smoothed importance sampling*, 2024).
+//! **Why these numbers.** A sum of n events has a skewness of at least 1/√n. At the level that a family of tests needs,
+//! z ≈ 5.5, a t-test is then wrong by a factor of about exp(z³/6√n): 4 for n = 400. A 95 % interval needs fewer events. The
+//! limits for n₄, and those of n for ±, are chosen so that intervals of skewed sums cover at least 93 %
+//! (`tests/evidence.rs`). From k̂ = 0.7 on, even a million samples do not make a mean normal (Vehtari, Simpson, Gelman, Yao
+//! and Gabry, *Pareto smoothed importance sampling*, 2024).
 
 use super::hypothesis::{ROUNDING, critical};
 use crate::terms::{Doubt, Estimate, Events, Variance};
@@ -37,76 +39,77 @@ use std::fmt;
 pub const JUDGED: f64 = 400.0;
 /// Events behind the variance that a verdict needs.
 pub const JUDGED_SPREAD: f64 = 40.0;
-/// Events that an error needs.
+/// Events that an error bar needs.
 pub const SHOWN: f64 = 100.0;
-/// Events behind the variance that an error needs.
+/// Events behind the variance that an error bar needs.
 pub const SHOWN_SPREAD: f64 = 20.0;
-/// Events behind a variance, for it to be a point of a curve to which a slope is fitted.
+/// Events behind a variance that serves as a point of a fitted slope.
 pub const FITTED_SPREAD: f64 = 10.0;
-/// A tail from which on no error is known.
+/// Tail index k̂ from which on no error is known.
 pub const TAIL: f64 = 0.7;
-/// Pixels that must carry the noise of a picture whose samples are not known, for a t-test of its mean.
+/// Pixels from which the noise of a picture must come, for a t-test of its mean, if the samples are not known.
 pub const JUDGED_PIXELS: f64 = 10.0;
-/// Events that half the pixels must rest on, for the errors of pixels to be trusted.
+/// Events on which half the pixels must rest, for the errors of pixels to be trusted.
 pub const SHOWN_PIXEL: f64 = 12.0;
 /// Replicates that the error of a pixel needs.
 pub const PIXEL_REPLICATES: u64 = 8;
-/// Fewer replicates that agree bit for bit may do so by chance; that many do so with a probability below 2⁻³⁰.
+/// Fewer replicates than this may agree bit for bit by chance. For this many, the probability is below 2⁻³⁰.
 pub const ALIKE: u64 = 16;
-/// Where a verdict may not rest on an error, agreement must not depend on it: the interval must fit into δ this many times more.
+/// If a standard error is not reliable enough for a verdict, agreement must not depend on it. The interval must then
+/// still fit into δ if its noise is multiplied by 1 + this number.
 pub const WIDER: f64 = 9.0;
 
-/// Why a number has no error, or decides nothing.
+/// Reason why a number has no error bar, or gives no verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
-    /// A mean is no number.
+    /// A mean is NaN or infinite.
     NotFinite,
-    /// One replicate has no scatter.
+    /// There is only one replicate, which has no scatter.
     OneReplicate,
     /// The variance is infinite.
     Infinite,
     /// The variance is not known to be finite.
     Unknown,
-    /// Nothing was found, or nothing is to be expected.
+    /// No event was found, or none is expected.
     NoEvent,
-    /// It rests on so many events.
+    /// The number rests on this many events, which is too few.
     Few(f64),
-    /// Its variance rests on so many.
+    /// Its variance rests on this many events, which is too few.
     Uneven(f64),
-    /// Its largest contributions have so heavy a tail.
+    /// Its largest contributions have a tail with this index k̂, which is too heavy.
     Tail(f64),
-    /// So few replicates agree bit for bit.
+    /// This many replicates, which are too few, agree bit for bit.
     Alike(u64),
-    /// So few replicates there are.
+    /// There are only this many replicates.
     Replicates(u64),
 }
 
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::NotFinite => f.write_str("a mean is not finite"),
-            Self::OneReplicate => {
-                f.write_str("the standard error is unknown: one replicate only (raise the samples per pixel)")
-            }
-            Self::Infinite => {
-                f.write_str("the variance is infinite under this roulette, so that no error bar means anything")
-            }
+            Self::NotFinite => f.write_str("the mean is NaN or infinite"),
+            Self::OneReplicate => f.write_str("one replicate gives no standard error: raise the samples per pixel"),
+            Self::Infinite => f.write_str("the variance is infinite with this roulette: error bars are meaningless"),
             Self::Unknown => {
-                f.write_str("the variance may be infinite under this roulette, so that no error bar can be trusted")
+                f.write_str("the variance may be infinite with this roulette: error bars cannot be trusted")
             }
-            Self::NoEvent => f.write_str("no event: nothing was found (yet); raise the samples per pixel"),
-            Self::Few(n) => write!(f, "it rests on {}: raise the samples per pixel", events(n)),
-            Self::Uneven(n) => write!(f, "its error rests on {}: raise the samples per pixel", events(n)),
-            Self::Tail(k) => write!(f, "its largest contributions have a heavy tail (k̂ = {k:.1}): no error is known"),
+            Self::NoEvent => f.write_str("no event (no sample has found light yet): raise the samples per pixel"),
+            Self::Few(n) => write!(f, "it rests on only {}: raise the samples per pixel", events(n)),
+            Self::Uneven(n) => write!(f, "its standard error rests on only {}: raise the samples per pixel", events(n)),
+            Self::Tail(k) => {
+                write!(f, "its largest contributions have a heavy tail (k̂ = {k:.1}): its error is unknown")
+            }
             Self::Replicates(n) => write!(f, "{n} replicates are too few: raise the samples per pixel"),
-            Self::Alike(n) => write!(f, "{n} replicates that agree prove nothing: raise the samples per pixel"),
+            Self::Alike(n) => {
+                write!(f, "all {n} replicates are equal, which may be chance: raise the samples per pixel")
+            }
         }
     }
 }
 
 impl Reason {
-    /// In a cell of a table, in place of ±.
+    /// Short form for a table cell, in place of ±.
     pub fn short(&self) -> String {
         match *self {
             Self::NotFinite | Self::OneReplicate | Self::Unknown => "–".into(),
@@ -114,7 +117,7 @@ impl Reason {
             Self::NoEvent => "no event".into(),
             Self::Few(n) | Self::Uneven(n) => events(n),
             Self::Tail(k) => format!("k̂ {k:.1}"),
-            Self::Alike(n) => format!("{n} alike"),
+            Self::Alike(n) => format!("{n} equal"),
             Self::Replicates(n) => format!("{n} replicates"),
         }
     }
@@ -128,17 +131,17 @@ fn events(n: f64) -> String {
     }
 }
 
-/// What a number rests on.
+/// Evidence behind a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// Why there is no error; nothing where there is one.
+    /// Reason why there is no error bar; None if there is one.
     pub no_error: Option<Reason>,
-    /// Why nothing may be rejected.
+    /// Reason why nothing may be rejected; None if a verdict is possible.
     pub no_verdict: Option<Reason>,
 }
 
 impl Evidence {
-    /// Of an estimate.
+    /// Evidence behind an estimate.
     ///
     /// ```
     /// use fredholm::{stats::{Evidence, evidence::Reason}, terms::{Estimate, Events}};
@@ -171,7 +174,7 @@ impl Evidence {
         Self { no_verdict, ..found }
     }
 
-    /// Of a sum without end, by what is known of its variance.
+    /// Evidence behind an infinite sum (tail or total), from what is known about its variance.
     pub fn of_variance(variance: Variance) -> Self {
         match variance {
             Variance::Finite => Self { no_error: None, no_verdict: None },
@@ -180,7 +183,7 @@ impl Evidence {
         }
     }
 
-    /// Of what a mean was added up from.
+    /// Evidence from the events behind a mean.
     pub fn of_events(e: Events) -> Self {
         let lacks = |most: f64, spread: f64| match e {
             Events { mean, .. } if mean <= 0.0 => Some(Reason::NoEvent),
@@ -192,7 +195,8 @@ impl Evidence {
         Self { no_error: lacks(SHOWN, SHOWN_SPREAD), no_verdict: lacks(JUDGED, JUDGED_SPREAD) }
     }
 
-    /// Of the pixels of an image, half of which rest on fewer than `median` events, and all on those of `image`.
+    /// Evidence behind the pixels of an image. Half of them rest on fewer than `median` events; `image` is the estimate of
+    /// the image mean.
     pub fn of_pixels(median: f64, image: &Estimate, replicates: u64) -> Self {
         let tail = image.events.map_or(0.0, |e| e.tail);
         let why = match median {
@@ -209,7 +213,7 @@ impl Evidence {
         Self { no_error: Some(why), no_verdict: Some(why) }
     }
 
-    /// Of a difference or a ratio of two.
+    /// Evidence behind a difference or a ratio of two numbers.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         let no_error = self.no_error.or(other.no_error);
@@ -217,21 +221,17 @@ impl Evidence {
     }
 }
 
-/// What the samples of a result cannot know, and what would help.
+/// A doubt as a sentence: which light a result finds only by chance, and what would help.
 pub fn doubt_in_words(label: &str, doubt: &Doubt, expected: f64) -> String {
     if doubt.per_path == 0.0 {
         return format!("{label}: {}", doubt.what);
     }
-    format!(
-        "{label} meets {} only by chance ({} to be expected): raise the samples per pixel",
-        doubt.what,
-        events(expected)
-    )
+    format!("{label} finds {} only by chance ({} expected): raise the samples per pixel", doubt.what, events(expected))
 }
 
 /// Half width of the two-sided 95 % interval of a mean over `replicates` values with the given standard error.
 ///
-/// Exact values (`replicates` = 0) have no width. One replicate says nothing about its error: NaN, and tables show a dash.
+/// Exact values (`replicates` = 0) have no width. One replicate gives no error: the result is NaN, and tables show a dash.
 ///
 /// ```
 /// use fredholm::stats::half_width_95;

@@ -11,14 +11,15 @@
 //! | p | two-sided p-value | [`two_sided_p`] |
 //! | t* | the critical value: P(\|T_ν\| ≥ t*) = level | [`critical`] |
 //!
-//! With one side exact this is Student's test (1908), otherwise Welch's (*Biometrika* 34, 1947). Families are adjusted
-//! by Holm (*Scand. J. Statistics* 6, 1979), which needs no independence: the terms of prefix reuse are correlated.
+//! If one side is exact this is Student's test (1908), otherwise Welch's (*Biometrika* 34, 1947). Families of tests are
+//! adjusted by Holm's method (*Scand. J. Statistics* 6, 1979). It does not need independence, which matters because the
+//! terms of the prefix estimator are correlated.
 
 use crate::terms::Estimate;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-/// Differences below this fraction of the value at hand are rounding of the `f32` transport, not physics: an estimator
-/// without variance (a furnace) still carries it. Far below every δ in use.
+/// Differences below this fraction of the value come from rounding in the `f32` transport, not from physics. Even an
+/// estimator without variance (in a furnace) has them. The fraction is far below every δ in use.
 pub const ROUNDING: f64 = 1e-6;
 
 /// Above this many degrees of freedom the incomplete beta function is slow to converge, and [`two_sided_p`] maps t to
@@ -66,7 +67,7 @@ pub fn difference(a: Measured, b: Measured) -> Measured {
     let dof = if va + vb == 0.0 {
         f64::INFINITY
     } else if !(va + vb).is_finite() {
-        // an error that is not known, or has no bound: what is known of it does not come from the numbers
+        // an unknown or infinite error: the degrees of freedom do not follow from the numbers
         a.dof.min(b.dof)
     } else {
         let (ra, rb) = (va / scale, vb / scale);
@@ -80,7 +81,7 @@ pub fn two_sided_p(t: f64, dof: f64) -> f64 {
     if t.is_nan() || dof.is_nan() || dof <= 0.0 {
         return f64::NAN;
     }
-    // the upper tail itself, not 1 − cdf: levels here go down to 1e-12
+    // the upper tail itself, not 1 − cdf, because levels go down to 1e-12 here
     let t = t.abs();
     let normal = |z: f64| 2.0 * Normal::standard().sf(z);
     if dof.is_infinite() || t.is_infinite() {
@@ -102,8 +103,8 @@ pub fn critical(level: f64, dof: f64) -> f64 {
     if !(level > 0.0 && level < 1.0 && dof > 0.0) {
         return f64::NAN;
     }
-    // ln p is a concave, falling function of ln t: from anywhere Newton's method overshoots once at most, then closes in
-    // from the right. (The quantile of the library loses its way at ν = 1 and at large ν.)
+    // ln p is a concave, falling function of ln t. So from any start Newton's method overshoots at most once, and then
+    // converges from the right. (The library's quantile function fails at ν = 1 and at large ν.)
     let mut t = -Normal::standard().inverse_cdf(0.5 * level);
     if dof.is_infinite() {
         return t;
@@ -120,8 +121,9 @@ pub fn critical(level: f64, dof: f64) -> f64 {
     t
 }
 
-/// Holm's adjusted p-values, in the order given: rejecting all with value ≤ α keeps the chance of any false rejection
-/// ≤ α, whatever the dependence. p_(i) → max_{j ≤ i} min(1, (m − j + 1) p_(j)). A NaN stays NaN and still counts in m.
+/// Holm's adjusted p-values, in the order given. Rejecting all tests with value ≤ α keeps the chance of any false
+/// rejection ≤ α, for any dependence between the tests. p_(i) → max_{j ≤ i} min(1, (m − j + 1) p_(j)), where m is the number
+/// of tests. A NaN stays NaN and still counts in m.
 pub fn holm(p: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..p.len()).collect();
     order.sort_by(|&a, &b| p[a].abs().total_cmp(&p[b].abs())); // NaN last, whichever its sign
@@ -163,7 +165,7 @@ mod tests {
 
     #[test]
     fn critical_values_match_printed_tables() {
-        // Student's table at 5 %, 1 % and 0.1 %; then the deep levels of a test suite
+        // Student's table at 5 %, 1 % and 0.1 %; then the very small levels that a test suite uses
         for (level, dof, t) in [
             (0.05, 10.0, 2.228139),
             (0.01, 15.0, 2.946713),

@@ -6,34 +6,34 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | X | rows (1, x_i) | [`fit`] |
-//! | V = G Gᵀ | covariance of the y, Cholesky factor | [`fit`] |
+//! | X | matrix with rows (1, x_i) | [`fit`] |
+//! | V = G Gᵀ | covariance of the y; G is its Cholesky factor | [`fit`] |
 //! | χ² | misfit; `n − 2` degrees of freedom if V is right | [`Line::chi_squared`] |
 //!
-//! Aitken, *Proc. Royal Society of Edinburgh* 55 (1935): with V known no linear unbiased estimate does better.
+//! Aitken, *Proc. Royal Society of Edinburgh* 55 (1935): if V is known, no linear unbiased estimate has a smaller variance.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 /// The fitted line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Line {
-    /// a
+    /// a, the intercept.
     pub(super) intercept: f64,
-    /// b
+    /// b, the slope.
     pub(super) slope: f64,
     /// Standard error of b, if V is exact.
     pub(super) std_error: f64,
-    /// χ²
+    /// χ², the misfit.
     pub(super) chi_squared: f64,
 }
 
-/// None if there are fewer than two points, if all x agree, or if V is not positive definite.
+/// Fits the line. None if there are fewer than two points, if all x are equal, or if V is not positive definite.
 pub(super) fn fit(x: &[f64], y: &[f64], covariance: DMatrix<f64>) -> Option<Line> {
     if x.len() < 2 {
         return None;
     }
     let design = DMatrix::from_fn(x.len(), 2, |i, j| if j == 0 { 1.0 } else { x[i] });
-    // multiplying by G⁻¹ makes the errors independent with unit variance; then it is ordinary least squares
+    // multiplying by G⁻¹ makes the errors independent with unit variance, which leaves an ordinary least-squares fit
     let factor = covariance.cholesky()?;
     let design = factor.l().solve_lower_triangular(&design)?;
     let y = factor.l().solve_lower_triangular(&DVector::from_column_slice(y))?;

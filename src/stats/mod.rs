@@ -1,28 +1,28 @@
-//! Do two worlds agree, and how sure are we?
+//! Statistics: do two worlds agree, and how certain is the answer?
 //!
 //! ```text
 //! effect = ⟨W, T^k E⟩₁ − ⟨W, T^k E⟩₂      Agrees: proved within ±δ      Differs: proved ≠ 0      else Inconclusive
 //! ```
 //!
-//! | symbol | meaning | place |
+//! | symbol | meaning (⟨W, ·⟩ is a linear functional of the image, such as its mean) | place |
 //! |---|---|---|
 //! | x̄, S | mean and covariance over replicates | [`moments`] |
-//! | t, ν, p | tests of one mean against another, Holm's adjustment | [`hypothesis`] |
-//! | δ, α | margin of equivalence, family level: verdicts on whole results | [`verdict`] |
-//! | n, β | sample sizes and what a test could have seen | [`power`] |
-//! | n, n₄, k̂ | what a number rests on: whether it may have an error, and may be judged | [`evidence`] |
+//! | t, ν, p | test of one mean against another; Holm's adjustment for many tests | [`hypothesis`] |
+//! | δ, α | margin of equivalence, and level of the family of tests: verdicts on whole results | [`verdict`] |
+//! | n, β | sample sizes, and the effect that a test could have detected | [`power`] |
+//! | n, n₄, k̂ | events behind a number: whether it gets an error bar, and whether it can have a verdict | [`evidence`] |
 //! | γ | observed rate of decay of the terms | [`decay`] |
-//! | E_n | evidence that may be watched while it grows, and the interval that goes with it | [`sequential`] |
-//! | | two results watched batch by batch, in every quantity | [`detector`] |
+//! | E_n | evidence that may be checked after every batch, with its confidence interval | [`sequential`] |
+//! | | comparison of two results batch by batch, in every quantity | [`detector`] |
 //! | p | order of convergence under refinement | [`order`] |
 //! | b | slope of the variance against samples | [`slope`] |
-//! | D | distance of p-values from uniform ones | [`uniformity()`] |
-//! | Q_v, A_v, c_v | noise and cost of a roulette schedule, without rendering it | [`schedule`] |
-//! | Q* | the schedule with the most efficiency | [`optimal`] |
+//! | D | distance of the distribution of p-values from the uniform one | [`uniformity()`] |
+//! | Q_v, A_v, c_v | noise and cost of a roulette schedule, predicted without rendering | [`schedule`] |
+//! | Q* | the most efficient schedule | [`optimal`] |
 //!
-//! Two principles. *Not rejected is not agreed*: a verdict of agreement is an equivalence test, and it needs samples.
-//! *Aggregate*: image means, regions and projections are compared, never pixels one by one, because a bias common to
-//! many pixels is invisible in each and obvious in their mean.
+//! Two principles. *Not rejected does not mean agreed*: a verdict of agreement needs an equivalence test, and that needs
+//! samples. *Compare averages*: comparisons use image means, regions and projections, never single pixels. A bias common to
+//! many pixels is invisible in each of them and obvious in their mean.
 
 pub mod decay;
 pub mod detector;

@@ -6,13 +6,13 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | x_r | one replicate: a vector of scalars measured together (the terms k = 0..=K of one channel, say) | [`Moments::push`] |
+//! | x_r | one replicate: a vector of scalars measured together, such as the terms k = 0..=K of one channel | [`Moments::push`] |
 //! | x̄ | mean over replicates | [`Moments::mean`] |
 //! | S | sample covariance of one replicate | [`Moments::covariance`] |
 //! | S/n | covariance of the mean, from which every standard error comes | [`Moments::covariance_of_mean`] |
 //!
 //! The sums are updated about the running mean, never as Σx² − nx̄², which loses all digits when the spread is small
-//! beside the mean. Welford, *Technometrics* 4 (1962); merging of parts: Chan, Golub and LeVeque, *The American
+//! compared with the mean. Welford, *Technometrics* 4 (1962); merging of parts: Chan, Golub and LeVeque, *The American
 //! Statistician* 37 (1983).
 
 use crate::terms::Estimate;
@@ -39,7 +39,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// No replicate yet, of vectors of length `len`.
+    /// Moments of vectors of length `len`, without any replicate yet.
     pub fn new(len: usize) -> Self {
         Self { count: 0, mean: DVector::zeros(len), comoment: DMatrix::zeros(len, len) }
     }
@@ -56,7 +56,7 @@ impl Moments {
         self.comoment.ger(weight, &before, &before, 1.0);
     }
 
-    /// Adds the replicates of another part. The result does not depend on how parts were cut, beyond rounding.
+    /// Adds the replicates of another part. The result does not depend on how the replicates were divided, up to rounding.
     ///
     /// # Panics
     /// If the lengths differ.
@@ -72,7 +72,7 @@ impl Moments {
         self.count += other.count;
     }
 
-    /// Replicates seen.
+    /// Number of replicates so far.
     pub fn count(&self) -> u64 {
         self.count
     }
@@ -82,7 +82,7 @@ impl Moments {
         &self.mean
     }
 
-    /// S, per replicate. NaN with fewer than two replicates: a spread is then not known.
+    /// S, the covariance of one replicate. NaN with fewer than two replicates, because the spread is then unknown.
     pub fn covariance(&self) -> DMatrix<f64> {
         if self.count < 2 {
             return DMatrix::from_element(self.mean.len(), self.mean.len(), f64::NAN);
@@ -90,7 +90,7 @@ impl Moments {
         &self.comoment / (self.count - 1) as f64
     }
 
-    /// S_ii. NaN with fewer than two replicates.
+    /// S_ii, the variance of component i. NaN with fewer than two replicates.
     pub fn variance(&self, i: usize) -> f64 {
         if self.count < 2 { f64::NAN } else { self.comoment[(i, i)] / (self.count - 1) as f64 }
     }
@@ -106,8 +106,8 @@ impl Moments {
     }
 }
 
-/// The estimate that a set of independent replicates of one RGB value gives. One replicate has no known error (NaN);
-/// none at all has no mean either.
+/// The estimate of one RGB value from independent replicates. One replicate gives no error (NaN), and no replicate gives no
+/// mean either.
 pub fn estimate(replicates: &[DVec3]) -> Estimate {
     let n = replicates.len() as f64;
     let mean = replicates.iter().sum::<DVec3>() / n;
@@ -121,7 +121,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    /// The plain twin: two passes over everything.
+    /// Reference implementation for the test: two passes over all data.
     fn two_pass(rows: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let (n, d) = (rows.len() as f64, rows[0].len());
         let mean: Vec<f64> = (0..d).map(|a| rows.iter().map(|r| r[a]).sum::<f64>() / n).collect();
@@ -135,7 +135,7 @@ mod tests {
         (mean, cov)
     }
 
-    /// Numbers without a pattern; the mean is far larger than the spread.
+    /// Irregular numbers whose mean is far larger than their spread.
     fn rows() -> Vec<Vec<f64>> {
         let x = |i: usize| ((i * i * 7 + i * 13) % 101) as f64;
         (0..37).map(|i| vec![1e6 + x(i), 0.5 * x(i) - x(i + 5), x(i + 11)]).collect()

@@ -1,4 +1,4 @@
-//! The observed order of convergence, and the limit of what is known on a few meshes.
+//! The observed order of convergence, and the limit h → 0 of a value known on a few meshes.
 //!
 //! ```text
 //! |e(h)| ≈ c h^p      ln |e| = ln c + p ln h,   Var ln |e| ≈ (s/e)²
@@ -12,9 +12,9 @@
 //! | p | the order | [`Order::order`] |
 //! | v | limit for h → 0 (Richardson) | [`Limit::value`] |
 //!
-//! The logarithm is taken to first order, so only errors above [`CLEAR`] standard errors count. Errors that share their noise (one
-//! reference for all meshes) move together; that is left out, and makes the error of p a little too large where the noise is that of
-//! the reference. A sign that changes between meshes has no order.
+//! The logarithm is linearised, so only errors above [`CLEAR`] standard errors count. Errors that share their noise (one
+//! reference for all meshes) are correlated. That is ignored; where most noise is that of the reference, it makes the
+//! standard error of p a little too large. If the error changes its sign between meshes, there is no order.
 
 //!
 //! Reference: Richardson and Gaunt, *The deferred approach to the limit* (1927); Roache, *Perspective: a method for uniform
@@ -25,25 +25,25 @@ use super::line;
 use nalgebra::DMatrix;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// How many standard errors an error must have to be counted.
+/// Number of standard errors that an error must exceed to be counted.
 pub const CLEAR: f64 = 3.0;
 
 /// An order with its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Order {
-    /// p.
+    /// p, the order.
     pub order: f64,
     /// Its standard error; 0 if the errors are exact.
     pub std_error: f64,
-    /// c.
+    /// c, the factor of the power law.
     pub constant: f64,
-    /// How many meshes were clear enough to count.
+    /// Number of meshes whose error was clear enough to count.
     pub meshes: usize,
-    /// P(misfit at least this large | one power of h); NaN with two meshes.
+    /// Probability of a misfit at least this large if the error is one power of h; NaN with two meshes.
     pub p: f64,
 }
 
-/// Fits the order through `points` = (h, e, s). None with fewer than two clear errors of one sign.
+/// Fits the order through `points` = (h, e, s). None with fewer than two clear errors, or if they differ in sign.
 ///
 /// ```
 /// use fredholm::stats::convergence_order;
@@ -78,27 +78,27 @@ pub fn convergence_order(points: &[(f64, f64, f64)]) -> Option<Order> {
     })
 }
 
-/// The orders that a limit allows for: 1 + 2β of an edge with exponent β ≥ 0.1, and 2 of smooth light. The order that three meshes show
-/// is not used: it is off by up to a half, mostly too high, and intervals that trusted it were up to nine times too short. With these
-/// 126 of 132 limits were covered (DESIGN.md).
+/// Smallest and largest order that a limit allows for: 1 + 2β at an edge with exponent β ≥ 0.1, and 2 for smooth light. The
+/// order observed on three meshes is not used. It is wrong by up to a half, mostly too high, and intervals that trusted it
+/// were up to nine times too short. With the range given here, 126 of 132 limits were covered (DESIGN.md).
 pub const ORDERS: [f64; 2] = [1.2, 2.0];
 
-/// A value for h → 0.
+/// A value extrapolated to h → 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
-    /// The middle of what the orders give.
+    /// Middle of the values that these orders give.
     pub value: f64,
-    /// Half of the span of what they give, two standard errors of the noise, and rounding: an estimate, no bound.
+    /// Half the span of these values, plus two standard errors of the noise, plus rounding. It is an estimate, not a bound.
     pub half_width: f64,
-    /// The least and the largest order allowed for.
+    /// The smallest and the largest order that were allowed for.
     pub orders: [f64; 2],
 }
 
-/// Meshes are at least this much narrower than the one before; half as wide is usual.
+/// Each mesh width must be at most this fraction of the one before; half is usual.
 const FINER: f64 = 0.75;
 
-/// The limit of a value of which `points` = (h, v, s) are known, coarsest first; the last two are used. All of [`ORDERS`] is allowed
-/// for. None with fewer than two, or where one is hardly finer than the one before.
+/// Extrapolates to h → 0 a value known at `points` = (h, v, s), coarsest first. The last two points are used, with all
+/// orders in the range [`ORDERS`]. None with fewer than two points, or if a mesh is hardly finer than the one before.
 ///
 /// ```
 /// use fredholm::stats::limit;
@@ -118,7 +118,7 @@ pub fn limit(points: &[(f64, f64, f64)]) -> Option<Limit> {
     let [most, least] = ORDERS.map(factor);
     let middle = 0.5 * (most + least);
     let noise = ((1.0 + middle) * own).hypot(middle * noise);
-    // where the step is rounding it says nothing of the error
+    // a step as small as rounding says nothing about the error
     let half_width = 0.5 * (most - least) * step.abs() + 2.0 * noise + ROUNDING * value.abs();
     Some(Limit { value: value + middle * step, half_width, orders: ORDERS })
 }

@@ -1,4 +1,4 @@
-//! How many samples a test needs, and what a test of given size can see.
+//! Number of samples that a test needs, and the smallest effect that a test of given size can detect.
 //!
 //! ```text
 //! n = ((z_α + z_β) cv / δ)²          smallest visible effect = (t_α + z_β) s
@@ -7,13 +7,14 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | α | two-sided level of one comparison | `alpha` |
-//! | β | chance to miss an effect of size δ | `beta` |
+//! | β | probability to miss an effect of size δ | `beta` |
 //! | cv | standard deviation of one sample over the mean | `cv` |
 //! | δ | effect, relative to the mean | `delta` |
 //! | s | standard error of the comparison | `std_error` |
+//! | z, t | quantiles of the normal and of Student's distribution | [`critical`] |
 //!
-//! Cohen, *Statistical Power Analysis for the Behavioral Sciences* (1988). A test that does not reject says nothing by
-//! itself: these two numbers say what it could have seen.
+//! Cohen, *Statistical Power Analysis for the Behavioral Sciences* (1988). A test that does not reject proves nothing by
+//! itself. These two numbers show what it could have detected.
 
 use super::hypothesis::critical;
 
@@ -22,7 +23,7 @@ pub(super) fn one_sided_normal(beta: f64) -> f64 {
     critical(2.0 * beta, f64::INFINITY)
 }
 
-/// Samples needed to see a relative effect `delta` with probability 1 − `beta` in a test of two-sided level `alpha`.
+/// Samples needed to detect a relative effect `delta` with probability 1 − `beta` in a test of two-sided level `alpha`.
 ///
 /// ```
 /// use fredholm::stats::needed_samples;
@@ -35,10 +36,11 @@ pub fn needed_samples(cv: f64, delta: f64, alpha: f64, beta: f64) -> f64 {
     (z * cv / delta).powi(2)
 }
 
-/// The smallest true effect that a comparison with this standard error and `dof` rejects with probability 1 − `beta`.
-/// Treats the error of s as entering through t_α only; at 15 degrees of freedom the achieved power is a little less.
+/// The smallest true effect that a comparison with this standard error and `dof` rejects with probability 1 − `beta`. The
+/// uncertainty of the standard error enters only through t_α. At 15 degrees of freedom the true power is therefore a little
+/// lower.
 pub fn min_detectable(std_error: f64, dof: f64, alpha: f64, beta: f64) -> f64 {
-    // an exact comparison has no noise to hide behind
+    // an exact comparison has no noise that could hide an effect
     if std_error == 0.0 { 0.0 } else { (critical(alpha, dof) + one_sided_normal(beta)) * std_error }
 }
 

@@ -1,4 +1,4 @@
-//! The mean of a stream of batches, watched while it comes in: a test that may be looked at after every batch.
+//! The mean of a stream of batches, with a test that remains valid when it is evaluated after every batch.
 //!
 //! ```text
 //! E_n(m) = ∫ p_δ(x_1..x_n) N(δ; 0, g) dδ / p_0(x_1..x_n)
@@ -13,18 +13,18 @@
 //! | x_i | mean of batch i; batches are independent and identically distributed | [`MeanSequence::push`] |
 //! | x̄, S | mean of the batches so far, Σ (x_i − x̄)² | [`MeanSequence`] |
 //! | δ | (mean − m)/σ, the effect in standard deviations of one batch | |
-//! | g | variance of the prior of δ: where the test is sharpest, not whether it holds | [`PRIOR`] |
+//! | g | variance of the prior of δ; it decides where the test is most sensitive, not whether it is valid | [`PRIOR`] |
 //! | E_n(m) | e-value against "the mean is m" | [`MeanSequence::log_e`] |
-//! | r_n | half width of the confidence sequence | [`MeanSequence::radius`] |
-//! | a | allowance: only means beyond m ± a count against m | `allowance` |
+//! | r_n | half width of the confidence sequence, an interval that is valid for all n at once | [`MeanSequence::radius`] |
+//! | a | allowance: only means outside m ± a count as evidence against m | `allowance` |
 //!
-//! p_δ is the density of the batches up to their scale (of x_i/|x_1|), in which σ does not occur; E_n is thus a likelihood
-//! ratio of one simple hypothesis to another, a martingale that starts at 1, and Ville's inequality bounds its maximum.
-//! In terms of Student's t and ν = n − 1 it is the Bayes factor of the t-test with a normal prior on the effect.
-//! It cannot reject before there are about `ln(1/α²)/ln(1 + ng)` batches, whatever they are.
+//! p_δ is the density of the batches up to their scale (of x_i/|x_1|), which does not contain σ. So E_n is a likelihood
+//! ratio of two simple hypotheses, a martingale that starts at 1. Ville's inequality bounds its maximum. In terms of
+//! Student's t and ν = n − 1 it is the Bayes factor of the t-test with a normal prior on the effect. It cannot reject before
+//! about `ln(1/α²)/ln(1 + ng)` batches, whatever their values are.
 //!
-//! **Assumed:** batches are normal. They are means of many paths, so nearly; how nearly is measured (`tests/sequential.rs`),
-//! and where few events carry a mean nothing is decided ([`detector`](super::detector)).
+//! **Assumption:** batches are normal. They are means of many paths, so this holds nearly; `tests/sequential.rs` measures
+//! how nearly. If few events carry a mean, there is no verdict ([`detector`](super::detector)).
 //!
 //! References: Ville (1939); Lai, *On confidence sequences*, Annals of Statistics 4 (1976); Gönen, Johnson, Lu and Westfall,
 //! *The Bayesian two-sample t test*, American Statistician 59 (2005); Pérez-Ortiz, Lardy, de Heide and Grünwald, *E-statistics,
@@ -33,11 +33,11 @@
 
 use super::power::one_sided_normal;
 
-/// g. The interval is narrowest, for its n, where ng ≈ 2 ln(1/α) + …: at some hundred batches for the levels in use. It is a few
-/// percent wider than need be at ten times fewer or more.
+/// g. For a given n, the interval is narrowest where ng ≈ 2 ln(1/α) + …: at some hundred batches for the levels in use. For
+/// ten times fewer or more batches it is a few percent wider than necessary.
 pub const PRIOR: f64 = 0.1;
 
-/// Running mean of batches, for a test at any time.
+/// Running mean of batches, with a test that is valid at any time.
 ///
 /// ```
 /// use fredholm::stats::MeanSequence;
@@ -56,7 +56,7 @@ pub struct MeanSequence {
 }
 
 impl MeanSequence {
-    /// Takes in one batch. A value that is not finite makes every answer NaN from here on.
+    /// Takes in one batch. After a value that is not finite, every answer is NaN.
     pub fn push(&mut self, x: f64) {
         self.count += 1;
         let before = x - self.mean;
@@ -64,7 +64,7 @@ impl MeanSequence {
         self.square += before * (x - self.mean);
     }
 
-    /// Batches so far.
+    /// Number of batches so far.
     pub fn count(&self) -> u64 {
         self.count
     }
@@ -80,7 +80,7 @@ impl MeanSequence {
         if self.count < 2 { f64::NAN } else { (self.square / (n * (n - 1.0))).sqrt() }
     }
 
-    /// ln of the least E_n(m) over all m within `allowance` of `null`: the evidence against all of them.
+    /// ln of the smallest E_n(m) over all m within `allowance` of `null`: the evidence against all of these m.
     pub fn log_e(&self, null: f64, allowance: f64) -> f64 {
         let n = self.count as f64;
         let spread = 1.0 + n * PRIOR;
@@ -93,20 +93,20 @@ impl MeanSequence {
         0.5 * (n * ratio.ln() - spread.ln())
     }
 
-    /// r_n at level `alpha`: with probability 1 − α the mean is within r_n of x̄ for every n at once. ∞ while there are too few
-    /// batches to say anything.
+    /// r_n at level `alpha`: with probability 1 − α the true mean is within r_n of x̄ for all n at once. ∞ as long as there
+    /// are too few batches.
     pub fn radius(&self, alpha: f64) -> f64 {
         let n = self.count as f64;
         let spread = 1.0 + n * PRIOR;
-        // ln c, kept as such: c − 1 is small when there are many batches
+        // ln c is kept instead of c, because c − 1 is small when there are many batches
         let log_c = (spread.ln() - 2.0 * alpha.ln()) / n;
         let room = 1.0 - (log_c - spread.ln()).exp();
         if room > 0.0 { (self.square * log_c.exp_m1() / (n * room)).sqrt() } else { f64::INFINITY }
     }
 }
 
-/// Batches after which a bias of `effect` standard deviations of one batch has been found with probability 1 − `beta` at level
-/// `alpha`: the first n with r_n + z_β σ/√n ≤ effect · σ.
+/// Number of batches after which a bias of `effect` standard deviations of one batch is detected with probability 1 − `beta`
+/// at level `alpha`: the first n with r_n + z_β σ/√n ≤ effect · σ.
 ///
 /// ```
 /// use fredholm::stats::sequential::planned_batches;
@@ -142,8 +142,8 @@ mod tests {
         s
     }
 
-    /// The closed form against the mixture it stands for, by quadrature over δ and the scale: the right Haar measure dσ/σ makes
-    /// `p_δ ∝ ∫ σ^(−n−1) exp(−Σ (x_i − m − δσ)²/2σ²) dσ`.
+    /// Compares the closed form with the mixture that it stands for, by quadrature over δ and the scale. With the right Haar
+    /// measure dσ/σ, `p_δ ∝ ∫ σ^(−n−1) exp(−Σ (x_i − m − δσ)²/2σ²) dσ`.
     #[test]
     fn the_closed_form_is_the_integral() {
         let s = sequence(9);

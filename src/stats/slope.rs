@@ -1,4 +1,4 @@
-//! How fast does the variance fall?
+//! The slope of the variance against the number of samples, on logarithmic axes.
 //!
 //! ```text
 //! ln V(n) = ln c + b ln n      b = −1: independent samples;  b < −1: stratified or low-discrepancy points
@@ -11,50 +11,51 @@
 //! | b | the slope | [`Slope::slope`] |
 //! | b_(i) | the slope without replicate i | [`falling_slope`] |
 //!
-//! A variance from ν degrees of freedom follows V χ²_ν/ν, so ln V(n) has the variance ψ′(ν/2) ≈ 2/ν + 2/ν² whatever V
-//! is, and the points have equal weight. They share their replicates: V(n) is read off the running means at n = 1, 2,
-//! 4, …. The means at n ≤ m of independent samples correlate by √(n/m), and their sample variances by the square of
-//! that, so the fit uses Cov(ln V(n), ln V(m)) = (2/ν + 2/ν²) · n/m. **Approximation:** the matrix is exact to this order
-//! for independent samples; stratified and low-discrepancy points forget their past faster, for them it is too large.
+//! A variance from ν degrees of freedom follows V χ²_ν/ν. So ln V(n) has the variance ψ′(ν/2) ≈ 2/ν + 2/ν² for any V, and
+//! all points have equal weight. The points share their replicates: V(n) is read off the running means at n = 1, 2, 4, ….
+//! For n ≤ m the means of independent samples have the correlation √(n/m), and their sample variances the square of that. So
+//! the fit uses Cov(ln V(n), ln V(m)) = (2/ν + 2/ν²) · n/m. **Approximation:** to this order the matrix is exact for
+//! independent samples. Stratified and low-discrepancy points lose their correlation faster, so for them it is too large.
 
 //!
-//! That error holds for one functional of independent normal samples. A variance averaged over pixels has more degrees of
-//! freedom, nobody knows how many; samples with heavy tails have fewer. [`falling_slope`] therefore takes the same fit and
-//! its error from the fits without one replicate each, which assume neither:
+//! This error holds for one functional of independent normal samples. A variance averaged over pixels has more degrees of
+//! freedom, but their number is unknown; samples with heavy tails have fewer. [`falling_slope`] therefore uses the same fit,
+//! but takes the error from fits that each leave out one replicate. They assume neither:
 //!
 //! `s_b² = (R−1)/R · Σ_i (b_(i) − b̄_(·))²`, with R − 1 degrees of freedom.
 //!
-//! The logarithm of a noisy variance is skew, and too small by half its relative variance, so that plain intervals of few pixels miss 12 to
-//! 17 % at 95 %. `s_b` is therefore widened by √(1 + 8 r), r the largest relative variance of a point, and points whose variance rests on
-//! few events are left out by who has counted them ([`evidence`](super::evidence)). Measured coverage: DESIGN.md.
+//! The logarithm of a noisy variance is skewed, and on average too small by half its relative variance. Because of that,
+//! plain 95 % intervals from few pixels miss the true slope in 12 to 17 % of all cases. `s_b` is therefore widened by
+//! √(1 + 8 r), where r is the largest relative variance of a point. The caller, who has counted the events, leaves out
+//! points whose variance rests on few events ([`evidence`](super::evidence)). Measured coverage: DESIGN.md.
 
 use super::line;
 use crate::terms::scatter::jackknife;
 use nalgebra::DMatrix;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// What skewness adds to the squared error of a slope, per relative variance of its noisiest point.
+/// Effect of skewness: the squared error of a slope grows by this factor times the relative variance of its noisiest point.
 const SKEW: f64 = 8.0;
 
 /// A slope in log-log scale with its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slope {
-    /// b.
+    /// b, the slope.
     pub slope: f64,
     /// Standard error of b.
     pub std_error: f64,
-    /// ln c: the fitted logarithm of V(1).
+    /// ln c, the fitted logarithm of V(1).
     pub intercept: f64,
     /// Misfit; about `points − 2` if the curve is a power law.
     pub chi_squared: f64,
-    /// P(misfit at least this large | power law). NaN with two points.
+    /// Probability of a misfit at least this large if the curve is a power law. NaN with two points.
     pub p: f64,
 }
 
 /// Fits b to `points` = (n, V(n)). `dof` is R − 1 for the variance of one functional; for a variance averaged over
 /// pixels it lies between R − 1 and pixels × (R − 1), and R − 1 is the cautious choice.
 ///
-/// None with fewer than two different n, or if a variance is not positive and finite (a zero-variance estimator has no
+/// None with fewer than two different n, or if a variance is not positive and finite (an estimator with zero variance has no
 /// slope).
 pub fn variance_slope(points: &[(f64, f64)], dof: f64) -> Option<Slope> {
     if points.iter().any(|&(n, v)| !(n > 0.0 && v > 0.0 && n.is_finite() && v.is_finite())) {
@@ -75,11 +76,11 @@ pub fn variance_slope(points: &[(f64, f64)], dof: f64) -> Option<Slope> {
     })
 }
 
-/// Fits b to the curve of `points` = (n, θ(n)), its error from the curves without one replicate each: `without[j][i]` is
-/// θ at the j-th n without replicate i. θ may be a variance or a squared error.
+/// Fits b to the curve of `points` = (n, θ(n)). Its error comes from the curves that leave out one replicate each:
+/// `without[j][i]` is θ at the j-th n without replicate i. θ may be a variance or a squared error.
 ///
-/// `chi_squared` and `p` are those of [`variance_slope`] with the degrees of freedom that the scatter of the points shows:
-/// how well a straight line describes the curve, no more.
+/// `chi_squared` and `p` are those of [`variance_slope`], with degrees of freedom estimated from the scatter of the points.
+/// They only show how well a straight line describes the curve.
 ///
 /// None where [`variance_slope`] gives none, or with fewer than three replicates.
 pub fn falling_slope(points: &[(f64, f64)], without: &[Vec<f64>]) -> Option<Slope> {

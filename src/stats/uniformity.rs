@@ -1,4 +1,4 @@
-//! Are p-values uniform, as they are where there is nothing to find?
+//! A test whether p-values are uniform, as they are if there is nothing to find.
 //!
 //! ```text
 //! D = sup_u | #{p_i ≤ u}/n − u |        P(D ≥ d) ≤ 2 exp(−2 n d²)
@@ -7,23 +7,23 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | D | Kolmogorov's distance from the uniform law | [`Uniformity::distance`] |
-//! | p | bound of the probability of such a distance: valid for every n, and near the exact value where it is small | [`Uniformity::p`] |
-//! | band | distance that p-values stay within with probability 1 − α | [`band`] |
+//! | p | upper bound of the probability of such a distance: valid for every n, and close to the exact value where it is small | [`Uniformity::p`] |
+//! | band | distance within which p-values stay with probability 1 − α | [`band`] |
 //!
 //! Dvoretzky, Kiefer and Wolfowitz (1956), with the constant of Massart, *Annals of Probability* 18 (1990).
 
-/// How far from uniform.
+/// Distance of a set of p-values from the uniform distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uniformity {
-    /// How many.
+    /// Number of p-values.
     pub count: usize,
-    /// D; NaN if a value is NaN or there is none.
+    /// D; NaN if a p-value is NaN or if there is none.
     pub distance: f64,
-    /// Bound of P(a distance this large | uniform).
+    /// Upper bound of the probability of a distance this large if the p-values are uniform.
     pub p: f64,
 }
 
-/// Distance of independent p-values from the uniform law.
+/// Computes the distance of independent p-values from the uniform distribution.
 ///
 /// ```
 /// use fredholm::stats::uniformity;
@@ -49,7 +49,7 @@ fn tail(n: f64, distance: f64) -> f64 {
     (2.0 * (-2.0 * n * distance * distance).exp()).min(1.0)
 }
 
-/// The distance that `n` uniform numbers stay within with probability 1 − `alpha`.
+/// The distance within which `n` uniform numbers stay with probability 1 − `alpha`.
 pub fn band(n: usize, alpha: f64) -> f64 {
     ((2.0 / alpha).ln() / (2.0 * n as f64)).sqrt()
 }

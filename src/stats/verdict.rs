@@ -1,27 +1,29 @@
-//! Do two worlds agree, term by term?
+//! Verdicts: do two worlds agree, term by term?
 //!
 //! ```text
 //! Differs        some comparison is rejected by Holm at the family level α
 //! Agrees         none is, and |effect| + t* s + a ≤ δ for every image mean
-//! Inconclusive   neither: the noise hides an effect as large as δ; or the scene has no right answer
+//! Inconclusive   neither: the noise hides an effect as large as δ; or the image of the scene is undefined
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | effect | first world − second world | [`Verdict::effect`] |
 //! | s, ν | standard error of the effect, its degrees of freedom | [`difference`] |
-//! | a | allowance: an error that is no noise (discretisation) | [`compare`] |
-//! | 3 max a | what a rejection must exceed: the largest allowance of its kind, with Roache's safety factor | [`compare`] |
-//! | – | a term whose a exceeds a quarter of it is not resolved by the mesh: it rejects nothing, and sums are judged without it | [`compare`] |
+//! | a | allowance for an error that is not noise: that of the mesh (discretisation) | [`compare`] |
+//! | 3 max a | threshold of a rejection: the largest allowance of its kind (image, regions, projections), times Roache's safety factor | [`compare`] |
+//! | – | if a exceeds a quarter of a term, the mesh does not resolve the term: it rejects nothing, and sums are judged without it | [`compare`] |
 //! | δ | 2 % of the term + 10⁻⁴ of the whole image, per channel | [`Criterion`] |
-//! | α | chance that two equal worlds are told apart anywhere in the whole family | [`Criterion::alpha`] |
-//! | t* | critical value at α: agreement needs *every* interval inside its margin, and such a claim needs no share of α for each | [`Verdict::interval`] |
+//! | α | probability that two equal worlds are reported as different anywhere in the whole family | [`Criterion::alpha`] |
+//! | t* | critical value at α. Agreement needs *every* interval inside its margin, so α need not be divided among them | [`Verdict::interval`] |
 //!
-//! The family is every functional (image mean, regions, projections) × every quantity (terms, tail, sum, total) ×
-//! channel. All of it can reject. Only image means must also *prove* agreement: a region sees more noise, and that no
-//! test rejected it proves nothing. Where the [evidence](super::evidence) of a mean will not carry a verdict nothing is rejected, and
-//! agreement needs an interval ten times as narrow; where one side is in [doubt](crate::terms::Doubt) there is neither. Two one-sided tests as one interval: Schuirmann, *J. Pharmacokinetics
-//! and Biopharmaceutics* 15 (1987); a claim that needs all of them to hold needs no correction: Berger, *Technometrics* 24 (1982).
+//! The family is every functional (image mean, regions, projections) × every quantity (terms, tail, sum, total) × every
+//! channel. Each member can reject. Only image means must also *prove* agreement: a region has more noise, and a test that
+//! does not reject proves nothing. If a mean has too little [evidence](super::evidence) for a verdict, it rejects nothing,
+//! and agreement needs an interval ten times as narrow. If one side has a [doubt](crate::terms::Doubt) about a quantity, the
+//! quantity neither differs nor agrees. References: Schuirmann, *J. Pharmacokinetics and Biopharmaceutics* 15 (1987), for
+//! two one-sided tests as one interval; Berger, *Technometrics* 24 (1982), for claims that need no correction because all of
+//! their tests must hold.
 
 use super::evidence::{Evidence, JUDGED, Reason, WIDER, doubt_in_words};
 use super::hypothesis::{Measured, ROUNDING, critical, difference, holm, two_sided_p};
@@ -31,13 +33,13 @@ use crate::terms::{Doubt, Estimate, Functional, Series, World};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// What a comparison found.
+/// Outcome of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
-    /// Equal within δ, proved.
+    /// Proved to be equal within δ.
     Agrees,
-    /// Different, proved.
+    /// Proved to be different.
     Differs,
     /// The samples do not decide.
     Inconclusive,
@@ -48,11 +50,11 @@ pub enum Outcome {
 pub struct Criterion {
     /// δ as a fraction of the term.
     pub of_term: f64,
-    /// δ as a fraction of the whole image, added.
+    /// δ as a fraction of the whole image, added to the fraction of the term.
     pub of_total: f64,
-    /// Family level.
+    /// α, the level of the whole family.
     pub alpha: f64,
-    /// β of [`Verdict::min_detectable`]: chance to miss an effect of that size.
+    /// β of [`Verdict::min_detectable`]: the probability to miss an effect of that size.
     pub beta: f64,
 }
 
@@ -62,68 +64,68 @@ impl Default for Criterion {
     }
 }
 
-/// One comparison, or one row that speaks for many.
+/// One comparison, or one row that stands for many.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verdict {
     /// `T0`, `T1`, …, `tail`, `sum`, `total`.
     pub name: String,
     /// The functional and channel the numbers belong to: `image, red`.
     pub functional: String,
-    /// First − second.
+    /// Difference first − second.
     pub effect: f64,
-    /// Where the effect lies at level 1 − α; widened by the allowance. NaN where no error is known.
+    /// Confidence interval of the effect at level 1 − α, widened by the allowance. NaN if the error is not known.
     pub interval: (f64, f64),
     /// Holm-adjusted p-value: rejected if ≤ α.
     pub p: f64,
-    /// Smallest true effect that would have been rejected with probability 1 − β; NaN where nothing could have been.
+    /// Smallest true effect that would have been rejected with probability 1 − β; NaN if nothing could have been rejected.
     pub min_detectable: f64,
-    /// What was found.
+    /// The outcome.
     pub outcome: Outcome,
-    /// The margin of equivalence.
+    /// δ, the margin of equivalence.
     pub delta: f64,
     /// The quantity itself: the mean of both image means in this channel, the unit in which a reader measures the effect.
     pub size: f64,
-    /// If inconclusive: with this many times the samples one of the other outcomes is certain, whatever the effect.
-    /// None if no number of samples will do.
+    /// If inconclusive: with this many times the samples one of the other two outcomes is certain, whatever the effect is.
+    /// None if no number of samples is enough.
     pub needed_factor: Option<f64>,
-    /// If inconclusive for another reason than noise: which.
+    /// The reason, if the comparison is inconclusive for a reason other than noise.
     pub reason: Option<String>,
 }
 
 /// The comparison of two results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
-    /// One row per quantity, in the words of its worst functional and channel.
+    /// One row for each quantity, which describes its worst functional and channel.
     pub rows: Vec<Verdict>,
-    /// How many scalar comparisons share α.
+    /// Number of scalar comparisons that share α.
     pub family: usize,
     /// Differs if any row does; Agrees if every row does.
     pub outcome: Outcome,
-    /// Why nothing is decided, where the scene has no right answer.
+    /// Reason why there is no verdict at all, if the image of the scene is undefined.
     pub undecided: Option<String>,
 }
 
-/// Why nothing is decided where surfaces coincide and differ.
-const NO_ANSWER: &str = "the scene has no right answer";
-const ALLOWANCE: &str = "the allowance for discretisation alone exceeds what δ can resolve: refine the mesh";
+/// Reason for rows without a verdict, if visible surfaces coincide and differ.
+const NO_ANSWER: &str = "two visible surfaces coincide and differ: the image is undefined";
+const ALLOWANCE: &str = "the mesh error alone is too large for a verdict within δ: refine the mesh";
 
-/// An allowance from two meshes is itself uncertain; a rejection must exceed it by this factor, the one that Roache asks for
-/// with two grids (*J. Fluids Engineering* 116, 1994).
+/// Safety factor. An allowance from two meshes is itself uncertain, so a rejection must exceed it by this factor. Roache
+/// recommends it for comparisons of two grids (*J. Fluids Engineering* 116, 1994).
 const SAFETY: f64 = 3.0;
 
-/// A term that changes by more than this part of itself from one mesh to the next is not resolved: how far it is off, two meshes do
-/// not say. It rejects nothing, and sums are judged without what it differs by.
+/// A term that changes by more than this fraction of itself from one mesh to the next is not resolved, because two meshes
+/// then do not show how far off it is. It rejects nothing, and sums are judged without its difference.
 const UNRESOLVED: f64 = 0.25;
-const NOT_RESOLVED: &str = "the mesh does not resolve it, it still changes by more than a quarter: refine the mesh";
+const NOT_RESOLVED: &str = "two meshes differ by more than a quarter in this quantity: refine the mesh";
 
-/// Per channel, whether the image mean of a quantity by a matrix is not resolved.
+/// For each channel: true if the mesh does not resolve the image mean of this quantity.
 fn unresolved(quantity: Quantity, mesh: Option<&Series>, allowance: &[Functional]) -> [bool; 3] {
     let (Some(mesh), Some(gap)) = (mesh.map(Series::image), allowance.first()) else { return [false; 3] };
     let (Some(value), Some(gap)) = (quantity.of(mesh), quantity.of(gap)) else { return [false; 3] };
     [0, 1, 2].map(|c| gap.mean[c].abs() > UNRESOLVED * value.mean[c].abs())
 }
 
-/// What one of two results cannot know of a quantity, in words: events of which too few are to be expected.
+/// A sentence about the doubt of either result in a quantity, if too few events are expected; otherwise None.
 fn doubt(quantity: Quantity, a: &Series, b: &Series) -> Option<String> {
     let of = |s: &Series| {
         let concerned = s.doubts.iter().filter(|d| quantity.concerned(d) && s.expected(d) < JUDGED);
@@ -133,23 +135,24 @@ fn doubt(quantity: Quantity, a: &Series, b: &Series) -> Option<String> {
     of(a).or_else(|| of(b))
 }
 
-/// The largest allowance of the functionals of one kind (image, regions, projections): where the difference of two meshes
-/// changes its sign it is small by accident.
+/// The largest allowance among the functionals of one kind (image, regions, projections). A single allowance may be small by
+/// accident, where the difference of two meshes changes its sign.
 fn largest_alike(allowance: &[Functional], name: &str, quantity: Quantity) -> DVec3 {
     let kind = |name: &str| name.split(' ').next().unwrap_or_default().to_string();
     let alike = allowance.iter().filter(|f| kind(&f.name) == kind(name));
     alike.filter_map(|f| quantity.of(f)).fold(DVec3::ZERO, |a, e| a.max(e.mean.abs()))
 }
 
-/// Compares every quantity that both results have. `allowance` holds, as the means of functionals, an absolute error
-/// that is not noise, such as [`discretisation`](super::discretisation::discretisation); a functional not named there takes the first one's. Empty: none.
+/// Compares every quantity that both results have. `allowance` holds, as the means of functionals, an absolute error that is
+/// not noise, such as [`discretisation`](super::discretisation::discretisation). A functional that is not named there gets
+/// the allowance of the first one. If the list is empty, there is no allowance.
 ///
-/// K may differ: the common terms are compared, but then `tail` and `sum` mean different things and are left out. The
-/// path tracer has no terms: against it only `total` is compared. With nothing in common the outcome is Inconclusive.
-/// A series cut at K has no tail: `tail` is left out, and `total` too unless both are cut.
+/// K may differ. The common terms are then compared, but `tail` and `sum` have different meanings and are left out. The path
+/// tracer has no terms, so only its `total` is compared. If there is nothing in common, the outcome is Inconclusive. A
+/// series cut at K has no tail: `tail` is left out, and `total` too unless both are cut.
 ///
-/// Values without error on both sides agree if they are equal to [`ROUNDING`] of the whole image and differ otherwise,
-/// whatever δ: there is no noise to excuse them.
+/// If neither side has an error, the values agree if they are equal to [`ROUNDING`] of the whole image and differ otherwise,
+/// whatever δ is, because there is no noise to explain a difference.
 pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Functional]) -> Comparison {
     let mut family = Vec::new();
     let (Some(image_a), Some(image_b)) = (a.functionals.first(), b.functionals.first()) else {
@@ -173,7 +176,7 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
             let doubt = doubt(quantity, a, b);
             let unresolved = |q: Quantity| unresolved(q, mesh, allowance);
             let own = unresolved(quantity);
-            // what the terms of a sum that are not resolved differ by
+            // the differences of those terms of a sum that the mesh does not resolve
             let parts = shared_quantities(fa, fb).into_iter().filter(|q| quantity.contains(*q));
             let unknown = parts.fold(DVec3::ZERO, |sum, q| match (q.of(fa), q.of(fb)) {
                 (Some(x), Some(y)) => sum + DVec3::from(unresolved(q).map(f64::from)) * (x.mean - y.mean).abs(),
@@ -206,7 +209,7 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
     found
 }
 
-/// What of a functional is compared.
+/// The quantities of a functional that are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Quantity {
     Term(usize),
@@ -225,12 +228,12 @@ impl Quantity {
         }
     }
 
-    /// Whether a doubt concerns it.
+    /// Returns true if a doubt affects this quantity.
     pub(super) fn concerned(self, doubt: &Doubt) -> bool {
         if let Self::Term(k) = self { doubt.from <= k } else { true }
     }
 
-    /// Whether it is a sum that `part` belongs to.
+    /// Returns true if this is a sum that contains `part`.
     fn contains(self, part: Self) -> bool {
         match self {
             Self::Term(_) | Self::Tail => false,
@@ -260,7 +263,7 @@ pub(super) fn shared_quantities(a: &Functional, b: &Functional) -> Vec<Quantity>
     all
 }
 
-/// δ: always from the image means, so that a projection, whose value is near zero, has the margin of its term.
+/// δ always follows from the image means, so that a projection, whose value is near zero, has the margin of its term.
 fn margin(criterion: &Criterion, quantity: Quantity, a: &Functional, b: &Functional) -> DVec3 {
     let size = |q: Quantity| {
         let abs = |f| q.of(f).map_or(DVec3::ZERO, |e| e.mean.abs());
@@ -269,29 +272,30 @@ fn margin(criterion: &Criterion, quantity: Quantity, a: &Functional, b: &Functio
     criterion.of_term * size(quantity) + criterion.of_total * size(Quantity::Total)
 }
 
-/// One member of the family.
+/// One member of the family of comparisons.
 struct Item {
     quantity: Quantity,
     functional: String,
     is_image: bool,
     effect: Measured,
-    /// What is no noise and no difference either: discretisation.
+    /// Allowance for an error that is neither noise nor a difference: discretisation.
     allowance: f64,
-    /// What a rejection must exceed: the allowance with its own uncertainty.
+    /// The size that a rejection must exceed: the allowance with its own uncertainty.
     excuse: f64,
-    /// What `f32` may lose: never a difference.
+    /// Rounding error of `f32`; it never counts as a difference.
     rounding: f64,
     delta: f64,
     /// The mean of both image means.
     size: f64,
-    /// Why nothing may be rejected.
+    /// Reason why nothing may be rejected.
     weak: Option<Reason>,
-    /// Why there can be no verdict at all.
+    /// Reason why there can be no verdict at all.
     doubt: Option<String>,
 }
 
 impl Item {
-    /// P(an effect at least this large | the true effect is within excuse and rounding). Without noise it is 0 or 1.
+    /// Probability of an effect at least this large if the true effect is within excuse and rounding. Without noise it is 0
+    /// or 1.
     fn p(&self) -> f64 {
         let excess = self.effect.mean.abs() - self.excuse - self.rounding;
         let s = self.effect.std_error;
@@ -304,12 +308,12 @@ impl Item {
         }
     }
 
-    /// |t|, to order p-values that underflow.
+    /// |t|, which orders comparisons whose p-values underflow.
     fn t(&self) -> f64 {
         self.effect.mean.abs() / self.effect.std_error
     }
 
-    /// t* s: half the interval, before the allowance.
+    /// t* s: half the width of the interval, before the allowance is added.
     fn noise(&self, level: f64) -> f64 {
         if self.effect.std_error == 0.0 { 0.0 } else { critical(level, self.effect.dof) * self.effect.std_error }
     }
@@ -317,8 +321,8 @@ impl Item {
 
 fn judge(family: &[Item], criterion: &Criterion) -> Comparison {
     let adjusted = holm(&family.iter().map(Item::p).collect::<Vec<_>>());
-    // a rejection anywhere is a claim, so α is shared over the family; agreement claims all margins at once, and is wrong
-    // only if it is wrong where it is worst, so every interval may use the whole α
+    // a rejection anywhere is a claim, so α is divided among the family; agreement claims that all margins hold, which is
+    // wrong only if it is wrong where it is worst, so every interval may use the whole α
     let levels = (criterion.alpha, criterion.alpha / family.len() as f64);
 
     let mut quantities: Vec<Quantity> = family.iter().filter(|i| i.is_image).map(|i| i.quantity).collect();
@@ -326,7 +330,8 @@ fn judge(family: &[Item], criterion: &Criterion) -> Comparison {
     let row = |quantity: &Quantity| {
         let all: Vec<(&Item, f64)> =
             family.iter().zip(adjusted.iter().copied()).filter(|(i, _)| i.quantity == *quantity).collect();
-        // a rejection anywhere speaks first, by its clearest; then what could not be judged; else the widest image mean
+        // the row shows the clearest rejection if there is one; then a comparison that could not be judged; else the image
+        // mean with the widest interval
         let clearest = |a: &&(&Item, f64), b: &&(&Item, f64)| a.1.total_cmp(&b.1).then(b.0.t().total_cmp(&a.0.t()));
         let rejected = all.iter().filter(|(_, p)| *p <= criterion.alpha).min_by(clearest);
         let speaker = rejected.or_else(|| all.iter().find(|(_, p)| p.is_nan()));
@@ -343,11 +348,11 @@ fn judge(family: &[Item], criterion: &Criterion) -> Comparison {
     Comparison { outcome: overall(&rows), rows, family: family.len(), undecided: None }
 }
 
-/// `levels`: of the interval, of a rejection.
+/// Verdict of one comparison. `levels` holds the level of the interval and that of a rejection.
 fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Verdict {
     let (effect, s, delta) = (item.effect.mean, item.effect.std_error, item.delta);
     let (noise, reject) = (item.noise(levels.0), item.noise(levels.1));
-    // where the error is not known, agreement must not depend on it
+    // if the error is not reliable, agreement must not depend on it
     let half = item.allowance + if item.weak.is_some() { (1.0 + WIDER) * noise } else { noise };
     let outcome = if p <= criterion.alpha {
         Outcome::Differs
@@ -356,8 +361,8 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Ve
     } else {
         Outcome::Inconclusive
     };
-    // undecided is δ − noise − a < |effect| ≤ reject + excuse + rounding. That is empty once noise + reject ≤ room, and both
-    // fall as 1/√n
+    // inconclusive means δ − noise − a < |effect| ≤ reject + excuse + rounding. That range is empty once
+    // noise + reject ≤ room, and both fall as 1/√n
     let room = delta - item.allowance - item.excuse - item.rounding;
     let reason = match outcome {
         Outcome::Agrees | Outcome::Differs => None,
@@ -369,7 +374,7 @@ fn verdict(item: &Item, p: f64, criterion: &Criterion, levels: (f64, f64)) -> Ve
         }
         Outcome::Inconclusive => item.doubt.clone().or(item.weak.map(|w| w.to_string())),
     };
-    // an error that is not known is not shown
+    // an error that is not reliable is not shown
     let known = outcome != Outcome::Inconclusive || (item.weak.is_none() && item.doubt.is_none());
     let or_unknown = |x: f64| if known { x } else { f64::NAN };
     let noise_decides = outcome == Outcome::Inconclusive && reason.is_none();

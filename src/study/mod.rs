@@ -1,21 +1,21 @@
-//! What is found out about a scene with the [engines](crate::engine): data in, numbers with errors out, for a command, a chapter
-//! and a test alike.
+//! Studies of a scene. Each one runs one or more [engines](crate::engine) and returns numbers with their errors. Commands,
+//! chapters of the book and tests call the same functions.
 //!
 //! | study | question | place |
 //! |---|---|---|
-//! | run | what do all the ways say of one scene, and of each other? | [`run::Run`] |
-//! | convergence | how do variance and squared error fall in one render? | [`convergence::Recorder`] |
-//! | split | how many samples for which term? | [`split::study`] |
-//! | roulette | noise and cost of schedules, the best of them | [`roulette::pilot`], [`roulette::optimal`] |
-//! | strategies | which way from both ends finds which term? | [`strategies::strategies`] |
+//! | run | what do the series, the path tracer and the matrix give for one scene, and do they agree? | [`run::Run`] |
+//! | convergence | how fast do variance and squared error fall within one render? | [`convergence::Recorder`] |
+//! | split | how many samples should each term get? | [`split::study`] |
+//! | roulette | how noisy and how expensive is each roulette schedule, and which is the best? | [`roulette::pilot`], [`roulette::optimal`] |
+//! | strategies | which bidirectional strategy contributes how much to which term? | [`strategies::strategies`] |
 //! | bounces | how many bounces are enough? | [`bounces::bounces`] |
 //! | lit | which bounce lights which surface? | [`lit::lit`] |
-//! | surface | ‖T^k E‖₁ over the whole scene, camera-free | [`surface::norms`] |
-//! | refinement | how does the matrix come closer on finer meshes? | [`refinement::refine`] |
-//! | equilibrium | are both sides of L = E + T L equal? | [`equilibrium`] |
-//! | stages | how does an image grow? | [`stages::render_stages`] |
-//! | walk | do the estimators find the powers of a matrix? | [`walk::walk`] |
-//! | zero variance | how much does a guide help? | [`zero_variance::study`] |
+//! | surface | how large is ‖T^k E‖₁ over all surfaces, independent of the camera? | [`surface::norms`] |
+//! | refinement | how fast does the matrix approach the truth on finer meshes? | [`refinement::refine`] |
+//! | equilibrium | are the two sides of L = E + T L equal? | [`equilibrium`] |
+//! | stages | how does one image look after more and more paths? | [`stages::render_stages`] |
+//! | walk | do the estimators reproduce the powers of a matrix? | [`walk::walk`] |
+//! | zero variance | how much variance does a guide remove? | [`zero_variance::study`] |
 
 pub mod bounces;
 pub mod convergence;

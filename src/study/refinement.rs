@@ -1,4 +1,4 @@
-//! Convergence in h: the matrix on finer and finer meshes, held against rays.
+//! Convergence in the patch width h: solutions of the matrix on finer and finer meshes, compared with the terms from rays.
 //!
 //! ```text
 //! e_h = φ(T_h^k E) − φ(T^k E)        ‖R_h − R‖² over the image, without the noise of either
@@ -6,14 +6,14 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | h | width of a patch, the root of the mean area, m | [`Mesh::h`] |
-//! | R_h | the matrix through the camera | [`Mesh::picture`] |
-//! | R | the terms from rays | [`Refinement::truth`] |
+//! | h | width of a patch: root of the mean patch area, in m | [`Mesh::h`] |
+//! | R_h | image of the matrix solution through the camera | [`Mesh::picture`] |
+//! | R | images of the terms from rays | [`Refinement::truth`] |
 //! | φ | image mean of a term, or of all indirect light | [`Quantity`] |
-//! | ‖·‖² | mean over pixels and channels of d² − s_h² − s², unbiased | [`Refinement::image_error`] |
+//! | ‖·‖² | mean over pixels and channels of d² − s_h² − s²: d = R_h − R, and s_h, s are the standard errors; unbiased | [`Refinement::image_error`] |
 //!
-//! All meshes are read along the same camera rays, so that what changes from one to the next is the mesh. T⁰ and T¹ are no
-//! question to a matrix (what is read is E itself) and serve as controls.
+//! All meshes are viewed along the same camera rays, so that differences between them come from the meshes alone. The terms
+//! k = 0 and k = 1 need no matrix, because they are read directly from E. They serve as controls.
 
 use crate::engine::Settings;
 use crate::engine::by_matrix::{self, MatrixError};
@@ -29,34 +29,34 @@ use crate::terms::Estimate;
 use glam::DVec3;
 use std::time::Instant;
 
-/// One mesh.
+/// The results on one mesh.
 pub struct Mesh {
-    /// Patches.
+    /// Number of patches.
     pub patches: usize,
     /// √(area/patches), metres.
     pub h: f64,
-    /// Through the camera.
+    /// The terms seen through the camera.
     pub picture: Sampled,
-    /// Spectral radius per channel.
+    /// Spectral radius of each channel.
     pub radius: Radius,
-    /// Leading eigenvalues of one channel, where they were asked for.
+    /// Leading eigenvalues of one channel, if requested.
     pub spectrum: Option<Ends>,
-    /// Seconds for form factors, terms and solve.
+    /// Wall-clock seconds for form factors, terms and solve.
     pub seconds: f64,
 }
 
-/// The ends of the spectrum of a channel.
+/// The largest and the smallest eigenvalues of one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ends {
-    /// The largest eigenvalues, falling, and the most negative, rising.
+    /// The largest eigenvalues in falling order, and the most negative ones in rising order.
     pub values: [Vec<Ritz>; 2],
-    /// Half width of the band of the edges.
+    /// Half width of the band of eigenvalues that edges between surfaces produce ([`essential_band`]).
     pub band: f64,
-    /// 0, 1 or 2: that of the largest spectral radius.
+    /// Index of the channel, 0, 1 or 2: the one with the largest spectral radius.
     pub channel: usize,
 }
 
-/// Applications of T that eigenvalues may take, and how well they are known.
+/// Largest number of applications of T for the eigenvalues, and the tolerance to which they are computed.
 const STEPS: usize = 200;
 const TOLERANCE: f64 = 1e-5;
 
@@ -67,7 +67,7 @@ fn ends(radiosity: &Radiosity, radius: DVec3, count: usize) -> Ends {
     Ends { values: leading(&t, &t.weight(), count, TOLERANCE, STEPS), band, channel }
 }
 
-/// Meshes, coarsest first, and the truth.
+/// Meshes, coarsest first, and the terms from rays.
 pub struct Refinement {
     /// The meshes.
     pub meshes: Vec<Mesh>,
@@ -75,22 +75,22 @@ pub struct Refinement {
     pub truth: Sampled,
 }
 
-/// What is compared.
+/// The quantity that is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// T^k E.
+    /// The term T^k E.
     Term(usize),
-    /// Σ k ≥ 2: all that a matrix is asked for.
+    /// Σ_{k ≥ 2} T^k E: all indirect light, the part for which the matrix is needed.
     Indirect,
 }
 
 impl Quantity {
-    /// The terms k = 0..=K, and all indirect light.
+    /// All quantities: the terms k = 0..=K, and the indirect light.
     pub fn all(max_bounces: usize) -> Vec<Self> {
         (0..=max_bounces).map(Self::Term).chain([Self::Indirect]).collect()
     }
 
-    /// Of the image mean.
+    /// Estimate of the image mean of this quantity.
     pub fn mean(self, s: &Sampled) -> Estimate {
         let slots = s.replicates.mean.len();
         match self {
@@ -113,18 +113,20 @@ impl std::fmt::Display for Quantity {
 }
 
 impl Refinement {
-    /// e_h of the image mean, averaged over channels, and its standard error: that of both renders. NaN where it is not known.
+    /// e_h of the image mean, averaged over channels, and its standard error, which includes the noise of both renders. The
+    /// error is NaN where it is not known.
     pub fn mean_error(&self, mesh: &Mesh, quantity: Quantity) -> (f64, f64) {
         let [a, b] = [&mesh.picture, &self.truth].map(|s| quantity.mean(s));
         let evidence = Evidence::of(&a).and(Evidence::of(&b));
         let grey = |v: DVec3| v.element_sum() / 3.0;
-        // channels of one path move together: the mean of their errors bounds the error of the mean
+        // channels of one path are correlated: the mean of their errors bounds the error of the mean
         let error = grey(a.std_error).hypot(grey(b.std_error));
         (grey(a.mean - b.mean), if evidence.no_error.is_none() { error } else { f64::NAN })
     }
 
-    /// ‖R_h − R‖/‖R‖ of term k over the image with the noise of both taken out, and its standard error, both relative; negative squares
-    /// come back as a negative root, which says that noise is all there is.
+    /// ‖R_h − R‖/‖R‖ of term k over the image, with the noise of both subtracted, and its standard error; both are relative.
+    /// If the estimated square is negative, the root is returned with a negative sign. It then means that the difference is
+    /// not larger than the noise.
     pub fn image_error(&self, mesh: &Mesh, k: usize) -> (f64, f64) {
         let [a, b] = [&mesh.picture, &self.truth].map(|s| &s.terms[k]);
         let replicates = self.truth.series.image().total.replicates as f64;
@@ -134,7 +136,7 @@ impl Refinement {
                 let [x, y, s, t] = [a.mean[i][c], b.mean[i][c], a.std_error[i][c], b.std_error[i][c]].map(f64::from);
                 let (d2, s2) = ((x - y).powi(2), s * s + t * t);
                 sum += d2 - s2;
-                // of d²: 2 s⁴ + 4 δ² s²; of s² from R replicates: 2 s⁴/(R − 1)
+                // variance of d²: 2 s⁴ + 4 δ² s²; of s² from R replicates: 2 s⁴/(R − 1)
                 variance += 2.0 * s2 * s2 * (1.0 + 1.0 / (replicates - 1.0)) + 4.0 * (d2 - s2).max(0.0) * s2;
                 size += y * y - t * t;
                 n += 1.0;
@@ -147,11 +149,12 @@ impl Refinement {
     }
 }
 
-/// Solves on about as many patches as asked for, coarsest first, and renders the truth with `spp` samples per pixel. Of
-/// dense matrices the `eigenvalues` leading eigenvalues of either sign are found, if that is not 0.
+/// Solves on meshes with about the requested numbers of patches, coarsest first, and renders the terms from rays with
+/// `settings.spp` samples per pixel. If `eigenvalues` is not 0, that many leading eigenvalues of either sign are computed
+/// for dense matrices.
 ///
 /// # Errors
-/// See [`MatrixError`]; what was finished before an interruption comes back.
+/// See [`MatrixError`]. If interrupted, the meshes that were finished are returned.
 pub fn refine(
     description: &Description,
     scene: &Scene,

@@ -1,17 +1,18 @@
-//! One image as it grows: the same pixels after n₁ < n₂ < … paths each, from one render.
+//! One image after n₁ < n₂ < … paths per pixel. All stages come from one render.
 //!
 //! ```text
 //! MSE(n) = ⟨(m_n − X)²⟩ − ⟨se_X²⟩,  unbiased       shown(m) = ⟨min(max(g m, 0), 1)⟩ / g  ≤  ⟨m⟩  where m ≥ 0
 //! ```
 //!
-//! A screen shows nothing above white. Few paths make few pixels very bright, and what is cut off there is missing: the noisy
-//! image *looks* darker than the clean one though its mean is the same within its error. Both means are kept.
+//! A screen cannot show values above white. With few paths a few pixels are very bright, and their values are cut off on the
+//! screen. The noisy image therefore *looks* darker than the clean one, although its mean is the same within its error. Both
+//! means are recorded.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | m_n | image after n paths per pixel | [`Stage::pixels`] |
 //! | X | image of an independent, longer render | [`Grown::reference`] |
-//! | g | one gain for all images | chosen by who shows them |
+//! | g | one gain for all images | chosen by the caller that shows them |
 //!
 //! Reference: Kajiya, *The Rendering Equation* (1986); Pharr, Jakob and Humphreys, *Physically Based Rendering*, on fireflies.
 
@@ -27,18 +28,18 @@ use crate::terms::functional::image_replicates;
 use crate::terms::scatter::Scatter;
 use crate::terms::{Estimate, TermFilm, TermImage};
 
-/// What is to be made: data, so that a command, a chapter and a test make the same figure.
+/// Parameters of one figure. They are plain data, so that a command, a chapter and a test make the same figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recipe {
-    /// Its name.
+    /// Name, used for files and the progress display.
     pub id: &'static str,
-    /// What it shows.
+    /// Title of the figure.
     pub title: &'static str,
-    /// Built-in scene.
+    /// Name of the built-in scene.
     pub scene: &'static str,
-    /// Pixels.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Paths per pixel, rising; the first is the number of replicates.
+    /// Paths per pixel of each stage, in rising order. The first number also sets the number of replicates (2 to 16).
     pub paths: &'static [u32],
     /// Estimator of the reference.
     pub reference: Estimator,
@@ -57,7 +58,7 @@ pub const KAJIYA: Recipe = Recipe {
     reference_spp: 192,
 };
 
-/// 10, 100 and 1000 paths per pixel of light that is hard to find.
+/// A caustic after 10, 100 and 1000 paths per pixel: light that is hard to find.
 pub const NOISE: Recipe = Recipe {
     id: "noise-paths",
     title: "A caustic by 10, 100 and 1000 paths per pixel",
@@ -68,32 +69,32 @@ pub const NOISE: Recipe = Recipe {
     reference_spp: 256,
 };
 
-/// The image at one number of paths.
+/// The image after a given number of paths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
     /// Paths per pixel.
     pub paths: u32,
     /// Linear radiance, row by row.
     pub pixels: Vec<[f32; 3]>,
-    /// Image mean; its error is from as many replicates as the first stage has paths.
+    /// Image mean with its error. The number of replicates is the number of paths of the first stage (2 to 16).
     pub mean: Estimate,
-    /// Variance and squared error.
+    /// Variance, and squared error against the reference.
     pub scatter: Scatter,
 }
 
-/// All stages.
+/// All stages of one image, with the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grown {
-    /// In rising order; those before an interruption.
+    /// The stages in rising order; after an interruption only those that were finished.
     pub stages: Vec<Stage>,
-    /// What they are compared with.
+    /// Image with which the stages are compared.
     pub reference: Reference,
     /// Image mean of the reference.
     pub reference_mean: Estimate,
 }
 
-/// Renders `recipe` by path tracing, and its reference from an independent stream. None if interrupted before the first
-/// stage.
+/// Renders the stages of `recipe` by path tracing, and the reference from independent random numbers. None if interrupted
+/// before the first stage.
 pub fn render_stages(scene: &Scene, recipe: &Recipe, settings: &Settings, progress: Progress<'_>) -> Option<Grown> {
     let reference = by_rays::terms(
         scene,
@@ -130,7 +131,7 @@ pub fn render_stages(scene: &Scene, recipe: &Recipe, settings: &Settings, progre
     (!stages.is_empty()).then_some(Grown { stages, reference, reference_mean })
 }
 
-/// A seed for a reference that shares no numbers with the run of seed `seed`.
+/// A seed for the reference, such that it shares no random numbers with the run of seed `seed`.
 pub fn reference_seed(seed: u64) -> u64 {
     crate::math::fnv1a(b"reference".iter().copied().chain(seed.to_le_bytes()))
 }

@@ -1,7 +1,8 @@
-//! The strategies of the bidirectional estimator, one by one: what each finds of each term, with its weight and without.
+//! The strategies of the bidirectional estimator, one by one: the contribution of each to each term, with and without its
+//! MIS weight.
 //!
-//! `T^k E = Σ_s (w_s-weighted strategy s)`: the weighted images of a row add up to the term, to rounding, because the same
-//! walks are walked as by the estimator itself.
+//! `T^k E = Σ_s (w_s-weighted strategy s)`: the weighted images of all strategies of a term add up to the term, up to
+//! rounding. This holds because the paths are the same as those of the estimator itself.
 
 use crate::engine::Settings;
 use crate::engine::by_rays::Estimator;
@@ -17,24 +18,24 @@ use crate::terms::{Estimate, TermImage, variance};
 /// One strategy of one term.
 #[derive(Clone, Debug)]
 pub struct Strategy {
-    /// The term.
+    /// The term k.
     pub k: usize,
-    /// Vertices walked from the light; the other k + 1 − s are walked from the eye.
+    /// Vertices sampled from the light; the other k + 1 − s are sampled from the eye.
     pub s: usize,
-    /// What it adds to the term.
+    /// The contribution to the term, with the MIS weight w_s.
     pub weighted: TermImage,
-    /// What it finds, unweighted: unbiased for what it can see at all.
+    /// The estimate by this strategy without a weight. It is unbiased for the light that this strategy can find.
     pub alone: TermImage,
-    /// Image means of both.
+    /// Image means of `weighted` and `alone`.
     pub means: [Estimate; 2],
-    /// Variances of one sample of both, averaged over pixels and channels.
+    /// Variance of one sample of `weighted` and of `alone`, averaged over pixels and channels.
     pub variances: [f64; 2],
 }
 
-/// Replicates: enough for an error, few enough for the many images.
+/// Number of replicates: enough to estimate errors, few enough to hold this many images in memory.
 const REPLICATES: u32 = 4;
 
-/// Every strategy of every term k ≤ K.
+/// Renders every strategy of every term k ≤ K.
 pub fn strategies(scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Vec<Strategy> {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let usual = amount(settings, &Estimator::Bidirectional.to_string());

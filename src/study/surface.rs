@@ -1,7 +1,9 @@
-//! ‖T^k E‖₁ over the whole scene: the terms as the surface sensor sees them.
+//! The norms ‖T^k E‖₁ of the terms over the whole scene, measured with the surface sensor.
 //!
-//! `∫∫ (T^k E)(x, ω) cos θ dω dA / (πA)`, the plain mean over uniform surface points and cosine-distributed directions: camera-free,
-//! unbiased, and the same number as `Σ A_i (T_h^k E)_i / A` of the matrix. The bounds of ‖T‖₁ ≤ max albedo hold for it.
+//! The norm is `∫∫ (T^k E)(x, ω) cos θ dω dA / (πA)`, with A the total area of all surfaces. It is estimated by the plain
+//! mean over uniform surface points and cosine-distributed directions. The estimate is unbiased and does not depend on the
+//! camera. For the matrix, the same number is `Σ A_i (T_h^k E)_i / A`. The bounds that follow from ‖T‖₁ ≤ max albedo hold
+//! for this norm.
 
 use crate::engine::Settings;
 use crate::engine::by_rays::{self, Begins, Estimator};
@@ -11,12 +13,13 @@ use crate::progress::Progress;
 use crate::scene::{Scene, SurfaceSensor};
 use crate::terms::functional::{Replicates, image_replicates};
 
-/// Replicates behind the errors: enough for a covariance of ten terms.
+/// Replicates from which the errors are computed: enough for a covariance matrix of ten terms.
 const REPLICATES: u32 = 64;
-/// Paths that run side by side.
+/// Number of pixels in the strip; the paths of different pixels are traced in parallel.
 const STRIP: u32 = 256;
 
-/// The surface norms of the terms, replicate by replicate, from about `paths` paths.
+/// The surface norms of all terms, one value per replicate, from about `paths` paths in total. An estimator that starts
+/// paths at the lights is replaced by [`Estimator::Prefix`].
 pub fn norms(
     scene: &Scene,
     estimator: Estimator,
@@ -30,7 +33,7 @@ pub fn norms(
     let key = settings.key(&format!("surface {estimator}"), REPLICATES as usize);
     let amount = Amount { spp, replicates: REPLICATES as usize, key };
     progress.begin(&format!("surface norms, {estimator}"), u64::from(spp) * u64::from(STRIP));
-    // walks from the light cannot be led to this sensor
+    // paths from the lights cannot be connected to this sensor
     let estimator = if estimator.begins() == Begins::AtEye { estimator } else { Estimator::Prefix };
     let film = by_rays::film(&t, &strip, estimator, settings.plan(), amount, &mut by_rays::Passes::of(progress));
     image_replicates(&film)

@@ -1,16 +1,17 @@
-//! The walk: the estimators of the terms on the radiosity matrix, where `T_h^k E` is known to rounding.
+//! Tests of the estimators on a radiosity matrix. There `T_h^k E` is known up to rounding.
 //!
 //! ```text
-//! E[X_k] = (T_h^k E)_i      for every patch i: no geometry and no mesh lies between the estimator and the truth
+//! E[X_k] = (T_h^k E)_i      for every patch i: neither geometry nor mesh error can disturb the comparison
 //! ```
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | `T_h^k E`, B | powers and solution of the matrix | [`Walked::exact`] |
-//! | X | samples of the same quantities, n of each patch | [`Walked::sampled`] |
-//! | z_i | (mean − truth)/error, patch by patch | [`Walked::z`] |
+//! | `T_h^k E`, B | powers of the matrix applied to E, and the solution | [`Walked::exact`] |
+//! | X | estimates of the same quantities, n samples per patch | [`Walked::sampled`] |
+//! | z_i | (mean − true value)/standard error, patch by patch | [`Walked::z`] |
 //!
-//! The picture of such a run has a pixel for every patch, in one row. The zero-variance walk is [`crate::study::zero_variance`].
+//! The image of such a run has one pixel per patch, all in one row. The zero-variance walk is in
+//! [`crate::study::zero_variance`].
 
 use crate::engine::Settings;
 use crate::engine::by_matrix::Matrix;
@@ -27,12 +28,12 @@ use glam::DVec3;
 use std::fmt;
 use std::str::FromStr;
 
-/// What walks.
+/// The estimator that is tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Walker {
     /// An estimator of the terms.
     Terms(Estimator),
-    /// The path tracer: the sum alone.
+    /// The path tracer, which estimates only the sum of all terms.
     Path,
     /// The absorption estimator.
     Absorption,
@@ -48,24 +49,25 @@ impl fmt::Display for Walker {
     }
 }
 
-/// What is found out on the matrix.
+/// A study that runs on the matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Study {
-    /// A walk beside its truth.
+    /// One estimator, compared with the exact values.
     Walk(Walker),
-    /// Absorption led by guides, up to the solution itself: [`zero_variance`](crate::study::zero_variance).
+    /// The absorption estimator with guides of increasing quality, up to the exact solution:
+    /// [`zero_variance`](crate::study::zero_variance).
     ZeroVariance,
 }
 
 impl Study {
-    /// All of them.
+    /// All studies.
     pub fn all() -> Vec<Self> {
         let terms = Estimator::ALL.map(Walker::Terms).into_iter();
         let walks = terms.chain([Walker::Path, Walker::Absorption]).map(Self::Walk);
         walks.chain([Self::ZeroVariance]).collect()
     }
 
-    /// Its name, however many children a tree has.
+    /// Name of the study; it does not contain the number of children of a branching estimator.
     pub fn name(self) -> &'static str {
         match self {
             Self::Walk(Walker::Terms(estimator)) => estimator.name(),
@@ -75,7 +77,7 @@ impl Study {
         }
     }
 
-    /// The same with so many children of every vertex, if it is a tree.
+    /// The same study with `children` children at every vertex, if its estimator is the branching one.
     #[must_use]
     pub fn with_children(self, children: u32) -> Self {
         match self {
@@ -93,17 +95,17 @@ impl FromStr for Study {
     }
 }
 
-/// A walk beside its truth.
+/// The result of one estimator, with the exact values.
 pub struct Walked {
-    /// What the walks gave; pixel i is patch i.
+    /// The estimates; pixel i is patch i.
     pub sampled: Sampled,
-    /// The powers of the matrix, as the same functionals.
+    /// The exact terms from powers of the matrix, as the same functionals.
     pub exact: Series,
-    /// z of every patch for the terms k = 0..=K, the tail and the whole; only of what has an error.
+    /// z of every patch for the terms k = 0..=K, the tail and the whole. Patches without a standard error are left out.
     pub z: Vec<Vec<f64>>,
 }
 
-/// The matrix as something to walk on.
+/// The matrix as a transport operator on which the estimators can sample paths.
 pub fn transport(matrix: &Matrix<Radiosity>) -> MatrixWalk {
     let r = &matrix.radiosity;
     let rows = r.factors.f.iter().map(|&f| f64::from(f)).collect();
@@ -112,7 +114,7 @@ pub fn transport(matrix: &Matrix<Radiosity>) -> MatrixWalk {
     MatrixWalk::new(rows, colours(&|i| patches[i].reflectance), colours(&|i| patches[i].emission))
 }
 
-/// Walks on a matrix from every patch, `settings.spp` times.
+/// Runs the estimator from every patch, with `settings.spp` samples each.
 pub fn walk(matrix: &Matrix<Radiosity>, walker: Walker, settings: &Settings, progress: Progress<'_>) -> Walked {
     let t = transport(matrix);
     let n = matrix.radiosity.patches.len();
@@ -133,7 +135,7 @@ pub fn walk(matrix: &Matrix<Radiosity>, walker: Walker, settings: &Settings, pro
             (passes.render(&t, &rows, &PathTracer(plan), amount), ends)
         }
         Walker::Absorption => {
-            // a walk scores where it ends, so that it must be able to end anywhere
+            // this estimator scores only where a walk ends, so that every vertex must be able to end it
             let estimator = Absorption(Plan { roulette: everywhere(matrix), ..plan });
             (passes.render(&t, &rows, &estimator, amount), true)
         }
@@ -170,7 +172,8 @@ pub fn walk(matrix: &Matrix<Radiosity>, walker: Walker, settings: &Settings, pro
     Walked { sampled: found, exact: series, z }
 }
 
-/// Roulette by albedo; where something white emits, and would never be an end, a constant q that keeps the variance finite.
+/// Roulette by albedo. If an emitting patch has albedo 1, walks could never end there; then a constant q is used that keeps
+/// the variance finite.
 fn everywhere(matrix: &Matrix<Radiosity>) -> Roulette {
     let white =
         |p: &crate::operator::patches::Patch| p.emission.max_element() > 0.0 && p.reflectance.max_element() >= 1.0;
@@ -181,20 +184,20 @@ fn everywhere(matrix: &Matrix<Radiosity>) -> Roulette {
     Roulette::Constant { from: 0, q: (0.25 * (1.0 - radius)).max(f64::EPSILON) }
 }
 
-/// Whether the variance of walks is finite under a schedule: known, for the matrix is.
+/// States whether the variance is finite under a schedule. The spectral radius of the matrix decides it exactly.
 fn variance(matrix: &Matrix<Radiosity>, roulette: &Roulette) -> Variance {
     let q = match roulette {
         Roulette::Constant { q, .. } => *q,
         Roulette::Table(q) => q.last().copied().unwrap_or(0.0),
-        // by albedo and by throughput weights do not grow
+        // with roulette by albedo or throughput the weights do not grow
         _ => return Variance::Finite,
     };
     let infinite = matrix.radiosity.second_moment_radius(1.0 - q).into_iter().any(|r| r >= 1.0);
     if infinite { Variance::Infinite } else { Variance::Finite }
 }
 
-/// The truth slot by slot: the terms and the tail, or the whole alone for the path tracer. The powers are those of the very numbers
-/// that the walk multiplies.
+/// The exact values slot by slot: the terms and the tail, or only the whole for the path tracer. The powers are computed
+/// from the same single-precision numbers that the walk uses.
 fn exact(matrix: &Matrix<Radiosity>, max_bounces: usize, whole: bool, ends: bool) -> Vec<Vec<DVec3>> {
     let mut slots = transport(matrix).powers(max_bounces);
     let n = slots[0].len();
@@ -210,7 +213,7 @@ fn exact(matrix: &Matrix<Radiosity>, max_bounces: usize, whole: bool, ends: bool
     slots
 }
 
-/// z of the mean over channels, patch by patch and slot by slot, then of the whole.
+/// z of the mean over channels, for every patch: first slot by slot, then of the whole.
 fn z(found: &Sampled, exact: &[Vec<DVec3>]) -> Vec<Vec<f64>> {
     let grey = |v: &[f32; 3]| v.iter().map(|&x| f64::from(x)).sum::<f64>();
     let of = |image: &crate::terms::TermImage, truth: &dyn Fn(usize) -> DVec3| -> Vec<f64> {

@@ -1,4 +1,7 @@
-//! The zero-variance walk, and what is left of it when the guide is only nearly right.
+//! The zero-variance walk, and how its variance grows when the guide is only approximately right.
+//!
+//! A *guide* v is an estimate of the solution B on every patch. The walk samples its next patch, and decides when to end, in
+//! proportion to v. With v = B every walk gives exactly B_i: the variance is zero.
 //!
 //! ```text
 //! relative variance of patch i:  E[(X − B_i)²]/B_i²        guide v:  error ‖v − B‖/‖B‖  over the patches, by area
@@ -6,12 +9,12 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | X | absorption estimator of a walk led by v | [`GuidedWalk::whole`] |
-//! | X for one term | walk of k steps led by T^{m−1} E | [`GuidedWalk::term`] |
-//! | v from a mesh of n patches | E + the reflected light of the coarse solution, read at the centre of each fine patch | [`Guide::Mesh`] |
-//! | v = S_n | partial sum of the Neumann series, and one more application of T for what walks can still reach | [`Guide::Partial`] |
+//! | X | sample of the absorption estimator, by a walk that follows guide v | [`GuidedWalk::whole`] |
+//! | X for one term | sample of T^k E, by a walk of k steps guided by T^{m−1} E with m steps left | [`GuidedWalk::term`] |
+//! | v from a mesh of n patches | E plus the reflected light of the solution on a coarse mesh, read at the centre of each fine patch | [`Guide::Mesh`] |
+//! | v = S_n | partial sum of the Neumann series, at least one hundredth of the mean wherever light can arrive | [`Guide::Partial`] |
 //!
-//! A channel is a problem of its own: a walk led by red light is not led by blue. Reference: see
+//! Each colour channel is a separate problem, because a guide for red light is not right for blue light. Reference: see
 //! [`guide::walk`](crate::guide::walk).
 
 use crate::engine::Settings;
@@ -29,31 +32,31 @@ use crate::solver::{Neumann, Radiosity};
 use rayon::prelude::*;
 use std::fmt;
 
-/// How the samples of all patches lie about the truth; patches where the truth is 0 are left out.
+/// How far the samples of all patches lie from the true value B. Patches with B = 0 are left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
     /// Mean over patches and samples of ((X − B)/B)².
     pub variance: f64,
-    /// Largest |X − B|/B of any sample.
+    /// Largest |X − B|/B of all samples.
     pub largest: f64,
-    /// Mean over the patches of (mean of the samples)/B − 1, and its standard error.
+    /// Relative bias: mean over the patches of (mean of the samples)/B − 1, and its standard error.
     pub bias: [f64; 2],
-    /// Steps per walk.
+    /// Mean number of steps per walk.
     pub steps: f64,
-    /// Walks.
+    /// Number of walks.
     pub walks: u64,
 }
 
-/// Where a guide comes from.
+/// Source of a guide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guide {
-    /// None: the analog walk, p = F, q = 1 − ρ.
+    /// No guide: the analog walk with p = F and q = 1 − ρ.
     Analog,
-    /// S_n, n terms of the Neumann series beyond E.
+    /// The partial sum S_n: E and n further terms of the Neumann series.
     Partial(usize),
-    /// The solution on a mesh of so many patches.
+    /// The solution on a mesh with this number of patches.
     Mesh(usize),
-    /// B itself.
+    /// The exact solution B.
     Exact,
 }
 
@@ -70,32 +73,33 @@ impl fmt::Display for Guide {
     }
 }
 
-/// A guide, how far it is from B, and the spread of the walks that it leads.
+/// A guide, its distance from B, and the spread of the walks that follow it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Led {
-    /// Which.
+    /// The guide.
     pub guide: Guide,
-    /// ‖v − B‖/‖B‖ of the reflected light, by area; NaN without a guide.
+    /// ‖v − B‖/‖B − E‖ over the patches, weighted by area: the error relative to the reflected light. NaN without a guide.
     pub error: f64,
-    /// Of the whole series.
+    /// Spread of the samples of the whole series.
     pub spread: Spread,
 }
 
-/// What the study of one channel found.
+/// Results for one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ZeroVariance {
-    /// 0, 1, 2: red, green, blue.
+    /// Index of the channel: 0, 1, 2 for red, green, blue.
     pub channel: usize,
-    /// Guides, worst first, B itself last.
+    /// Guides from the worst to the best; the last one is B itself.
     pub guides: Vec<Led>,
-    /// Every term by a walk of its own, led by the lower terms.
+    /// Spread of every term k ≥ 1, each from its own walk, guided by the terms below it.
     pub terms: Vec<Spread>,
 }
 
-/// Walks from each patch: more do not say more about a variance.
+/// Largest number of walks from each patch; more walks would not make the variance much more accurate.
 const MOST: u32 = 1024;
 
-/// Walks led by several guides on the matrix of one channel; `coarse` are other meshes of the same scene, coarsest first.
+/// Runs walks with several guides on the matrix of one channel. `coarse` holds matrices of other meshes of the same scene,
+/// coarsest first.
 pub fn study(
     matrix: &Matrix<Radiosity>,
     coarse: &[Matrix<Radiosity>],
@@ -113,7 +117,7 @@ pub fn study(
     let work = (guides.len() + settings.max_bounces) * b.len();
     progress.begin(&format!("guided walks, {}", ["red", "green", "blue"][channel]), work as u64);
     let mut found = ZeroVariance { channel, guides: vec![], terms: vec![] };
-    // the analog walk of the matrix; a led walk knows itself where to end
+    // roulette of the analog walk; a guided walk takes its termination probability from the guide
     let roulette = Roulette::Albedo { from: 0 };
     let estimator = Absorption(Plan { max_bounces: 0, technique: Technique::Scatter, roulette });
     for (stream, guide) in guides.into_iter().enumerate() {
@@ -133,7 +137,7 @@ pub fn study(
         found.guides.push(Led { guide, error, spread });
         progress.advance(b.len() as u64);
     }
-    // one term at a time, led by the terms below it: nothing is left to chance
+    // one term at a time, guided by the terms below it: every walk gives the exact value
     let powers: Vec<Vec<f64>> = Neumann::new(&t, e.clone()).take(settings.max_bounces + 1).collect();
     for k in 1..=settings.max_bounces {
         if progress.stopped() {
@@ -149,7 +153,7 @@ pub fn study(
     found
 }
 
-/// The guide as numbers; nothing for the analog walk.
+/// The values of a guide on every patch; none for the analog walk.
 fn values(
     guide: Guide,
     matrix: &Matrix<Radiosity>,
@@ -179,15 +183,15 @@ fn values(
             matrix.radiosity.patches.iter().map(at).collect()
         }
     };
-    // a guide that is 0 where light comes from would lose that light: a hundredth of the mean is nowhere missing
+    // where the guide is 0, walks would miss light that comes from there; a floor of a hundredth of the mean avoids this
     let floor = 0.01 * reflected.iter().sum::<f64>() / e.len() as f64;
     let floor = if floor > 0.0 { floor } else { 0.01 * e.iter().sum::<f64>() / e.len() as f64 };
-    // and where no light can come from, a walk would look for it for ever
+    // patches that no light reaches get 0: a walk that enters one would never end
     let lit = lit(t, e);
     Some((0..e.len()).map(|i| if lit[i] { reflected[i].max(floor) + e[i] } else { 0.0 }).collect())
 }
 
-/// The patches that some light comes to, by any number of bounces: known from the matrix, whatever B is.
+/// Marks the patches that some light reaches after any number of bounces. This follows from the matrix without knowing B.
 fn lit(t: &PatchOperator<'_>, e: &[f64]) -> Vec<bool> {
     let mut lit: Vec<bool> = e.iter().map(|&e| e > 0.0).collect();
     loop {
@@ -200,22 +204,23 @@ fn lit(t: &PatchOperator<'_>, e: &[f64]) -> Vec<bool> {
     }
 }
 
-/// ‖v − b‖/‖b − e‖ by area: what is reflected is what a guide has to know.
+/// ‖v − b‖/‖b − e‖, weighted by area: the error of the guide relative to the reflected light b − e.
 fn distance(v: &[f64], b: &[f64], e: &[f64], area: &[f64]) -> f64 {
     let norm = |x: &dyn Fn(usize) -> f64| (0..b.len()).map(|i| area[i] * x(i).powi(2)).sum::<f64>().sqrt();
     norm(&|i| v[i] - b[i]) / norm(&|i| b[i] - e[i])
 }
 
-/// The unled walk on the same channel: p = F, q = 1 − ρ.
+/// The walk without a guide on the same channel: p = F, q = 1 − ρ.
 fn analog(t: &PatchOperator<'_>, e: &[f64]) -> MatrixWalk {
     let grey = |x: &[f64]| x.iter().map(|&x| glam::Vec3::splat(x as f32)).collect();
     MatrixWalk::new(t.factors.f.iter().map(|&f| f64::from(f)).collect(), grey(&t.rho), grey(e))
 }
 
-/// Patches of one job.
+/// Number of patches that one parallel job handles.
 const ROWS: u32 = 32;
 
-/// Walks from every patch, and how they lie about `truth`; `slot` of the estimator is what counts, or all.
+/// Runs walks from every patch and measures their spread about `truth`. Only `slot` of the estimator counts; with `None` all
+/// slots are added.
 fn spread<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
@@ -253,13 +258,13 @@ fn spread<T: Transport>(
     all.walks = u64::from(samples) * patches;
     let n = all.walks as f64;
     all.variance /= n;
-    // patch by patch the samples are independent, and so are the patches
+    // samples are independent within a patch and between patches
     all.bias = [all.bias[0] / n, (all.variance / n).sqrt()];
     all.steps = rays as f64 / (f64::from(samples) * f64::from(rows)) - 1.0;
     all
 }
 
-/// The samples of some patches.
+/// The samples of a range of patches.
 struct Values {
     first: u32,
     samples: u32,

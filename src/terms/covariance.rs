@@ -1,4 +1,4 @@
-//! How the slots of one path depend on each other, averaged over the image.
+//! Covariance between the slots of one path, averaged over the image.
 //!
 //! ```text
 //! C_ab = n ⟨Cov(m_a, m_b)⟩ = n/(R(R−1)) Σ_r ⟨(x_ra − m_a)(x_rb − m_b)⟩
@@ -7,25 +7,25 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | C | covariance of one sample, by pair of slots, averaged over pixels and channels | [`Covariance::entry`] |
+//! | C | covariance of one sample, by pair of slots, averaged (⟨ ⟩) over pixels and channels | [`Covariance::entry`] |
 //! | n | samples per pixel | [`covariance`] |
-//! | R, x_r, m | replicates, their means, the mean of all | [`scatter`](super::scatter) |
+//! | R, x_r, m | number of replicates, mean of replicate r, mean of all samples | [`scatter`](super::scatter) |
 
 use super::film::TermFilm;
 use super::scatter::jackknife;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// C, replicate by replicate.
+/// C, kept replicate by replicate so that its own error is known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Covariance {
-    /// Slots.
+    /// Number of slots.
     pub slots: usize,
     /// `n ⟨(x_ra − m_a)(x_rb − m_b)⟩`, row by row, by replicate.
     products: Vec<Vec<f64>>,
 }
 
-/// C of a film; every pixel must hold the same number of samples.
+/// Computes C of a film. Every pixel must hold the same number of samples.
 pub fn covariance(film: &TermFilm) -> Covariance {
     let (pixels, slots, replicates) = (film.shape.pixels(), film.shape.slots, film.shape.replicates);
     let zero = || vec![vec![0.0; slots * slots]; replicates];
@@ -60,7 +60,7 @@ pub fn covariance(film: &TermFilm) -> Covariance {
 }
 
 impl Covariance {
-    /// C_ab.
+    /// The entry C_ab.
     pub fn entry(&self, a: usize, b: usize) -> f64 {
         let r = self.products.len() as f64;
         self.products.iter().map(|q| q[a * self.slots + b]).sum::<f64>() / (r * (r - 1.0))
@@ -71,22 +71,22 @@ impl Covariance {
         self.of(|x, y| (x, y) == (a, b)).1
     }
 
-    /// C_ab / √(C_aa C_bb); NaN where a slot has no variance.
+    /// The correlation C_ab / √(C_aa C_bb); NaN where a slot has no variance.
     pub fn correlation(&self, a: usize, b: usize) -> f64 {
         self.entry(a, b) / (self.entry(a, a) * self.entry(b, b)).sqrt()
     }
 
-    /// 1ᵀC1 with its standard error.
+    /// 1ᵀC1, the variance of one sample of the sum, with its standard error.
     pub fn sum(&self) -> (f64, f64) {
         self.of(|_, _| true)
     }
 
-    /// trace C with its standard error.
+    /// trace C, with its standard error.
     pub fn trace(&self) -> (f64, f64) {
         self.of(|a, b| a == b)
     }
 
-    /// The sum over some entries with its standard error, from leaving out replicates.
+    /// The sum over some entries, with its standard error by the jackknife over replicates.
     fn of(&self, keep: impl Fn(usize, usize) -> bool) -> (f64, f64) {
         let (n, r) = (self.slots, self.products.len() as f64);
         let pairs = || (0..n).flat_map(|a| (0..n).map(move |b| (a, b))).filter(|&(a, b)| keep(a, b));

@@ -1,29 +1,30 @@
-//! Second moments of what one path scores, slot by slot.
+//! Second moments of the slot values of one path.
 //!
 //! ```text
 //! M_ab = mean over pixels of E[Y_a Y_b]            m_ab = mean over pixels of E[Y_a] E[Y_b]            Cov_ab = M_ab − m_ab
 //! ```
 //!
-//! With n samples of a pixel and S_a their sum, both have unbiased estimates: the mean of the products of one sample, and that
-//! of two different ones, `(S_a S_b − Σ_i Y_a Y_b) / (n(n − 1))`. The standard error of anything computed from them is the
-//! jackknife's over the R replicates, each left out in turn (Efron and Stein, 1981).
+//! With n samples of a pixel and S_a the sum of their Y_a, both have unbiased estimates. M_ab is estimated by the mean of
+//! the products within one sample. m_ab is estimated by the mean of the products of two different samples,
+//! `(S_a S_b − Σ_i Y_a Y_b) / (n(n − 1))`. Standard errors come from the jackknife over the R replicates, each left out in
+//! turn (Efron and Stein, 1981).
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | Y_a | what one path scores in slot a | the estimator's slots |
+//! | Y_a | value that one path scores in slot a | the estimator's slots |
 //! | M, m | per channel, row by row | [`CrossMoments::second`], [`CrossMoments::product`] |
-//! | c_a | rays per path on behalf of slot a | [`CrossMoments::rays`] |
+//! | c_a | rays per path, requested for slot a | [`CrossMoments::rays`] |
 
 /// Moments of one sample, averaged over the pixels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CrossMoments {
-    /// Slots of a sample.
+    /// Number of slots.
     pub slots: usize,
     /// M_ab per channel, `slots × slots` values row by row.
     pub second: [Vec<f64>; 3],
-    /// m_ab per channel, likewise; NaN where there is only one sample.
+    /// m_ab per channel, in the same layout; NaN where there is only one sample.
     pub product: [Vec<f64>; 3],
-    /// Rays asked for per path, by slot.
+    /// Rays requested per path, by slot.
     pub rays: Vec<f64>,
 }
 
@@ -48,23 +49,23 @@ pub struct Value {
     pub std_error: f64,
 }
 
-/// Moments with what their errors follow from.
+/// Moments of all samples, and the same without each replicate, from which standard errors follow.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recorded {
-    /// From all samples.
+    /// Moments of all samples.
     pub all: CrossMoments,
-    /// From all but those of one replicate.
+    /// Moments of all samples but those of replicate r, for each r.
     pub without: Vec<CrossMoments>,
-    /// Paths behind them.
+    /// Number of paths.
     pub paths: u64,
-    /// Samples that were not finite; they are left in the sums.
+    /// Samples that were not finite; they stay in the sums.
     pub non_finite: u64,
     /// Wall-clock seconds.
     pub seconds: f64,
 }
 
 impl Recorded {
-    /// Any smooth function of the moments, with the jackknife's standard error.
+    /// A smooth function of the moments, with its standard error by the jackknife.
     pub fn value(&self, f: impl Fn(&CrossMoments) -> f64) -> Value {
         let r = self.without.len() as f64;
         let each: Vec<f64> = self.without.iter().map(&f).collect();
@@ -74,13 +75,13 @@ impl Recorded {
         Value { value: f(&self.all), std_error }
     }
 
-    /// Independent replicates behind the errors.
+    /// Number of independent replicates.
     pub fn replicates(&self) -> u64 {
         self.without.len() as u64
     }
 }
 
-/// Sums over some pixels, n samples of each in R replicates: what the moments are made from. Only b ≤ a is filled.
+/// Sums over some pixels with n samples each in R replicates, from which the moments are computed. Only b ≤ a is filled.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sums {
     pub(crate) slots: usize,
@@ -89,9 +90,9 @@ pub(crate) struct Sums {
     pub(crate) pixels: u64,
     /// Σ Y_a Y_b, by replicate, channel, a, b.
     pub(crate) squares: Vec<f64>,
-    /// Σ over pixels of S_a S_b with all samples, and without each replicate: by R + 1, channel, a, b.
+    /// S_a S_b summed over pixels, with all samples and without each replicate: index r + 1 (0 for all), channel, a, b.
     pub(crate) products: Vec<f64>,
-    /// By replicate and slot.
+    /// Rays, by replicate and slot.
     pub(crate) rays: Vec<u64>,
     pub(crate) non_finite: u64,
 }
@@ -103,13 +104,13 @@ impl Sums {
         Self { slots, rays: vec![0; r * slots], counts, squares, products, ..Self::default() }
     }
 
-    /// A path of replicate r: `y` is one channel of it.
+    /// Adds a path of replicate r; `y` holds its slot values in one channel.
     pub(crate) fn path(&mut self, r: usize, channel: usize, y: &[f64]) {
         let n = self.slots;
         add_square(&mut self.squares[(r * 3 + channel) * n * n..][..n * n], y);
     }
 
-    /// A complete pixel: `sums` is S_a of one channel, by replicate.
+    /// Adds a complete pixel; `sums` holds S_a in one channel, by replicate.
     pub(crate) fn pixel(&mut self, channel: usize, sums: &[f64]) {
         let n = self.slots;
         let mut all = vec![0.0; n];
@@ -138,7 +139,7 @@ impl Sums {
         Recorded { all: self.leaving(None), without, paths, non_finite: self.non_finite, seconds }
     }
 
-    /// The moments without one replicate, or with all.
+    /// The moments without replicate `out`, or of all samples if `out` is None.
     fn leaving(&self, out: Option<usize>) -> CrossMoments {
         let n = self.slots;
         let kept: Vec<usize> = (0..self.counts.len()).filter(|&r| Some(r) != out).collect();
@@ -165,7 +166,7 @@ impl Sums {
     }
 }
 
-/// Adds y yᵀ below and on the diagonal; most slots of most paths are 0.
+/// Adds the lower triangle of y yᵀ with its diagonal. Zeros are skipped, because most slots of most paths are 0.
 fn add_square(matrix: &mut [f64], y: &[f64]) {
     let n = y.len();
     for (a, &ya) in y.iter().enumerate().filter(|(_, y)| **y != 0.0) {
@@ -177,7 +178,7 @@ fn add_square(matrix: &mut [f64], y: &[f64]) {
 mod tests {
     use super::*;
 
-    /// Two pixels, three replicates of two samples: against the definitions, written out.
+    /// Two pixels, three replicates of two samples: compared with the definitions.
     #[test]
     fn moments_are_those_of_the_definition() {
         let y = |pixel: usize, sample: usize| {

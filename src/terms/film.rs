@@ -1,33 +1,34 @@
-//! The film: per pixel, per replicate, per slot, the sum of the samples.
+//! The film: the sum of the samples, for each pixel, replicate and slot.
 //!
-//! Sample i of a pixel belongs to replicate `i mod R`. Replicates are independent and identically distributed, so with
-//! S_r the sum of replicate r over its n_r samples, `m = Σ S_r / Σ n_r` and
+//! Sample i of a pixel belongs to replicate `i mod R`. Replicates are independent and identically distributed. S_r is the
+//! sum of replicate r over its n_r samples, so the mean is `m = Σ S_r / Σ n_r`, and its squared standard error is
 //!
 //! `se² = R/(R−1) · Σ_r ( (S_r − n_r m) / N )²`
 //!
-//! hold for any linear functional of the image and for any estimator, also where samples inside a replicate depend on each
-//! other.
+//! These formulas hold for any linear functional of the image and for any estimator, even if the samples inside a replicate
+//! depend on each other.
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | R | replicates, [`Shape::replicates`] | [`Shape`] |
-//! | slot | k = 0..=K, then the tail; or one for the path tracer | [`Shape::slots`] |
+//! | R | number of replicates | [`Shape::replicates`] |
+//! | slot | k = 0..=K, then the tail; the path tracer has one slot | [`Shape::slots`] |
 //! | N | samples of a pixel so far | [`TermFilm::samples`] |
 //!
-//! Memory: `pixels · R · slots · 24` bytes. Sums are `f64`; nothing is clamped, and non-finite samples are counted and left in.
+//! Memory: `pixels · R · slots · 24` bytes. Sums are `f64`, and nothing is clamped. Non-finite samples are counted and stay
+//! in the sums.
 
 use super::largest::Largest;
 use crate::math::{Columns, Rgb};
 use glam::DVec3;
 
-/// Extent of a film.
+/// Size of a film: pixels, slots and replicates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Slots of a sample.
+    /// Number of slots.
     pub slots: usize,
-    /// Independent replicates R.
+    /// Number of independent replicates, R.
     pub replicates: usize,
 }
 
@@ -45,28 +46,28 @@ impl Shape {
 /// Sums of all samples so far.
 #[derive(Clone, Debug)]
 pub struct TermFilm {
-    /// Extent.
+    /// Size of the film.
     pub shape: Shape,
-    /// Samples of each pixel so far.
+    /// Number of samples of each pixel so far.
     pub samples: Vec<u32>,
-    /// Rays asked for, by slot.
+    /// Rays requested, by slot.
     pub rays: Vec<u64>,
-    /// Samples that were not finite.
+    /// Number of samples that were not finite.
     pub non_finite: u64,
     pub(crate) sums: Vec<f64>,
-    /// Σ (r + g + b)² of what was added, by block, slot and pixel: how many events carry a mean.
+    /// Σ (r + g + b)² of all contributions, by block, slot and pixel. It gives the number of events that carry a mean.
     pub(crate) squares: Vec<f64>,
     /// The largest contributions to each slot, over all pixels.
     pub(crate) largest: Vec<Largest>,
-    /// Whether paths add to pixels other than their own: then pixels share their noise.
+    /// True if paths add to pixels other than their own; pixels then share their noise.
     pub(crate) shared: bool,
 }
 
-/// Pixels of a block, the part of the film that one job fills.
+/// Pixels of a block: the part of the film that one job fills.
 pub(crate) const BLOCK: usize = 64;
 
-/// Where the sum of a slot, replicate and pixel of a block stands. A wave adds to one slot at a time, over all replicates and
-/// pixels: that is the order in memory, and a slot of a block fits the first cache.
+/// Index of the sum of a slot, replicate and pixel inside a block. A wave adds to one slot at a time, over all replicates
+/// and pixels. The memory has this order, so that one slot of a block fits into the first-level cache.
 #[inline(always)]
 fn place(slot: usize, replicate: usize, pixel: usize, replicates: usize, pixels: usize) -> usize {
     ((slot * replicates + replicate) * pixels + pixel) * 3
@@ -94,7 +95,7 @@ impl FilmBlock<'_> {
         let largest = &mut self.largest[slot];
         let mut added = 0;
         for i in 0..n {
-            // most hits emit nothing, and adding zero is work for nobody
+            // most hits emit nothing, and adding zero would be wasted work
             if x[i] == 0.0 && y[i] == 0.0 && z[i] == 0.0 {
                 continue;
             }
@@ -133,7 +134,7 @@ impl TermFilm {
         }
     }
 
-    /// A film of values that are known: one sample of each pixel, `slots[s][pixel]`.
+    /// A film of exactly known values: one sample of each pixel, `slots[s][pixel]`.
     pub(crate) fn exact(size: [u32; 2], slots: &[Vec<DVec3>]) -> Self {
         let mut film = Self::new(Shape { size, slots: slots.len(), replicates: 1 });
         film.samples.fill(1);
@@ -146,7 +147,7 @@ impl TermFilm {
         film
     }
 
-    /// Adds to any pixel, on behalf of sample number `sample`.
+    /// Adds a value to any pixel; `sample` is the number of the sample that it belongs to.
     pub(crate) fn splat(&mut self, slot: u32, pixel: u32, sample: u32, value: Rgb) {
         let at = self.at(pixel as usize, sample as usize % self.shape.replicates, slot as usize);
         let first = pixel as usize / BLOCK * BLOCK;
@@ -174,7 +175,7 @@ impl TermFilm {
         first * self.shape.per_pixel() + place(slot, replicate, pixel - first, self.shape.replicates, pixels)
     }
 
-    /// Σ (r + g + b)² of what was added to one pixel and slot.
+    /// Σ (r + g + b)² of the contributions to one pixel and slot.
     #[inline(always)]
     pub fn square(&self, pixel: usize, slot: usize) -> f64 {
         let first = pixel / BLOCK * BLOCK;
@@ -189,7 +190,7 @@ impl TermFilm {
         ((n + r - 1 - replicate) / r) as f64
     }
 
-    /// Least number of samples of any pixel.
+    /// Smallest number of samples of any pixel.
     pub fn least_samples(&self) -> u32 {
         self.samples.iter().copied().min().unwrap_or(0)
     }

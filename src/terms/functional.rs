@@ -1,16 +1,18 @@
 //! Linear functionals of a film: the image mean, 16 region means, 8 fixed ±1 projections.
 //!
-//! `φ(X) = Σ_p w_p X_p`. Aggregation is what buys power: a mean over all pixels sees a bias that no single pixel can, the
-//! regions say where, and the projections catch what is moved about without changing any mean.
+//! `φ(X) = Σ_p w_p X_p`, a weighted sum over the pixels p. Averages give statistical power: a mean over all pixels shows a
+//! bias that no single pixel can show. The region means show where the bias is. The projections detect light that is only
+//! moved within the image, which changes no mean.
 //!
-//! All are built from the sums over a 16 × 16 grid of tiles, so a pixel is read once.
+//! All are built from sums over a 16 × 16 grid of tiles, so each pixel is read only once.
 //!
 //! ```text
 //! few replicates, pixels that share no path:     se² = Σ_p w_p² se_p²,     dof = (R − 1) (Σ_p w_p² se_p²)² / Σ_p w_p⁴ se_p⁴
 //! ```
 //!
-//! Two or three replicates of the whole image may agree by chance, and know next to nothing of their scatter; each pixel has an
-//! error of its own, and together they know it better (Satterthwaite, *Biometrics Bulletin* 2, 1946).
+//! Two or three replicates of the whole image may agree by chance, so their scatter says little about the error. But each
+//! pixel has its own error se_p from R replicates, and together the pixels determine the error much better (Satterthwaite,
+//! *Biometrics Bulletin* 2, 1946).
 
 use super::film::TermFilm;
 use super::largest::Largest;
@@ -22,39 +24,39 @@ use std::ops::Range;
 const GRID: usize = 16;
 const REGIONS: usize = 4;
 const PROJECTIONS: u32 = 8;
-/// With fewer replicates errors come from the pixels.
+/// With fewer replicates than this, errors come from the pixels.
 const REPLICATES: usize = 8;
 
-/// The terms of one functional, replicate by replicate.
+/// The slots of one functional, replicate by replicate.
 #[derive(Clone, Debug)]
 pub struct Replicates {
     /// Mean of each slot.
     pub mean: Vec<DVec3>,
-    /// `deviation[r][slot] = Σ_p w_p (S_r − n_r m)/N`; they sum to 0 over r.
+    /// `deviation[r][slot] = Σ_p w_p (S_r − n_r m)/N`; the sum over r is 0.
     pub deviation: Vec<Vec<DVec3>>,
-    /// What each slot was added up from; empty if that was not counted.
+    /// Sums from which the events of each slot follow; empty if they were not counted.
     pub counted: Vec<Counted>,
 }
 
-/// What was added to one slot: sums from which [`Events`] follow, of this slot and of several.
+/// Sums over the contributions x = r + g + b to one slot. [`Events`] follow from them, also for several slots together.
 #[derive(Clone, Debug, Default)]
 pub struct Counted {
     /// Σ x.
     pub sum: f64,
     /// Σ x².
     pub square: f64,
-    /// Over the whole image.
+    /// Data of the slot over the whole image.
     pub all: Whole,
 }
 
-/// What is known of a slot over the whole image only.
+/// Data of a slot that is known only for the whole image: Σ x² and the largest contributions.
 #[derive(Clone, Debug, Default)]
 pub struct Whole {
     square: f64,
     largest: Largest,
 }
 
-/// The events of some slots together.
+/// The events of several slots together.
 fn events(slots: &[Counted]) -> Option<Events> {
     let first = slots.first()?;
     let (sum, square) = slots.iter().fold((0.0, 0.0), |a, c| (a.0 + c.sum, a.1 + c.square));
@@ -68,7 +70,7 @@ fn events(slots: &[Counted]) -> Option<Events> {
 }
 
 impl Replicates {
-    /// The estimate of a sum of slots.
+    /// The estimate of the sum of some slots.
     pub fn estimate(&self, slots: Range<usize>) -> Estimate {
         let r = self.deviation.len();
         let square = |d: &Vec<DVec3>| d[slots.clone()].iter().sum::<DVec3>().powf(2.0);
@@ -83,7 +85,7 @@ impl Replicates {
         self.deviation.iter().map(|d| d[a] * d[b]).sum::<DVec3>() * covariance_factor(self.deviation.len())
     }
 
-    /// As the terms, tail, sum and total of a functional; a film with one slot is a path tracer's.
+    /// The terms, tail, sum and total as a functional. If there is one slot only, it is that of a path tracer.
     pub fn functional(&self, name: &str) -> Functional {
         let slots = self.mean.len();
         let k = slots - 1;
@@ -98,7 +100,7 @@ impl Replicates {
 }
 
 fn covariance_factor(replicates: usize) -> f64 {
-    // 0/0 for one replicate: its error is not known
+    // 0/0 for one replicate: its error is unknown
     let r = replicates as f64;
     if replicates == 1 { f64::NAN } else { r / (r - 1.0) }
 }
@@ -106,13 +108,14 @@ fn covariance_factor(replicates: usize) -> f64 {
 /// Per tile of the grid, slot and replicate: Σ_p m_p and Σ_p (S_r − n_r m_p)/N.
 struct Tiles {
     pixels: Vec<f64>,
-    /// Where replicates are few and pixels share no path: Σ_p se_p² and Σ_p se_p⁴ of the terms, the tail, the sum and the total.
+    /// Filled if replicates are few and pixels share no path: Σ_p se_p² and Σ_p se_p⁴ of the terms, the tail, the sum and
+    /// the total.
     noise: Vec<[DVec3; 2]>,
-    /// Of each slot, over the whole image.
+    /// Data of each slot over the whole image.
     whole: Vec<Whole>,
     mean: Vec<DVec3>,
     deviation: Vec<DVec3>,
-    /// Σ (r + g + b) and Σ (r + g + b)² of all that was added.
+    /// Σ (r + g + b), and below Σ (r + g + b)², of all contributions.
     sum: Vec<f64>,
     square: Vec<f64>,
 }
@@ -159,13 +162,13 @@ fn tiles(film: &TermFilm) -> Tiles {
     t
 }
 
-/// The slots of the terms, the tail, the sum and the total, in this order; of one slot, of itself.
+/// The slot ranges of the terms, the tail, the sum and the total, in this order; a single slot gives only its own range.
 fn parts(slots: usize) -> Vec<Range<usize>> {
     let single = (0..slots).map(|s| s..s + 1);
     if slots == 1 { single.collect() } else { single.chain([0..slots - 1, 0..slots]).collect() }
 }
 
-/// The image mean alone, replicate by replicate.
+/// The image mean, replicate by replicate.
 pub fn image_replicates(film: &TermFilm) -> Replicates {
     weighted(film, &tiles(film), |_| 1.0, film.shape.pixels() as f64)
 }
@@ -188,7 +191,7 @@ fn weighted(film: &TermFilm, t: &Tiles, weight: impl Fn(usize) -> f64, total: f6
     }
 }
 
-/// The same as a functional, with errors from the pixels where replicates are few.
+/// The same as `weighted`, as a functional, with errors from the pixels where replicates are few.
 fn functional(film: &TermFilm, t: &Tiles, weight: impl Fn(usize) -> f64, total: f64, name: &str) -> Functional {
     let mut found = weighted(film, t, &weight, total).functional(name);
     if t.noise.is_empty() {
@@ -216,7 +219,7 @@ fn functional(film: &TermFilm, t: &Tiles, weight: impl Fn(usize) -> f64, total: 
     found
 }
 
-/// The same functionals of images that are known without error: `slots[s][pixel]`, the terms k = 0..=K and the tail.
+/// The same functionals for images known without error: `slots[s][pixel]`, the terms k = 0..=K and the tail.
 pub fn exact_functionals(size: [u32; 2], slots: &[Vec<DVec3>]) -> Vec<Functional> {
     let mut all = functionals(&TermFilm::exact(size, slots));
     for f in &mut all {

@@ -1,4 +1,4 @@
-//! Images of the terms: mean and standard error per pixel, and how many events carry a pixel.
+//! Images of the terms: mean and standard error per pixel, and the number of events behind a pixel.
 
 use super::film::TermFilm;
 use rayon::prelude::*;
@@ -9,7 +9,7 @@ use std::ops::Range;
 pub struct TermImage {
     /// Mean radiance.
     pub mean: Vec<[f32; 3]>,
-    /// Its standard error; NaN where there is one replicate.
+    /// Standard error of the mean; NaN with one replicate.
     pub std_error: Vec<[f32; 3]>,
 }
 
@@ -22,8 +22,8 @@ impl TermImage {
     }
 }
 
-/// (Σ x)²/Σ x² of the pixel in the middle, of those that hold anything of some slots: half of them rest on fewer events. 0 where
-/// none does.
+/// (Σ x)²/Σ x², the number of events, of the median pixel. Only pixels that hold a contribution to these slots count, and
+/// half of them rest on fewer events. 0 if there is no such pixel.
 pub fn events_of_pixels(film: &TermFilm, slots: Range<usize>) -> f64 {
     let of = |p: usize| {
         let sum = |s: usize| (0..film.shape.replicates).map(|r| film.sum(p, r, s).element_sum()).sum::<f64>();

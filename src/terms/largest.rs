@@ -1,4 +1,4 @@
-//! The largest contributions to one slot of a film, over all pixels: how heavy is the tail of what is added up?
+//! The largest contributions to one slot of a film, over all pixels. They show how heavy the tail of the contributions is.
 //!
 //! ```text
 //! k̂ = min over q of (1/q) Σ_{i ≤ q} ln(x_(i)/x_(q+1))          x_(1) ≥ x_(2) ≥ …,  q = 63, 31, 15
@@ -8,34 +8,35 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | x | r + g + b of one contribution | [`Largest`] |
-//! | M | how many are kept | [`KEPT`] |
+//! | M | number of contributions that are kept | [`KEPT`] |
 //! | k̂ | tail index: P(x > t) falls like t^(−1/k), so that the variance is finite for k < 1/2, the mean for k < 1 | [`Largest::tail`] |
-//! | n₄ | so many equal events would carry the variance as well as these do; here a lower bound | [`Largest::spread`] |
+//! | n₄ | number of equal events that would determine the variance as well as these contributions; here a lower bound | [`Largest::spread`] |
 //!
-//! What is kept is the M largest of all contributions, whatever the order in which they came: the same for any number of threads.
+//! The M largest of all contributions are kept, in whatever order they came. So the result is the same for any number of
+//! threads.
 //! Reference: Hill, *Annals of Statistics* 3 (1975); the choice of q: Vehtari, Simpson, Gelman, Yao and Gabry, *Pareto smoothed
 //! importance sampling* (2024).
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// M.
+/// M, the number of contributions that are kept.
 pub const KEPT: usize = 64;
-/// With fewer above the threshold the tail index is noise.
+/// With fewer contributions above the threshold, the tail index is only noise.
 const LEAST: usize = 8;
 
-/// The largest of the contributions so far.
+/// The largest contributions so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Largest {
     /// At most 2 M values, the M largest among them.
     values: Vec<f32>,
-    /// No more than the M-th largest: what is not above it need not be kept.
+    /// A lower bound of the M-th largest value: values that are not above it need not be kept.
     floor: f32,
-    /// How many contributions there were.
+    /// Number of all contributions.
     added: u64,
 }
 
 impl Largest {
-    /// Takes in one contribution, counted by [`Self::count`].
+    /// Takes in one contribution. [`Self::count`] counts it.
     #[inline(always)]
     pub(super) fn push(&mut self, x: f32) {
         if x > self.floor {
@@ -43,7 +44,7 @@ impl Largest {
         }
     }
 
-    /// Counts contributions that were pushed.
+    /// Counts `n` contributions that were pushed.
     #[inline(always)]
     pub(super) fn count(&mut self, n: u64) {
         self.added += n;
@@ -65,13 +66,13 @@ impl Largest {
         }
     }
 
-    /// Adds the largest of another part.
+    /// Merges the largest contributions of another part.
     pub(crate) fn merge(&mut self, other: &Self) {
         self.added += other.added;
         other.values.iter().for_each(|&x| self.push(x));
     }
 
-    /// The largest, falling; at most M.
+    /// The largest contributions in falling order; at most M.
     pub fn falling(&self) -> Vec<f64> {
         let mut all: Vec<f64> = self.values.iter().map(|&x| f64::from(x)).collect();
         all.sort_by(|a, b| b.total_cmp(a));
@@ -79,7 +80,7 @@ impl Largest {
         all
     }
 
-    /// k̂; 0 where there are too few contributions to tell.
+    /// k̂; 0 if there are too few contributions to estimate it.
     ///
     /// ```
     /// use fredholm::terms::largest::Largest;
@@ -95,11 +96,12 @@ impl Largest {
             return 0.0;
         }
         let hill = |q: usize| x[..q].iter().map(|v| (v / x[q]).ln()).sum::<f64>() / q as f64;
-        // a tail looks the same from every threshold; a gap between bright and dim, as of a lamp in view, from one only
+        // a true tail looks the same from every threshold; a gap between bright and dim contributions, as with a lamp in
+        // view, resembles a tail from one threshold only
         [most, most / 2, most / 4].into_iter().filter(|&q| q >= LEAST).map(hill).fold(f64::INFINITY, f64::min)
     }
 
-    /// n₄, where Σ x² of all contributions is `square`; 0 without any.
+    /// n₄, where `square` is Σ x² of all contributions; 0 if there is none.
     pub fn spread(&self, square: f64) -> f64 {
         let x = self.falling();
         let (two, four) = x.iter().fold((0.0, 0.0), |s, v| (s.0 + v * v, s.1 + v.powi(4)));
@@ -107,7 +109,7 @@ impl Largest {
         if square > 0.0 { square * square / (four + rest) } else { 0.0 }
     }
 
-    /// Of so many contributions.
+    /// The largest of the given contributions.
     pub fn of(all: impl Iterator<Item = f32>) -> Self {
         let mut largest = Self::default();
         for x in all {
@@ -117,19 +119,20 @@ impl Largest {
         largest
     }
 
-    /// What is not above these need not be kept, slot by slot.
+    /// The present floors, slot by slot. Values that are not above a floor need not be kept.
     pub(crate) fn floors(all: &[Self]) -> Vec<AtomicU32> {
         all.iter().map(|l| AtomicU32::new(l.floor.to_bits())).collect()
     }
 
-    /// Starts with what others have found: anything not above it is not among the largest.
+    /// Starts with a floor that other blocks have found: values that are not above it are not among the largest.
     pub(crate) fn above(floor: &AtomicU32) -> Self {
         Self { floor: f32::from_bits(floor.load(Ordering::Relaxed)), ..Self::default() }
     }
 
-    /// Tells others. Which of them hears it decides what they need not keep, never what is the largest.
+    /// Raises the shared floor. The order in which blocks do so decides only which smaller values they skip, never which
+    /// values are the largest.
     pub(crate) fn tell(&self, floor: &AtomicU32) {
-        // the bits of numbers that are not negative are in the order of the numbers
+        // the bit patterns of non-negative numbers have the order of the numbers
         floor.fetch_max(self.floor.to_bits(), Ordering::Relaxed);
     }
 }
@@ -168,7 +171,7 @@ mod tests {
     fn equal_events_carry_the_variance_as_they_carry_the_mean() {
         let equal = Largest::of((0..1000).map(|_| 2.0));
         assert!((equal.spread(4000.0) - 1000.0).abs() < 1e-9);
-        // one bright event among a million dim ones carries it alone
+        // one bright event among a thousand dim ones carries the variance alone
         let one = Largest::of((0..1000).map(|i| if i == 7 { 1e4 } else { 1.0 }));
         assert!((one.spread(1e8 + 999.0) - 1.0).abs() < 1e-3);
         assert_eq!(Largest::default().spread(0.0), 0.0);

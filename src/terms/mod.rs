@@ -1,15 +1,15 @@
-//! What comes out: estimates of the terms `T^k E`, whichever world they come from.
+//! Results: estimates of the terms `T^k E`, in the same types for every [`World`] (a way to compute the terms).
 //!
 //! | notation | type | place |
 //! |---|---|---|
-//! | Σ over samples, by replicate | [`TermFilm`] | [`film`] |
-//! | image of T^k E with its error | [`TermImage`] | [`image`] |
-//! | φ(T^k E) | [`Functional`] | [`functional`] |
+//! | sum of the samples, by replicate | [`TermFilm`] | [`film`] |
+//! | image of T^k E with its standard error | [`TermImage`] | [`image`] |
+//! | φ(T^k E), a linear functional of the image | [`Functional`] | [`functional`] |
 //! | ‖T^k E‖₂ of the image | [`norms::SquaredNorm`] | [`norms`] |
-//! | the largest contributions, and how heavy their tail is | [`largest::Largest`] | [`largest`] |
-//! | how replicates scatter | [`scatter::Scatter`] | [`scatter`] |
+//! | the largest contributions, and the index of their tail | [`largest::Largest`] | [`largest`] |
+//! | scatter of the replicates | [`scatter::Scatter`] | [`scatter`] |
 //! | E\[Y_a Y_b\] over the slots of one path | [`CrossMoments`] | [`cross_moments`] |
-//! | everything a world returns | [`Series`] | [`series`] |
+//! | complete result of a world | [`Series`] | [`series`] |
 
 pub mod covariance;
 pub mod cross_moments;

@@ -1,11 +1,12 @@
 //! The L2 norm of an image, without the bias of its noise.
 //!
-//! `E[m̂²] = m² + Var m̂`, so the norm of a noisy image is too large. Products of different replicates have no such term:
+//! `E[m̂²] = m² + Var m̂`, so the norm of a noisy image is too large. Products of different replicates r ≠ s have no such
+//! term:
 //!
 //! `‖X‖² ≈ mean over pixels of  Σ_{r≠s} m_r m_s / (R(R−1))`,
 //!
-//! unbiased, and negative at times: then only an upper limit is known. The standard error is the jackknife's over
-//! replicates (Efron and Stein, 1981).
+//! Here m_r is the mean of replicate r at a pixel. The estimate is unbiased. It may be negative; then only an upper limit of
+//! the norm is known. The standard error comes from the jackknife over replicates (Efron and Stein, 1981).
 
 use super::film::TermFilm;
 
@@ -18,7 +19,7 @@ pub struct SquaredNorm {
     pub std_error: f64,
 }
 
-/// Squared L2 norm of the image of a slot; needs three replicates with equal counts.
+/// Squared L2 norm of the image of a slot. Needs three replicates with equal numbers of samples; None if there are fewer.
 pub fn squared_norm(film: &TermFilm, slot: usize) -> Option<SquaredNorm> {
     let r = film.shape.replicates;
     if r < 3 {

@@ -1,23 +1,24 @@
-//! How the replicates of a film scatter: variance, squared error, and the honest error of both.
+//! Scatter of the replicates of a film: variance, squared error, and the standard errors of both.
 //!
 //! ```text
 //! x_r = R S_r / N      m = mean of the x_r      q_r = ⟨(x_r − m)²⟩      V = Σ q_r / (R(R−1))
 //! MSE = ⟨(m − X)²⟩ − ⟨se_X²⟩                    se² = (R−1)/R · Σ_i (θ_(i) − θ̄_(·))²
 //! ```
 //!
-//! with ⟨ ⟩ the mean over pixels and channels, and θ_(i) the estimate without replicate i, brought to the same R. Pixels and
-//! channels of one replicate may depend on each other (colours of one path, splats, Sobol points), and samples may have
-//! heavy tails: leaving out whole replicates sees all of it, where a formula for independent normal pixels would not.
+//! Here ⟨ ⟩ is the mean over pixels and channels, S_r the sum of replicate r, N the number of samples of a pixel, and θ_(i)
+//! the estimate without replicate i, scaled to the same R. Pixels and channels of one replicate may depend on each other
+//! (colours of one path, splats, Sobol points), and samples may have heavy tails. Leaving out whole replicates accounts for
+//! all of this; a formula for independent normal pixels would not.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | V | variance of the mean, averaged over pixels and channels; unbiased | [`Scatter::variance`] |
 //! | X, se_X | a reference with its own independent error | [`Scatter::of`] |
 //! | MSE | bias² + V; unbiased, so it may be negative | [`Scatter::squared_error`] |
-//! | θ_(i) | without replicate i | [`Scatter::variance_without`], [`Scatter::squared_error_without`] |
+//! | θ_(i) | the estimate without replicate i | [`Scatter::variance_without`], [`Scatter::squared_error_without`] |
 //!
-//! The error of MSE holds for this reference; what the noise of the reference itself adds is [`Scatter::reference_error`],
-//! common to all n. Reference: Efron and Stein, *Annals of Statistics* 9 (1981), the jackknife.
+//! The error of MSE holds for this one reference. The noise of the reference adds [`Scatter::reference_error`], which is the
+//! same for every number of samples. Reference: Efron and Stein, *Annals of Statistics* 9 (1981), the jackknife.
 
 use super::TermImage;
 use super::film::TermFilm;
@@ -26,20 +27,20 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What the replicates of a sum of slots say about its error.
+/// Scatter of the replicates of a sum of slots.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scatter {
-    /// q_r by replicate.
+    /// q_r, by replicate.
     pub q: Vec<f64>,
     /// V per channel.
     pub channels: DVec3,
-    /// ⟨(x_r − m)(m − X)⟩ by replicate; empty without a reference.
+    /// ⟨(x_r − m)(m − X)⟩, by replicate; empty without a reference.
     cross: Vec<f64>,
     /// ⟨(m − X)²⟩ − ⟨se_X²⟩; NaN without a reference.
     error: f64,
-    /// What the noise of the reference adds to the error of MSE.
+    /// Error of MSE that comes from the noise of the reference.
     pub reference_error: f64,
-    /// (Σ x²)²/Σ x⁴ over everything that was added: so many equal events carry V.
+    /// (Σ x²)²/Σ x⁴ over all contributions x: the number of equal events that would determine V as well.
     pub events: f64,
 }
 
@@ -52,12 +53,12 @@ struct Sums {
     square: f64,
     noise: f64,
     noise_squared: f64,
-    /// Σ x².
+    /// Σ x² of all contributions.
     added: f64,
 }
 
 impl Scatter {
-    /// Of the sum over some slots; `reference` is an image of the same quantity from an independent stream.
+    /// Scatter of the sum over some slots. `reference` is an image of the same quantity from an independent stream.
     ///
     /// Needs at least one sample per replicate and pixel.
     pub fn of(film: &TermFilm, slots: Range<usize>, reference: Option<&TermImage>) -> Self {
@@ -88,13 +89,14 @@ impl Scatter {
             channels: s.channels / (pixels as f64 * n * (n - 1.0)),
             cross: mean(s.cross),
             error: if reference.is_some() { (s.square - s.noise) / count } else { f64::NAN },
-            // |e|² about its mean, and se² about its own: normal errors, channels fully correlated, pixels independent
+            // error of the reference: scatter of |e|² and of se² over the pixels, for normal errors, fully correlated
+            // channels and independent pixels
             events: largest.spread(s.added),
             reference_error: (2.0 * s.noise_squared * (1.0 + 1.0 / (n - 1.0))).sqrt() / count,
         }
     }
 
-    /// R.
+    /// R, the number of replicates.
     pub fn replicates(&self) -> usize {
         self.q.len()
     }
@@ -125,18 +127,18 @@ impl Scatter {
     pub fn squared_error_without(&self, i: usize) -> f64 {
         let Some(cross) = self.cross.get(i) else { return f64::NAN };
         let n = self.q.len() as f64;
-        // m without i, about X; its variance is that of R − 1 replicates
+        // deviation of the mean without replicate i from X; its variance is that of R − 1 replicates
         let about = self.error - 2.0 * cross / (n - 1.0) + self.q[i] / ((n - 1.0) * (n - 1.0));
         about - self.variance_without(i) * (n / (n - 1.0) - 1.0)
     }
 
-    /// Standard error of MSE, with that of the reference. NaN without a reference.
+    /// Standard error of MSE, including that of the reference. NaN without a reference.
     pub fn squared_error_error(&self) -> f64 {
         jackknife((0..self.q.len()).map(|i| self.squared_error_without(i))).hypot(self.reference_error)
     }
 }
 
-/// `√((R−1)/R · Σ (θ_(i) − θ̄)²)` of the estimates without one replicate each.
+/// Jackknife standard error `√((R−1)/R · Σ (θ_(i) − θ̄)²)` from estimates that each leave out one replicate.
 ///
 /// ```
 /// // for a mean it is the usual standard error: √(Σ(x−x̄)²/(n(n−1)))
@@ -194,7 +196,7 @@ mod tests {
     use crate::math::Rgb;
     use crate::terms::Shape;
 
-    /// A film of two pixels with `replicates` known replicate means, two samples each; without `skip`.
+    /// A film of two pixels with `replicates` known replicate means and two samples each; replicate `skip` is left out.
     fn film(replicates: usize, skip: Option<usize>) -> TermFilm {
         let kept: Vec<usize> = (0..replicates).filter(|&r| Some(r) != skip).collect();
         let mut film = TermFilm::new(Shape { size: [2, 1], slots: 1, replicates: kept.len() });

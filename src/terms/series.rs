@@ -1,22 +1,27 @@
-//! The result type every world returns, and all that statistics and reports know.
+//! The result type that every world returns. Statistics and reports use nothing else.
+//!
+//! A *world* is one way to compute the terms: by rays with an estimator for each term, by rays with the path tracer, or by a
+//! matrix over patches. An *event* is one nonzero contribution to a mean. A *doubt* is an error that the samples of a result
+//! cannot reveal, because they find a kind of path only by chance.
 
 use crate::math::names::named;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// What a mean was added up from: many events alike, or a few that are bright. An event is one contribution x = r + g + b.
+/// Number of equal contributions that would give the same noise: large if a mean is the sum of many similar contributions,
+/// small if a few bright ones dominate. An event is one contribution x = r + g + b.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Events {
-    /// (Σ x)²/Σ x²: so many equal events would carry the mean with as much noise. 0: nothing was found.
+    /// (Σ x)²/Σ x²: the number of equal events that would give the mean the same relative noise. 0 if nothing was found.
     pub mean: f64,
-    /// (Σ x²)²/Σ x⁴, or less: so many equal events would carry the variance.
+    /// (Σ x²)²/Σ x⁴, or a lower bound of it: the number of equal events that would determine the variance as well.
     pub variance: f64,
-    /// k̂ of the largest contributions ([`largest`](super::largest)); 0 where it is not known.
+    /// k̂, the tail index of the largest contributions ([`largest`](super::largest)); 0 if it is not known.
     pub tail: f64,
 }
 
 impl Events {
-    /// So many equal events.
+    /// `n` equal events.
     pub fn equal(n: f64) -> Self {
         Self { mean: n, variance: n, tail: 0.0 }
     }
@@ -24,7 +29,7 @@ impl Events {
 
 /// A mean with its standard error, per channel. For a matrix result the error is zero and `replicates` is 0.
 ///
-/// Whether the error may be believed is for [`Evidence`](crate::stats::Evidence) to say.
+/// [`Evidence`](crate::stats::Evidence) decides whether the error can be trusted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The estimated value.
@@ -32,10 +37,11 @@ pub struct Estimate {
     /// Standard error of `mean`; ∞ where the variance is infinite, NaN where it is not known (one replicate, or a variance that may
     /// be infinite).
     pub std_error: DVec3,
-    /// Independent replicates behind the error: `replicates − 1` degrees of freedom. 0 means exact. Where the error comes from
-    /// pixels, since there are few replicates, as many as would know it as well.
+    /// Independent replicates behind the error: `replicates − 1` degrees of freedom. 0 means exact. If there are few
+    /// replicates, the error comes from the pixels. This is then the number of replicates that would determine the error as
+    /// well.
     pub replicates: u64,
-    /// What it was added up from, where that was counted.
+    /// Events behind the mean, if they were counted.
     #[serde(default)]
     pub events: Option<Events>,
 }
@@ -46,30 +52,32 @@ impl Estimate {
         Self { mean, std_error: DVec3::ZERO, replicates: 0, events: None }
     }
 
-    /// Nothing was estimated: the tail of paths that are cut at K.
+    /// No estimate: the tail of paths that are cut at K.
     pub const NONE: Self = Self { mean: DVec3::NAN, std_error: DVec3::NAN, replicates: 0, events: None };
 
-    /// Whether this is [`Estimate::NONE`]. (A broken render is NaN too, but it has replicates.)
+    /// Returns true if this is [`Estimate::NONE`]. (A broken render is NaN too, but it has replicates.)
     pub fn is_none(&self) -> bool {
         self.replicates == 0 && self.mean.is_nan()
     }
 }
 
-/// Whether sums without end (the tail, the whole) have a finite variance, which is what makes an error bar of samples mean anything.
+/// Tells whether infinite sums (the tail, the total) have a finite variance. Error bars from samples are meaningful only
+/// then.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Variance {
-    /// Yes.
+    /// The variance is finite.
     #[default]
     Finite,
-    /// No.
+    /// The variance is infinite.
     Infinite,
-    /// Nobody knows.
+    /// It is not known whether the variance is finite.
     Unknown,
 }
 
 impl Variance {
-    /// What stands in place of a standard error; none where it means what it says.
+    /// The value to show in place of a standard error: ∞ or NaN. None if the variance is finite and the standard error is
+    /// valid.
     pub fn instead(self) -> Option<f64> {
         match self {
             Self::Finite => None,
@@ -79,20 +87,20 @@ impl Variance {
     }
 }
 
-/// Which realisation of the operator a result comes from.
+/// The ways to compute a result. Each is one realisation of the operator T.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum World {
-    /// Rays in the scene, one estimator per term.
+    /// Rays in the scene, with an estimator for each term.
     Terms,
-    /// Rays in the scene, the full path tracer: only the sum.
+    /// Rays in the scene, with the full path tracer: only the sum.
     Path,
-    /// The matrix over patches.
+    /// A matrix over patches.
     Radiosity,
 }
 
 impl World {
-    /// All of them.
+    /// All worlds.
     pub const ALL: [Self; 3] = [Self::Terms, Self::Path, Self::Radiosity];
 }
 
@@ -116,19 +124,19 @@ impl std::str::FromStr for World {
 /// A colour channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
-    /// Number 0.
+    /// Channel 0.
     Red,
-    /// Number 1.
+    /// Channel 1.
     Green,
-    /// Number 2.
+    /// Channel 2.
     Blue,
 }
 
 impl Channel {
-    /// All of them, by number.
+    /// All channels, by number.
     pub const ALL: [Self; 3] = [Self::Red, Self::Green, Self::Blue];
 
-    /// Its name.
+    /// The name: `red`, `green` or `blue`.
     pub fn name(self) -> &'static str {
         ["red", "green", "blue"][self as usize]
     }
@@ -154,13 +162,13 @@ pub struct Cost {
     pub paths: u64,
     /// Rays traced, closest-hit and shadow together.
     pub rays: u64,
-    /// Samples that were not finite; they are left in the sums, so a result with any is visibly broken.
+    /// Samples that were not finite; they stay in the sums, so a result with any is visibly broken.
     pub non_finite: u64,
     /// Wall-clock seconds.
     pub seconds: f64,
 }
 
-/// The terms of one world, as seen by one linear functional of the image (its mean, the mean of a region, …).
+/// The terms of one world under one linear functional of the image (its mean, the mean of a region, …).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Functional {
     /// `image`, `region 0,3`, `projection 5`, ….
@@ -169,84 +177,85 @@ pub struct Functional {
     pub terms: Vec<Estimate>,
     /// Everything longer than K; [`Estimate::NONE`] where paths are cut at K, and then `total` holds k ≤ K only.
     pub tail: Estimate,
-    /// Σ_{k≤K} terms, with the error that their covariance gives.
+    /// Σ_{k≤K} terms; the covariance of the terms is included in the error.
     pub sum: Estimate,
     /// Σ_{k≤K} terms + tail: the whole image.
     pub total: Estimate,
 }
 
 impl Functional {
-    /// What is made of the terms k ≥ `from`: these, the tail, the sum and the total.
+    /// The estimates that contain terms k ≥ `from`: these terms, the tail, the sum and the total.
     pub fn made_of(&mut self, from: usize) -> impl Iterator<Item = &mut Estimate> {
         let late = self.terms.iter_mut().skip(from);
         late.chain([&mut self.tail, &mut self.sum, &mut self.total])
     }
 }
 
-/// A kind of paths that a way of sampling cannot find.
+/// A kind of path that a sampling method cannot find.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct UnsampledPaths {
-    /// In words, after "does not see".
+    /// The light of these paths, in words; it completes the sentence "… cannot find …".
     pub what: String,
     /// The first term that has such paths.
     pub from: usize,
 }
 
-/// What the samples of a result cannot know about themselves: most often a kind of paths that is met only by chance.
+/// A source of error that the samples of a result cannot reveal: mostly a kind of path that is found only by chance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Doubt {
-    /// In words: `the light of a lamp through mirrors or glass`.
+    /// In words: `lamps seen in mirrors or glass`.
     pub what: String,
-    /// The first term that it concerns.
+    /// The first term that is affected.
     pub from: usize,
-    /// So many events of the kind are to be expected from one path; 1e-6: from a million paths one. 0: no number of paths will do.
+    /// Expected number of such events per path. 1e-6 means one event in a million paths; 0 means that no number of paths is
+    /// enough.
     pub per_path: f64,
 }
 
-/// What a world returns.
+/// The complete result of a world.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series {
-    /// Which world.
+    /// The world that computed the result.
     pub world: World,
-    /// How it was made, for tables and legends: `prefix, mis`.
+    /// Description for tables and legends: `prefix, mis`.
     pub label: String,
-    /// The first is the image mean; region means and projections follow.
+    /// The functionals: the image mean first, then region means and projections.
     pub functionals: Vec<Functional>,
     /// Work done.
     pub cost: Cost,
-    /// Kinds of paths that this way of sampling cannot find in this scene; empty if it finds all light.
+    /// Kinds of paths that the sampling method cannot find in this scene; empty if it finds all light.
     #[serde(default)]
     #[serde(alias = "unseen")]
     pub unsampled: Vec<UnsampledPaths>,
-    /// What its samples cannot know: kinds of paths that they meet only by chance. Until enough have been met error bars are too
-    /// small, and nothing in the samples says so; the events of the estimates are therefore no more than are to be expected.
+    /// Kinds of paths that the samples find only by chance. Until enough of them are found, error bars are too small, and
+    /// the samples do not show it. The numbers of events in the estimates are therefore limited to the expected numbers.
     #[serde(default)]
     pub doubts: Vec<Doubt>,
-    /// Why no comparison with this result is decided, if none is: the scene has no right answer.
+    /// If present, the reason why no comparison with this result gives a verdict: the scene has no unique correct image.
     #[serde(default)]
     pub undecided: Option<String>,
-    /// Whether the tail and the whole have a finite variance.
+    /// Tells whether the tail and the total have a finite variance.
     #[serde(default)]
     pub variance: Variance,
 }
 
 impl Series {
-    /// The first term that two results do not both estimate, and what one of them leaves out there; nothing if each finds the
-    /// paths that the other finds.
+    /// The first term that the two results do not both estimate in full, and a sentence that names the light that one of
+    /// them cannot find. None if both find the same paths.
     pub fn gap(&self, other: &Self) -> Option<(usize, String)> {
         let only = |a: &Self, b: &Self| -> Vec<(usize, String)> {
             let missing = a.unsampled.iter().filter(|p| !b.unsampled.contains(p));
-            missing.map(|p| (p.from, format!("{} does not see {}", a.label, p.what))).collect()
+            missing.map(|p| (p.from, format!("{} cannot find {}", a.label, p.what))).collect()
         };
         only(self, other).into_iter().chain(only(other, self)).min()
     }
 
-    /// The events of the kind that a doubt names, as many as are to be expected.
+    /// Expected number of events of the kind that a doubt names.
     pub fn expected(&self, doubt: &Doubt) -> f64 {
         doubt.per_path * self.cost.paths as f64
     }
 
-    /// The same with doubts: what they concern rests on no more events than they allow.
+    /// Adds doubts. The numbers of events of all affected estimates are limited to the expected numbers.
     #[must_use]
     pub fn doubted(mut self, doubts: Vec<Doubt>) -> Self {
         for doubt in &doubts {
@@ -257,7 +266,8 @@ impl Series {
         Self { doubts, ..self }
     }
 
-    /// The terms k < `end` alone: no tail, and a whole that means nothing else's.
+    /// Keeps only the terms k < `end` and removes the tail. The total is then no longer comparable with that of a complete
+    /// result.
     #[must_use]
     pub fn before(&self, end: usize) -> Self {
         let mut cut = self.clone();
@@ -268,7 +278,7 @@ impl Series {
         cut
     }
 
-    /// Takes back the error bars of the tail and of the whole, unless their variance is finite.
+    /// Replaces the error bars of the tail and of the total by ∞ or NaN, unless their variance is finite.
     pub fn judge(&mut self, variance: Variance) {
         self.variance = variance;
         let Some(instead) = variance.instead() else { return };
@@ -279,7 +289,7 @@ impl Series {
         }
     }
 
-    /// The image means.
+    /// The functional of the image mean.
     pub fn image(&self) -> &Functional {
         &self.functionals[0]
     }

@@ -1,9 +1,9 @@
-//! Variance against samples per pixel, from the snapshots of one render.
+//! Variance as a function of the samples per pixel, from the snapshots of one render.
 //!
 //! `V(n) = mean over pixels and channels of se²(n)`, with the standard error of the [film](super::film) after n samples.
 //!
-//! The error of V(n) itself comes from leaving out replicates, see [`scatter`](super::scatter): it knows that the colours
-//! of a pixel depend on each other, and that samples may have heavy tails. It needs three replicates.
+//! The error of V(n) comes from leaving out replicates, see [`scatter`](super::scatter). So it accounts for the dependence
+//! between the colours of a pixel, and for heavy tails. It needs three replicates.
 
 use super::film::TermFilm;
 use super::scatter::Scatter;
@@ -12,9 +12,9 @@ use glam::DVec3;
 /// A variance with its standard error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Variance {
-    /// Averaged over pixels and channels.
+    /// Mean over pixels and channels.
     pub value: f64,
-    /// Per channel, averaged over pixels.
+    /// Mean over pixels, for each channel.
     pub channels: DVec3,
     /// Standard error of `value`; NaN with fewer than three replicates.
     pub std_error: f64,
@@ -31,15 +31,15 @@ impl From<&Scatter> for Variance {
 pub struct Snapshot {
     /// Samples per pixel so far.
     pub spp: u32,
-    /// Of each slot.
+    /// Variance of each slot.
     pub slots: Vec<Variance>,
-    /// Of the sum over all slots.
+    /// Variance of the sum over all slots.
     pub total: Variance,
-    /// Replicate by replicate: each slot, then the sum.
+    /// Scatter of the replicates: of each slot, then of the sum.
     pub scatter: Vec<Scatter>,
 }
 
-/// The variances of a film as it stands.
+/// The variances of a film in its present state.
 pub fn snapshot(film: &TermFilm) -> Snapshot {
     let slots = film.shape.slots;
     let ranges = (0..slots).map(|s| s..s + 1).chain(std::iter::once(0..slots));

@@ -1,28 +1,30 @@
-//! Right light, wrong books: terms lost or misnumbered, numbers cut, encoded, repeated or undefined.
+//! Mistakes after the light has been found correctly: terms lost or misnumbered, values clamped, encoded, repeated or
+//! undefined.
 //!
 //! ```text
-//! L = Σ_k T^k E      mean of N independent samples: variance σ²/N      E[g(X)] ≠ g(E[X]) for a bent g
+//! L = Σ_k T^k E      mean of N independent samples: variance σ²/N      E[g(X)] ≠ g(E[X]) for a nonlinear g
 //! ```
 //!
-//! In a furnace, E = 1: truncated after n it is `(1 − ρ^(n+1))/(1 − ρ)`, without direct emission `ρ/(1 − ρ)`, one bounce short `(1 − ρ^K)/(1 − ρ)`.
+//! Sums in a furnace with E = 1: truncated after term n, `(1 − ρ^(n+1))/(1 − ρ)`; without direct emission, `ρ/(1 − ρ)`; one
+//! bounce short, `(1 − ρ^K)/(1 − ρ)`.
 
 use super::signature::unknown;
 use super::{Bug, Ends, Mistake, Stage};
 use crate::estimator::Technique;
 use crate::math::Rgb;
 
-/// The last term of `truncated`.
+/// The last term that `truncated` keeps.
 const DEEPEST: usize = 3;
-/// What `gamma-before-mean` encodes with.
+/// The exponent with which `gamma-before-mean` encodes samples.
 const GAMMA: f32 = 2.2;
-/// How many different samples a pixel of `same-numbers` has.
+/// Number of different samples per pixel of `same-numbers`.
 pub const DIFFERENT: u32 = 16;
 
-/// The members.
+/// The members of this family.
 pub static BUGS: [Bug; 8] = [
     Bug {
         name: "truncated",
-        what: "paths stop after three bounces, and the result is called the whole",
+        what: "paths stop after three bounces, and the result is taken for the whole image",
         place: "loop: Σ_{k≤3} T^k E instead of Σ_k T^k E",
         expected: "in a furnace (1 − ρ⁴)/(1 − ρ)",
         signature: "1 up to k = 3, then 0",
@@ -36,8 +38,8 @@ pub static BUGS: [Bug; 8] = [
     },
     Bug {
         name: "one-bounce-short",
-        what: "K bounces are asked for, and the loop ends one early",
-        place: "loop: k < K instead of k ≤ K, and nothing beyond",
+        what: "K bounces are requested, but the loop ends one bounce early",
+        place: "loop: k < K instead of k ≤ K, without a tail",
         expected: "in a furnace (1 − ρ^K)/(1 − ρ)",
         signature: "1 up to k = K − 1, then 0",
         ratio: unknown,
@@ -52,8 +54,8 @@ pub static BUGS: [Bug; 8] = [
         name: "off-by-one",
         what: "terms are numbered from 1: direct emission is written as k = 1",
         place: "numbering: T^k E in slot k + 1",
-        expected: "T^(k−1) E in place of T^k E; the whole is right",
-        signature: "0 at k = 0, then the inverse of the decay of the terms: a shifted copy",
+        expected: "T^(k−1) E in place of T^k E; the whole image is correct",
+        signature: "0 at k = 0, then T^(k−1) E/T^k E: the terms are shifted by one",
         ratio: unknown,
         technique: Technique::Mis,
         ends: Ends::AsSet,
@@ -64,7 +66,7 @@ pub static BUGS: [Bug; 8] = [
     },
     Bug {
         name: "emission-missing",
-        what: "the emission of what the eye sees directly is dropped",
+        what: "the emission of surfaces that the eye sees directly is left out",
         place: "start: X_0 = 0 instead of E(x_0)",
         expected: "in a furnace ρ/(1 − ρ) instead of 1/(1 − ρ)",
         signature: "0 at k = 0, then 1",
@@ -78,10 +80,10 @@ pub static BUGS: [Bug; 8] = [
     },
     Bug {
         name: "clamped",
-        what: "samples are cut at 0.5 against fireflies, each term and the sum of all",
+        what: "samples are clamped at 0.5 to avoid fireflies, each term and the sum of all",
         place: "sample: min(X, c) instead of X, c = 0.5",
-        expected: "in a furnace min(ρ^k, c) for each term, min(1/(1 − ρ), c) in all",
-        signature: "below 1 where light is bright or found by luck, nearer to 1 with k; the same at any number of samples",
+        expected: "in a furnace min(ρ^k, c) for each term, min(1/(1 − ρ), c) for the sum",
+        signature: "below 1 where light is bright or rarely found, closer to 1 for larger k; the same for any number of samples",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -92,9 +94,9 @@ pub static BUGS: [Bug; 8] = [
     },
     Bug {
         name: "gamma-before-mean",
-        what: "samples are encoded for display before they are averaged, and written as if linear",
+        what: "samples are gamma-encoded before they are averaged, and written as if linear",
         place: "sample: X^(1/2.2) instead of X, each term and the sum of all",
-        expected: "in a furnace ρ^(k/2.2) for each term, (1 − ρ)^(−1/2.2) in all",
+        expected: "in a furnace ρ^(k/2.2) for each term, (1 − ρ)^(−1/2.2) for the sum",
         signature: "above 1 where samples are below 1, and growing with k; the terms do not sum to the whole",
         ratio: unknown,
         technique: Technique::Connect,
@@ -106,9 +108,9 @@ pub static BUGS: [Bug; 8] = [
     },
     Bug {
         name: "same-numbers",
-        what: "the generator starts again every 16 samples: the same ones are drawn over and over",
+        what: "the random generator restarts every 16 samples, so that the same samples repeat",
         place: "random numbers: sample i mod 16 instead of i",
-        expected: "means are right; the variance stays that of 16 samples instead of falling like 1/N",
+        expected: "means are correct; the variance stays that of 16 samples instead of falling as 1/N",
         signature: "1 at every k, but more samples change nothing: slope 0 instead of −1",
         ratio: |_| Some(1.0),
         technique: Technique::Mis,
@@ -120,10 +122,10 @@ pub static BUGS: [Bug; 8] = [
     },
     Bug {
         name: "not-a-number",
-        what: "a light that looks away has density 0, and its 0/0 is added to the image",
+        what: "a light that faces away has density 0, and the resulting 0/0 is added to the image",
         place: "connection: f cos θ_x E/p_ω with E = 0 and p_ω = 0, instead of no sample",
-        expected: "pixels that are no number",
-        signature: "not a number wherever the front of the lamp cannot be seen",
+        expected: "pixels that are NaN",
+        signature: "NaN wherever the front of the lamp cannot be seen",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -134,7 +136,7 @@ pub static BUGS: [Bug; 8] = [
     },
 ];
 
-/// Paths stop after so many bounces.
+/// Paths stop after this many bounces.
 pub struct Truncated(pub usize);
 impl Mistake for Truncated {
     fn slot(&self, k: usize, max_bounces: usize) -> Option<usize> {
@@ -163,7 +165,7 @@ impl Mistake for EmissionMissing {
     }
 }
 
-/// Samples are cut there.
+/// Samples are clamped at this value.
 pub struct Clamped(pub f32);
 impl Mistake for Clamped {
     fn finish(&self, value: Rgb) -> Rgb {

@@ -1,14 +1,14 @@
-//! A wrong constant in `f cos θ/p`.
+//! Mistakes that put a wrong constant into `f cos θ/p`.
 //!
 //! ```text
 //! f = ρ/π      ∫ f cos θ dω = ρ      p = cos θ/π  or  1/2π
 //! ```
 //!
-//! | member | furnace, E = 1 |
+//! | member | result in a furnace with E = 1 |
 //! |---|---|
 //! | missing-pi | T^k E = (πρ)^k |
-//! | half-bounce | under scatter (ρ/2)^k |
-//! | cosine-twice | (2ρ/3)^k, since E[cos θ] = ⅔ under the cosine |
+//! | half-bounce | with BSDF sampling only, (ρ/2)^k |
+//! | cosine-twice | (2ρ/3)^k, because E[cos θ] = ⅔ for cosine-distributed directions |
 //! | cosine-missing | (2ρ)^k |
 
 use super::signature::{flat, per_bounce, per_reflection, unknown};
@@ -20,11 +20,11 @@ use crate::scene::bsdf::Sampling;
 use glam::Vec3;
 use std::f32::consts::{PI, TAU};
 
-/// The members.
+/// The members of this family.
 pub static BUGS: [Bug; 5] = [
     Bug {
         name: "missing-pi-connection",
-        what: "the light connection is not divided by π",
+        what: "the BSDF in the light connection is not divided by π",
         place: "connection: f cos θ_x E/p_ω with f = ρ instead of ρ/π; the bounce is right",
         expected: "π T^k E for k ≥ 1",
         signature: "flat: π at every k ≥ 1",
@@ -41,7 +41,7 @@ pub static BUGS: [Bug; 5] = [
         what: "the Lambertian BSDF is ρ instead of ρ/π, everywhere",
         place: "BSDF: f = ρ instead of ρ/π, in the connection and in the bounce",
         expected: "π^k T^k E; in a furnace (πρ)^k",
-        signature: "straight in log r_k: π^k",
+        signature: "a straight line in log r_k: π^k",
         ratio: |k| per_reflection(std::f64::consts::PI, k),
         technique: Technique::Connect,
         ends: Ends::AtK,
@@ -52,10 +52,10 @@ pub static BUGS: [Bug; 5] = [
     },
     Bug {
         name: "half-bounce",
-        what: "the density of the bounce is believed twice too large, so that every bounce counts half",
+        what: "the assumed density of the bounce is twice too large, so that every bounce counts half",
         place: "bounce: α ← α f cos θ/(2p) instead of α f cos θ/p; direct light is right",
-        expected: "2^−(k−1) T^k E for k ≥ 1, where light is connected to",
-        signature: "straight in log r_k from k = 1 on: (1/2)^(k−1)",
+        expected: "2^−(k−1) T^k E for k ≥ 1, with next-event estimation",
+        signature: "a straight line in log r_k from k = 1 on: (1/2)^(k−1)",
         ratio: |k| per_bounce(0.5, k),
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -66,10 +66,10 @@ pub static BUGS: [Bug; 5] = [
     },
     Bug {
         name: "cosine-twice",
-        what: "directions follow the cosine, and the cosine is multiplied on once more",
+        what: "directions are sampled with the cosine, and the weight contains the cosine once more",
         place: "bounce: α ← α ρ cos θ instead of α ρ",
-        expected: "in a furnace under scatter (2ρ/3)^k, 1/(1 − 2ρ/3) in all",
-        signature: "1 at k = 1, then it falls, about (2/3)^(k−1); most where the light of the room grazes",
+        expected: "in a furnace with BSDF sampling only: (2ρ/3)^k, with the sum 1/(1 − 2ρ/3)",
+        signature: "1 at k = 1, then falling, about (2/3)^(k−1); strongest where light arrives at grazing angles",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -80,10 +80,10 @@ pub static BUGS: [Bug; 5] = [
     },
     Bug {
         name: "cosine-missing",
-        what: "directions are uniform, and the cosine of the rendering equation is forgotten",
+        what: "directions are sampled uniformly, and the cosine of the rendering equation is missing",
         place: "bounce: α ← α f · 2π instead of α f cos θ · 2π",
-        expected: "in a furnace under scatter (2ρ)^k: no limit for ρ ≥ ½",
-        signature: "1 at k = 1, then it grows, about 2^(k−1)",
+        expected: "in a furnace with BSDF sampling only: (2ρ)^k, a divergent series for ρ ≥ ½",
+        signature: "1 at k = 1, then growing, about 2^(k−1)",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AtK,

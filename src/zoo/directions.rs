@@ -1,11 +1,12 @@
-//! Directions that do not have the density they are believed to have.
+//! Mistakes in direction sampling: the true density of a direction differs from the one the estimator assumes.
 //!
 //! ```text
-//! believed p = cos θ/π, weight ρ       drawn: uniform, or on a disk with radius u instead of √u, or with θ uniform
+//! assumed p = cos θ/π, weight ρ       sampled: uniform, or on a disk with radius u instead of √u, or with θ uniform
 //! ```
 //!
-//! In a furnace it does not matter where rays go, so it sees none of the members but `cosine-as-uniform`, whose weight 2ρ cos θ has the mean
-//! 4ρ/3; nor does a sphere lit by its cap, where all points are alike. Under a disk of radius R at height h, d² = h² + R²: R²/d² becomes `1 − h/d`, `R/d` and `(2/π) atan(R/h)`.
+//! In a furnace the directions of rays have no effect. It therefore hides all members but `cosine-as-uniform`, whose weight
+//! 2ρ cos θ has the mean 4ρ/3. A sphere lit by its cap hides them, too, because all its points are equivalent. Under a disk
+//! of radius R at height h, with d² = h² + R², the correct value R²/d² becomes `1 − h/d`, `R/d` and `(2/π) atan(R/h)`.
 
 use super::signature::unknown;
 use super::{Bug, Ends, Mistake, Stage};
@@ -15,14 +16,14 @@ use crate::scene::bsdf::Sampling;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, TAU};
 
-/// The members.
+/// The members of this family.
 pub static BUGS: [Bug; 4] = [
     Bug {
         name: "malley-without-root",
-        what: "the disk that is lifted to the hemisphere is sampled with radius u instead of √u",
-        place: "direction: sin θ = u instead of √u, believed p = cos θ/π",
+        what: "the disk that is projected to the hemisphere is sampled with radius u instead of √u",
+        place: "direction: sin θ = u instead of √u, assumed p = cos θ/π",
         expected: "under a disk of radius R at height h: R/d instead of R²/d², d² = h² + R²",
-        signature: "above 1 where light comes along the normal, below 1 where it comes from beside; mild in a bright room",
+        signature: "above 1 where light arrives along the normal, below 1 where it arrives from the side; small in a bright room",
         ratio: unknown,
         technique: Technique::Scatter,
         ends: Ends::AsSet,
@@ -33,10 +34,10 @@ pub static BUGS: [Bug; 4] = [
     },
     Bug {
         name: "uniform-theta",
-        what: "the polar angle is uniform, but weighted as if directions followed the cosine",
-        place: "direction: θ = (π/2) u instead of asin √u, believed p = cos θ/π",
+        what: "the polar angle is uniform, but weighted as if directions had density cos θ/π",
+        place: "direction: θ = (π/2) u instead of asin √u, assumed p = cos θ/π",
         expected: "under a disk of radius R at height h: (2/π) atan(R/h) instead of R²/d², d² = h² + R²",
-        signature: "above 1 where light comes along the normal or grazes, below 1 between; mild in a bright room",
+        signature: "above 1 where light arrives along the normal or grazing, below 1 between; small in a bright room",
         ratio: unknown,
         technique: Technique::Scatter,
         ends: Ends::AsSet,
@@ -47,10 +48,10 @@ pub static BUGS: [Bug; 4] = [
     },
     Bug {
         name: "uniform-as-cosine",
-        what: "directions are uniform, but weighted as if they followed the cosine",
-        place: "direction: p = 1/2π, believed cos θ/π",
+        what: "directions are uniform, but weighted as if they had density cos θ/π",
+        place: "direction: p = 1/2π, assumed cos θ/π",
         expected: "under a disk of radius R at height h: 1 − h/d instead of R²/d², d² = h² + R²",
-        signature: "1 at k = 1; then bright on what has bright surroundings near the horizon, dark on what is lit from above",
+        signature: "1 at k = 1; then too bright where light arrives at grazing angles, too dark where it arrives along the normal",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -61,10 +62,10 @@ pub static BUGS: [Bug; 4] = [
     },
     Bug {
         name: "cosine-as-uniform",
-        what: "directions follow the cosine, but are weighted as if they were uniform",
-        place: "direction: p = cos θ/π, believed 1/2π",
-        expected: "in a furnace under scatter (4ρ/3)^k: 1/(1 − 4ρ/3) in all",
-        signature: "1 at k = 1, then it grows, about (4/3)^(k−1)",
+        what: "directions have density cos θ/π, but are weighted as if they were uniform",
+        place: "direction: p = cos θ/π, assumed 1/2π",
+        expected: "in a furnace with BSDF sampling only: (4ρ/3)^k, with the sum 1/(1 − 4ρ/3)",
+        signature: "1 at k = 1, then growing, about (4/3)^(k−1)",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AtK,

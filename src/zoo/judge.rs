@@ -1,39 +1,41 @@
-//! Is this render the right one? The image means of every term, the tail and the whole against a reference, and the law of the variance.
+//! Tests whether a render is correct. Compares the image means of every term, of the tail and of the whole with a reference,
+//! and tests that the variance falls as 1/n.
 //!
 //! ```text
-//! p_i = P(|T_ν| ≥ |t_i|),   t_i = (T_k − T_k^ref)/√(s² + s_ref²)         slope of ln V(n) over ln n:  −1
+//! p_i = P(|T_ν| ≥ |t_i|),   t_i = (T_k − T_k^ref)/√(s² + s_ref²)         slope of ln V(n) against ln n:  −1
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | p_i | one comparison per term and channel, by Welch's test | [`crate::stats::difference`] |
-//! | p | Holm's smallest: rejecting where it is ≤ α is a false alarm with probability ≤ α | [`Judgement::p`] |
+//! | p_i | p-value of one comparison per term and channel, by Welch's test | [`crate::stats::difference`] |
+//! | p | the smallest p-value, adjusted by Holm: rejecting if p ≤ α gives a false alarm with probability ≤ α | [`Judgement::p`] |
 //! | V(n) | variance of the mean of n samples, per pixel | [`crate::terms::variance`] |
 //!
-//! What the [evidence](crate::stats::evidence) will not carry is not judged. A term that is black altogether is judged by what the
-//! reference, which walks the same way, would have seen in as many paths. Samples that are not finite settle the matter.
+//! A term with too little [evidence](crate::stats::evidence) is not tested. A term that is completely black has no evidence
+//! itself; it is tested if the reference, with as many paths, would have found enough light. A render with non-finite
+//! samples is rejected at once.
 
 use crate::engine::by_rays::Sampled;
 use crate::stats::hypothesis::ROUNDING;
 use crate::stats::{Evidence, Measured, difference, holm, two_sided_p, variance_slope};
 use crate::terms::{Estimate, Events};
 
-/// Rounding of a walk of a few dozen vertices in `f32`, as a multiple of [`ROUNDING`].
+/// Rounding error of a path of a few dozen vertices in `f32`, as a multiple of [`ROUNDING`].
 const LONG_WALKS: f64 = 50.0;
 
-/// What was found.
+/// Result of the test.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judgement {
-    /// Holm's smallest p value; 0 where samples were not finite.
+    /// The smallest p-value, adjusted by Holm; 0 if samples were not finite.
     pub p: f64,
-    /// What it belongs to: `T²E`, `whole`, `variance`, ….
+    /// The comparison that gave this p-value: `k = 2`, `tail`, `whole`, `variance against samples`, ….
     pub what: String,
 }
 
-/// Judges a render by a reference of the same terms, made with the same K.
+/// Compares a render with a reference of the same terms and the same K.
 pub fn judge(suspect: &Sampled, reference: &Sampled) -> Judgement {
     if suspect.series.cost.non_finite > 0 {
-        return Judgement { p: 0.0, what: format!("{} samples that are no number", suspect.series.cost.non_finite) };
+        return Judgement { p: 0.0, what: format!("{} samples that are not finite", suspect.series.cost.non_finite) };
     }
     let share = suspect.series.cost.paths as f64 / reference.series.cost.paths as f64;
     let (image, reference) = (suspect.series.image(), reference.series.image());
@@ -54,7 +56,8 @@ pub fn judge(suspect: &Sampled, reference: &Sampled) -> Judgement {
         compare(format!("k = {k}"), a, b);
     }
     if image.tail.is_none() || reference.tail.is_none() {
-        // one of them ends at K; what is finished as a whole is no sum
+        // one of the two ends its paths at K: compare the light up to K. If the suspect has no tail, its own total counts,
+        // because after `finish` it is not the sum of its terms
         let whole = if image.tail.is_none() { &image.total } else { &image.sum };
         compare("whole".into(), whole, &reference.sum);
     } else {
@@ -79,7 +82,7 @@ fn p_value(a: Measured, b: Measured) -> f64 {
     }
 }
 
-/// P of a slope that far from −1; nothing with fewer than three points, or without variance.
+/// p-value of the hypothesis that the slope of the variance is −1. None with fewer than three points, or without variance.
 fn law_of_the_variance(suspect: &Sampled) -> Option<f64> {
     let points: Vec<(f64, f64)> = suspect.snapshots.iter().map(|s| (f64::from(s.spp), s.total.value)).collect();
     let replicates = suspect.series.image().total.replicates;

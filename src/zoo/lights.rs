@@ -1,12 +1,17 @@
-//! Lights: which one, which point of it, what stands between, from which side.
+//! Mistakes in light sampling: the choice of the light, the point on it, visibility, and the emitting side.
 //!
 //! ```text
 //! T E = Σ_i P_i E[ f cos θ E(y)/(P_i p_ω) V ]
 //! ```
 //!
-//! Lights chosen with P_i and divided by 1/n give `n Σ P_i D_i` instead of `Σ D_i`. On a disk of radius R at height h the radius u instead of √u
-//! gives `(R²/2)(1/d² + atan(R/h)/(Rh))` instead of R²/d², d² = h² + R². A sky of constant radiance drawn with θ and φ
-//! uniform has the density 1/(2π² sin θ); divided by 1/4π, it lights an open floor with 4ρ/π instead of ρ.
+//! Here P_i is the probability of light i of n, and D_i its direct light. If lights are chosen with P_i but divided by 1/n,
+//! the result is `n Σ P_i D_i` instead of `Σ D_i`.
+//!
+//! On a disk light of radius R at height h, the radius u instead of √u gives `(R²/2)(1/d² + atan(R/h)/(Rh))` instead of
+//! R²/d², with d² = h² + R².
+//!
+//! A sky of constant radiance that is sampled with uniform θ and φ has the density 1/(2π² sin θ). If it is divided by 1/4π,
+//! an open floor receives 4ρ/π instead of ρ.
 
 use super::signature::unknown;
 use super::{Bug, Ends, Mistake, Stage};
@@ -15,13 +20,13 @@ use crate::scene::{ESCAPED, LightSample, Scene, Vertex};
 use glam::Vec3;
 use std::f32::consts::{PI, TAU};
 
-/// The members.
+/// The members of this family.
 pub static BUGS: [Bug; 6] = [
     Bug {
         name: "wrong-light-choice",
         what: "lights are chosen by their power, but divided by 1/n",
         place: "choice: P_i = Φ_i/ΣΦ, believed 1/n",
-        expected: "n Σ P_i D_i instead of Σ D_i, with D_i what light i gives",
+        expected: "n Σ P_i D_i instead of Σ D_i, with D_i the direct light of light i",
         signature: "about flat in k; bright lamps too bright, dim lamps too dim",
         ratio: unknown,
         technique: Technique::Connect,
@@ -33,8 +38,8 @@ pub static BUGS: [Bug; 6] = [
     },
     Bug {
         name: "light-choice-off-by-one",
-        what: "the light after the chosen one is taken: the first never, the last twice as often",
-        place: "choice: i + 1 instead of i, at most n, with the probability of i",
+        what: "the light after the chosen one is used: never the first, the last twice as often",
+        place: "choice: i + 1 instead of i, at most n, divided by the probability of i",
         expected: "Σ D_i − D_1 + D_n",
         signature: "about flat in k; the light of one lamp is missing, that of another counts twice",
         ratio: unknown,
@@ -47,10 +52,10 @@ pub static BUGS: [Bug; 6] = [
     },
     Bug {
         name: "disk-light-without-root",
-        what: "points of a round lamp crowd in its centre: radius u instead of √u",
-        place: "light point: r = R u instead of R √u, density believed 1/πR²",
+        what: "sample points on a disk light cluster at its centre: radius u instead of √u",
+        place: "light point: r = R u instead of R √u, assumed density 1/πR²",
         expected: "under a disk of radius R at height h: (R²/2)(1/d² + atan(R/h)/(Rh)) instead of R²/d², d² = h² + R²",
-        signature: "about flat in k; bright under the middle of the lamp, dark beside it",
+        signature: "about flat in k; too bright under the middle of the lamp, too dark at its side",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -61,10 +66,10 @@ pub static BUGS: [Bug; 6] = [
     },
     Bug {
         name: "no-shadow-test",
-        what: "connections are not tested for what stands between",
+        what: "connections are made without a shadow test",
         place: "connection: V = 1",
         expected: "direct light without shadows: ρ E F(x → light) with the whole light in view",
-        signature: "above 1, about flat in k; all of it where there should be shadow",
+        signature: "above 1, about flat in k; the excess lies where there should be shadow",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -75,10 +80,10 @@ pub static BUGS: [Bug; 6] = [
     },
     Bug {
         name: "light-from-behind",
-        what: "a lamp that shines from its front shines from its back too",
+        what: "a lamp that should emit only from its front also emits from its back",
         place: "connection: |cos θ_y| instead of max(0, cos θ_y)",
         expected: "T E + ρ E F(x → back of the light)",
-        signature: "above 1, largest at k = 1; all of it on what lies behind the lamp",
+        signature: "above 1, largest at k = 1; the excess lies on surfaces behind the lamp",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -89,10 +94,10 @@ pub static BUGS: [Bug; 6] = [
     },
     Bug {
         name: "sky-without-sine",
-        what: "directions to the sky are drawn in latitude and longitude without the sine of the polar angle",
-        place: "sky: θ = π u, density 1/(2π² sin θ), believed 1/4π",
+        what: "sky directions are sampled with uniform angles, without the sine of the polar angle",
+        place: "sky: θ = π u, density 1/(2π² sin θ), assumed density 1/4π",
         expected: "an open floor under a constant sky: 4ρ/π instead of ρ",
-        signature: "flat in k; bright towards the poles of the sky, dark towards its horizon",
+        signature: "flat in k; too bright where light comes from the poles of the sky, too dark from its horizon",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -109,7 +114,7 @@ const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 struct WrongLightChoice;
 impl Mistake for WrongLightChoice {
     fn light_numbers(&self, scene: &Scene, u: [f32; 4]) -> [f32; 4] {
-        // the number that chooses light i of n uniformly
+        // map u[0] to a number for which a uniform choice selects the light that a choice by power would select
         let powers = scene.lights.powers();
         let mut left = f64::from(u[0]) * powers.iter().sum::<f64>();
         let chosen = powers.iter().position(|power| {
@@ -131,7 +136,7 @@ impl Mistake for LightChoiceOffByOne {
 struct DiskLightWithoutRoot;
 impl Mistake for DiskLightWithoutRoot {
     fn light_numbers(&self, _: &Scene, u: [f32; 4]) -> [f32; 4] {
-        // the radius is the root of the third number
+        // light sampling takes the square root of the third number as radius: squaring it cancels the root
         [u[0], u[1], u[2] * u[2], u[3]]
     }
 }

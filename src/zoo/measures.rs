@@ -1,26 +1,30 @@
-//! A density per area where one per solid angle belongs: parts of the Jacobian are missing.
+//! Mistakes of measure: a density per area is used instead of one per solid angle, so that parts of the Jacobian are
+//! missing.
 //!
 //! ```text
 //! p_ω = p_A r²/cos θ_y      f cos θ_x E/p_ω = f E cos θ_x cos θ_y/(r² p_A)
 //! ```
 //!
-//! None of them is the same in a scene ten times as large, and none shows under a sky, whose density is per solid angle from the start.
-//! Inside a sphere of radius R that glows, one bounce gives 2ρ without cos θ_y, 2ρR² without 1/r², 8ρR²/3 without both; under a disk of
-//! radius R at height h, d² = h² + R²: `2(1 − h/d)`, `h² ln(1 + R²/h²)`, `2h(d − h)` instead of `R²/d²`.
+//! None of these mistakes gives the same image if the scene is made ten times as large. None of them shows under a sky,
+//! because the density of the sky is per solid angle from the start.
+//!
+//! Inside an emitting sphere of radius R, one bounce should give ρ. It gives 2ρ without cos θ_y, 2ρR² without 1/r², and
+//! 8ρR²/3 without both. Under a disk of radius R at height h, with d² = h² + R², direct light should be `R²/d²`. It is
+//! `2(1 − h/d)` without one cosine, `h² ln(1 + R²/h²)` without 1/r², and `2h(d − h)` without both.
 
 use super::mistake::Connection;
 use super::signature::unknown;
 use super::{Bug, Ends, Mistake, Stage};
 use crate::estimator::Technique;
 
-/// The members.
+/// The members of this family.
 pub static BUGS: [Bug; 4] = [
     Bug {
         name: "area-density",
-        what: "the density of the light point per area is used as one per solid angle",
+        what: "the density of the light point per area is used as if it were per solid angle",
         place: "connection: f cos θ_x E/p_A instead of f cos θ_x E/p_ω, p_ω = p_A r²/cos θ_y",
-        expected: "inside a glowing sphere of radius R: 8ρR²/3 for one bounce instead of ρ",
-        signature: "about flat in k, but not in space: least under the light, and it grows with the scale of the scene",
+        expected: "inside an emitting sphere of radius R: 8ρR²/3 for one bounce instead of ρ",
+        signature: "about flat in k, but not in space: smallest under the light; it grows with the scale of the scene",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -33,8 +37,8 @@ pub static BUGS: [Bug; 4] = [
         name: "no-inverse-square",
         what: "the connection lacks 1/r²",
         place: "connection: f E cos θ_x cos θ_y/p_A instead of f E cos θ_x cos θ_y/(r² p_A)",
-        expected: "inside a glowing sphere of radius R: 2ρR² for one bounce instead of ρ",
-        signature: "about flat in k; darker near the light, brighter far from it, and it grows with the scale of the scene",
+        expected: "inside an emitting sphere of radius R: 2ρR² for one bounce instead of ρ",
+        signature: "about flat in k; too dark near the light, too bright far from it; it grows with the scale of the scene",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -47,8 +51,8 @@ pub static BUGS: [Bug; 4] = [
         name: "no-light-cosine",
         what: "the connection lacks the cosine at the light",
         place: "connection: f E cos θ_x/(r² p_A) instead of f E cos θ_x cos θ_y/(r² p_A)",
-        expected: "inside a glowing sphere: 2ρ for one bounce instead of ρ",
-        signature: "about flat in k; most where light leaves the lamp at a grazing angle",
+        expected: "inside an emitting sphere: 2ρ for one bounce instead of ρ",
+        signature: "about flat in k; strongest where light leaves the lamp at a grazing angle",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,
@@ -62,7 +66,7 @@ pub static BUGS: [Bug; 4] = [
         what: "the connection lacks the cosine at the surface",
         place: "connection: f E cos θ_y/(r² p_A) instead of f E cos θ_x cos θ_y/(r² p_A)",
         expected: "under a disk of radius R at height h: 2(1 − h/d) instead of R²/d², d² = h² + R²",
-        signature: "about flat in k; most where light arrives at a grazing angle: on the walls",
+        signature: "about flat in k; strongest where light arrives at a grazing angle: on the walls",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AsSet,

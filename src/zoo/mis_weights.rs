@@ -1,23 +1,24 @@
-//! Shares of the two ways to find light that do not sum to one.
+//! Mistakes in the MIS weights: the weights of the two techniques to find light do not sum to one.
 //!
 //! ```text
 //! w_c = p_c/(p_c + p_s)      w_s = p_s/(p_s + p_c)      w_c + w_s = 1 for every path, densities in one measure
 //! ```
 //!
-//! Inside a glowing sphere of radius R both densities are equal and both shares ½. With p_A instead of p_ω in w_c one bounce gives
-//! `ρ(½ + 2(a − a² ln(1 + 1/a)))`, a = 1/4R², instead of ρ: hardly wrong for some R, badly for another.
+//! Inside an emitting sphere of radius R both densities are equal, and both weights are ½. With p_A instead of p_ω in w_c,
+//! one bounce gives `ρ(½ + 2(a − a² ln(1 + 1/a)))`, a = 1/4R², instead of ρ. For some R this is nearly correct, for others
+//! far off.
 
 use super::mistake::Connection;
 use super::signature::{flat, unknown};
 use super::{Bug, Ends, Mistake, Stage};
 use crate::estimator::Technique;
 
-/// The members.
+/// The members of this family.
 pub static BUGS: [Bug; 3] = [
     Bug {
         name: "double-emission",
-        what: "light is counted through the connection and again where the path hits it",
-        place: "shares: w_c = w_s = 1 instead of w_c + w_s = 1",
+        what: "light is counted by the connection, and again where the path hits the lamp",
+        place: "MIS weights: w_c = w_s = 1 instead of w_c + w_s = 1",
         expected: "2 T^k E for k ≥ 1; in a furnace (1 + ρ)/(1 − ρ) instead of 1/(1 − ρ)",
         signature: "flat: 2 at every k ≥ 1",
         ratio: |k| flat(2.0, k),
@@ -30,9 +31,9 @@ pub static BUGS: [Bug; 3] = [
     },
     Bug {
         name: "mixed-measures",
-        what: "the share of the connection compares a density per area with one per solid angle",
-        place: "shares: w_c = p_A/(p_A + p_s) instead of p_ω/(p_ω + p_s); w_s is right",
-        expected: "inside a glowing sphere of radius R: ρ(½ + 2(a − a² ln(1 + 1/a))), a = 1/4R², for one bounce",
+        what: "the MIS weight of the connection mixes a density per area with one per solid angle",
+        place: "MIS weights: w_c = p_A/(p_A + p_s) instead of p_ω/(p_ω + p_s); w_s is right",
+        expected: "inside an emitting sphere of radius R: ρ(½ + 2(a − a² ln(1 + 1/a))), a = 1/4R², for one bounce",
         signature: "flat in k, near 1 at one scale of the scene, far from it at another",
         ratio: unknown,
         technique: Technique::Mis,
@@ -45,9 +46,9 @@ pub static BUGS: [Bug; 3] = [
     Bug {
         name: "mixed-heuristics",
         what: "connections are weighted by the power heuristic, hits by the balance heuristic",
-        place: "shares: w_c = p_c²/(p_c² + p_s²) beside w_s = p_s/(p_s + p_c): they do not sum to 1",
+        place: "MIS weights: w_c = p_c²/(p_c² + p_s²) together with w_s = p_s/(p_s + p_c): they do not sum to 1",
         expected: "1 + (t² − t)/((1 + t²)(1 + t)) for a path with p_c = t p_s: 0.85 to 1.15; on the sphere t = 10",
-        signature: "flat in k: 1.081 on the sphere, whose cap is a tenth of it",
+        signature: "flat in k: 1.081 on the sphere whose emitting cap is a tenth of its area",
         ratio: |k| flat(1.0 + 90.0 / 1111.0, k),
         technique: Technique::Mis,
         ends: Ends::AsSet,

@@ -1,4 +1,4 @@
-//! The places in which a path tracer can be wrong: one method each, whose default is right.
+//! The steps of a path tracer that can be wrong: one method each. The default method is correct.
 //!
 //! ```text
 //! X_k = α_{k−1} w_c · f cos θ_x E(y)/p_ω   +   α_k w_s E(x_k)        α ← α · f cos θ/p · 1/s
@@ -6,17 +6,17 @@
 //!
 //! | symbol | meaning | method |
 //! |---|---|---|
-//! | u | random numbers by address | [`Mistake::address`] |
-//! | y, p_ω | light point, and its density in solid angle | [`Mistake::light_numbers`], [`Mistake::light`], [`Mistake::density`] |
-//! | cos θ_x, cos θ_y, V | the rest of a connection | [`Mistake::receiver_cosine`], [`Mistake::facing`], [`Mistake::visible`] |
+//! | u | random numbers, addressed by pixel and sample | [`Mistake::address`] |
+//! | y, p_ω | point on a light, and its density per solid angle | [`Mistake::light_numbers`], [`Mistake::light`], [`Mistake::density`] |
+//! | cos θ_x, cos θ_y, V | the other factors of a connection | [`Mistake::receiver_cosine`], [`Mistake::facing`], [`Mistake::visible`] |
 //! | f | ρ/π | [`Mistake::lambert`] |
-//! | ω, p | direction, and its density | [`Mistake::direction`] |
+//! | ω, p | sampled direction, and its density | [`Mistake::direction`] |
 //! | f cos θ/p | weight of a bounce | [`Mistake::bounce`], [`Mistake::glass`] |
-//! | 1/s | weight of a survivor, s = 1 − q | [`Mistake::survivor`], [`Mistake::roulette_before_light`] |
-//! | w_c, w_s | shares of the two ways to find light | [`Mistake::connection_share`], [`Mistake::hit_share`] |
-//! | k | the slot a term goes to | [`Mistake::slot`] |
+//! | 1/s | weight of a path that survives roulette, s = 1 − q | [`Mistake::survivor`], [`Mistake::roulette_before_light`] |
+//! | w_c, w_s | MIS weights of the two techniques to find light: connection and scattering | [`Mistake::connection_share`], [`Mistake::hit_share`] |
+//! | k | number of the term, and of the slot where it is stored | [`Mistake::slot`] |
 //!
-//! A member of the zoo overrides one of them.
+//! Most members of the zoo override one of these methods.
 
 use crate::estimator::Technique;
 use crate::math::Rgb;
@@ -27,10 +27,10 @@ use crate::scene::{LightSample, Scene, Vertex};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
-/// A connection from x to a light point y, in the words of the lecture.
+/// A connection from x to a point y on a light.
 #[derive(Clone, Copy, Debug)]
 pub struct Connection {
-    /// y.
+    /// The point y.
     pub light: Vertex,
     /// |x − y|², m².
     pub r2: f32,
@@ -38,65 +38,68 @@ pub struct Connection {
     pub cos_x: f32,
     /// cos θ_y; 1 where the light has no surface.
     pub cos_y: f32,
-    /// p_A = P_i/A_i, m⁻², where the point was drawn by area; else nothing.
+    /// p_A = P_i/A_i, m⁻², if the point was sampled by area; else none.
     pub per_area: Option<f32>,
-    /// p_ω: p_A r²/cos θ_y of a point drawn by area.
+    /// p_ω. For a point sampled by area, p_ω = p_A r²/cos θ_y.
     pub per_angle: f32,
 }
 
-/// What may go wrong. Every default is right.
+/// The steps that a mistake can replace. Every default is correct.
 pub trait Mistake: Sync {
-    /// The pixel and sample whose random numbers a path uses: its own.
+    /// The pixel and sample whose random numbers a path uses. By default its own.
     fn address(&self, pixel: u32, sample: u32) -> (u32, u32) {
         (pixel, sample)
     }
 
-    /// The numbers that choose a light (the first), its primitive (the second) and a point of it (the others).
+    /// The four random numbers of a light sample: the first chooses the light, the second its primitive, the others a point
+    /// on it.
     fn light_numbers(&self, _scene: &Scene, u: [f32; 4]) -> [f32; 4] {
         u
     }
 
-    /// The light that they choose.
+    /// The light sample that these numbers give.
     fn light(&self, scene: &Scene, at: &Vertex, u: [f32; 4]) -> Option<LightSample> {
         scene.propose_light(at, u)
     }
 
-    /// cos θ_y as far as it counts: a light shines from its front, where this is positive.
+    /// cos θ_y as used in the connection. A light emits from its front, where the cosine is positive.
     fn facing(&self, cos_y: f32) -> f32 {
         cos_y
     }
 
-    /// What is scored where the front of a light looks away: nothing.
+    /// The value that is scored if the light faces away from x. By default zero.
     fn averted(&self) -> Rgb {
         Rgb::ZERO
     }
 
-    /// cos θ_x, which turns radiance into irradiance.
+    /// cos θ_x, the cosine at the receiving surface.
     fn receiver_cosine(&self, cos_x: f32) -> f32 {
         cos_x
     }
 
-    /// The density of y that a connection is divided by: in solid angle, as the integral is.
+    /// The density of y by which a connection is divided. It is per solid angle, because the integral is over directions.
     fn density(&self, c: &Connection) -> f32 {
         c.per_angle
     }
 
-    /// V: nothing stands between x and y.
+    /// V: returns true if nothing blocks the segment from x to y.
     fn visible(&self, scene: &Scene, x: Vec3, n: Vec3, y: Vec3, m: Vec3) -> bool {
         !scene.blocked(x, n, y, m)
     }
 
-    /// A connection as it is scored, given its right value.
+    /// The value that is scored for a connection, given the correct value.
     fn connection(&self, value: Rgb) -> Rgb {
         value
     }
 
-    /// w_c, where the connection has density p_ω and scattering would have `other`.
+    /// w_c: the MIS weight of a connection. The connection has density p_ω; scattering would sample the same direction with
+    /// density `other`.
     fn connection_share(&self, technique: Technique, c: &Connection, other: f32) -> f32 {
         technique.connection(c.per_angle, other)
     }
 
-    /// w_s, where scattering had density `p` and a connection would have `other`: 0 where it could not find the light.
+    /// w_s: the MIS weight of a hit. Scattering had density `p`; a connection would have density `other`, which is 0 if it
+    /// cannot find this light.
     fn hit_share(&self, technique: Technique, p: f32, other: f32) -> f32 {
         technique.hit(p, other)
     }
@@ -106,7 +109,7 @@ pub trait Mistake: Sync {
         rho * FRAC_1_PI
     }
 
-    /// A direction about `n`, and the density it is believed to have.
+    /// A direction about `n`, and the density that the estimator assumes for it.
     fn direction(&self, n: Vec3, sampling: Sampling, u: [f32; 2]) -> (Vec3, f32) {
         let (d, cosine) = match sampling {
             Sampling::Uniform => uniform_hemisphere(n, u),
@@ -125,33 +128,34 @@ pub trait Mistake: Sync {
         Some(glass.choose(wo, TransportMode::Radiance, u))
     }
 
-    /// Whether roulette is tested before the light is sampled, and its weight applied after: it is not.
+    /// Returns true if the roulette test comes before the light sample and its weight is applied after it. By default false.
     fn roulette_before_light(&self) -> bool {
         false
     }
 
-    /// The weight of a path that survives with probability `s`.
+    /// The weight factor of a path that survives roulette with probability `s`.
     fn survivor(&self, s: f32) -> f32 {
         1.0 / s
     }
 
-    /// Where term k is written, with slots 0..=K and K + 1 for the tail; nothing: it is lost.
+    /// The slot in which term k is stored: 0..=K for the terms, K + 1 for the tail. None if the term is lost.
     fn slot(&self, k: usize, max_bounces: usize) -> Option<usize> {
         Some(k.min(max_bounces + 1))
     }
 
-    /// What is done to a finished number, a term of one path or their sum, before it is averaged.
+    /// Applied to the value of a path, term by term or for the sum of its terms, before it is averaged. By default the value
+    /// is unchanged.
     fn finish(&self, value: Rgb) -> Rgb {
         value
     }
 
-    /// Whether [`Mistake::finish`] does anything: then the image is no sum of its terms.
+    /// Returns true if [`Mistake::finish`] changes values. The image is then not the sum of its terms.
     fn finishes(&self) -> bool {
         false
     }
 }
 
-/// No mistake: the control.
+/// No mistake: the correct estimator, used as a control.
 #[derive(Clone, Copy, Debug)]
 pub struct Right;
 impl Mistake for Right {}

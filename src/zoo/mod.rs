@@ -1,4 +1,5 @@
-//! Wrong on purpose: estimators that differ from the right one in one place, and what that does to the terms.
+//! The zoo: a collection of estimators that are wrong on purpose. Each *member* differs from the correct estimator in one
+//! place. The zoo shows how each mistake changes the terms.
 //!
 //! ```text
 //! r_k = T_k^wrong / T_k^right        c: the connection      c^(k−1): the bounce      c^k: the BSDF
@@ -6,11 +7,11 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | X_k | one sample of a term, by a walk with hooks | [`walk`] |
-//! | – | what may go wrong, and what is right | [`Mistake`] |
-//! | r_k | signature of a mistake | [`Bug::ratio`], [`signature`] |
-//! | p | is a render the right one? | [`judge`] |
-//! | – | scene that shows it, and scene that cannot | [`Bug::exposed_by`], [`Bug::blind`] |
+//! | X_k | one sample of a term, by a path tracer with replaceable steps | [`walk`] |
+//! | – | the steps that a mistake may replace, with their correct versions | [`Mistake`] |
+//! | r_k | signature of a mistake: its effect on each term | [`Bug::ratio`], [`signature`] |
+//! | p | p-value of "this render is correct" | [`judge`] |
+//! | – | a scene that shows the mistake, and a scene that does not | [`Bug::exposed_by`], [`Bug::blind`] |
 //!
 //! | family | place |
 //! |---|---|
@@ -18,14 +19,15 @@
 //! | Russian roulette | [`roulette`] |
 //! | densities in the wrong measure | [`measures`] |
 //! | directions | [`directions`] |
-//! | shares of two techniques | [`mis_weights`] |
+//! | weights of two techniques (MIS) | [`mis_weights`] |
 //! | lights | [`lights`] |
 //! | mirrors and glass | [`specular`] |
 //! | bookkeeping and display | [`bookkeeping`] |
 //!
-//! A furnace is blind to any error in *where* rays go; a scene with one light to how lights are chosen; a scene of Lambertian
-//! surfaces to what happens at glass. Hence two scenes per member. References: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*
-//! (1997); Pharr, Jakob, Humphreys, *Physically Based Rendering* (4th ed. 2023).
+//! Every scene hides some mistakes. In a furnace, errors in the *directions* of rays have no effect. With one light, a wrong
+//! choice among lights has no effect. With Lambertian surfaces only, errors at glass have no effect. Each member therefore
+//! names two scenes. References: Veach, *Robust Monte Carlo Methods for Light Transport Simulation* (1997); Pharr, Jakob,
+//! Humphreys, *Physically Based Rendering* (4th ed. 2023).
 
 pub mod bookkeeping;
 pub mod constants;
@@ -53,49 +55,49 @@ use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::terms::World;
 
-/// How the paths of a member end.
+/// Rule by which the paths of a member are terminated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ends {
-    /// As the settings say.
+    /// As given in the settings.
     AsSet,
-    /// With probability q at every vertex: what is wrong is roulette.
+    /// Russian roulette with probability of termination q at every vertex. Used by members whose mistake is in the roulette.
     Roulette(f64),
-    /// At K: the wrong series need not converge.
+    /// After K bounces, without roulette, because the wrong series may diverge.
     AtK,
 }
 
-/// A member of the zoo.
+/// One member of the zoo: an estimator with one mistake.
 pub struct Bug {
-    /// Its name, as the command line takes it.
+    /// Name, as given on the command line.
     pub name: &'static str,
-    /// What is wrong, in one line.
+    /// Description of the mistake, in one line.
     pub what: &'static str,
-    /// Where: the right formula and the wrong one.
+    /// The step that is wrong, with the correct formula and the wrong one.
     pub place: &'static str,
-    /// What comes out instead, in closed form where it is known.
+    /// The wrong result, in closed form where it is known.
     pub expected: &'static str,
-    /// The signature in words.
+    /// Description of the signature r_k.
     pub signature: &'static str,
-    /// r_k on the scene that shows it, where it is the same in every scene of that kind; nothing where it depends on the scene.
+    /// r_k on the scene that shows the mistake. None if the value depends on the scene.
     pub ratio: fn(k: usize) -> Option<f64>,
-    /// How it finds light.
+    /// Technique by which it finds light.
     pub technique: Technique,
-    /// How its paths end.
+    /// Rule by which its paths end.
     pub ends: Ends,
-    /// The scene that shows it.
+    /// A scene that shows the mistake.
     pub exposed_by: Stage,
-    /// The scene that cannot; nothing where only the whole image is right, of every scene.
+    /// A scene that does not show it. None if only the whole image is correct, on every scene.
     pub blind: Option<Stage>,
-    /// Samples per pixel of a picture of [`PIXELS`]² pixels that are enough to reject it.
+    /// Samples per pixel at which the mistake is detected in an image of [`PIXELS`]² pixels.
     pub spp: u32,
-    /// The one place where it is wrong.
+    /// The step of the path tracer that this member replaces.
     pub mistake: &'static dyn Mistake,
 }
 
-/// Width and height of the pictures that the declared sample sizes are for.
+/// Width and height of the images for which [`Bug::spp`] is declared.
 pub const PIXELS: u32 = 16;
 
-/// Every member, family by family.
+/// All members, family by family.
 pub fn all() -> Vec<&'static Bug> {
     let families: [&'static [Bug]; 8] = [
         &constants::BUGS,
@@ -110,7 +112,7 @@ pub fn all() -> Vec<&'static Bug> {
     families.into_iter().flatten().collect()
 }
 
-/// The member of that name.
+/// The member with the given name.
 ///
 /// ```
 /// assert!(fredholm::zoo::find("double-emission").is_some());
@@ -121,7 +123,7 @@ pub fn find(name: &str) -> Option<&'static Bug> {
 }
 
 impl Bug {
-    /// The plan of its renderer, and of the right one that it is compared with.
+    /// The plan of its renderer. The correct renderer with which it is compared uses the same plan.
     pub fn plan(&self, settings: &Settings) -> Plan {
         let roulette = match self.ends {
             Ends::AsSet => settings.roulette.clone(),
@@ -132,17 +134,18 @@ impl Bug {
     }
 }
 
-/// What the wrong renderer gives: terms, tail, and `total`, which it would call its image.
+/// Renders with the mistake: terms, tail, and in `total` what the wrong renderer would output as its image.
 pub fn render(bug: &Bug, scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
     of(&bug.plan(settings), bug.mistake, bug.name, scene, settings, progress)
 }
 
-/// What the right renderer of the same plan gives, from numbers of its own.
+/// Renders correctly with the same plan, from independent random numbers.
 pub fn render_right(bug: &Bug, scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
     of(&bug.plan(settings), &Right, "right", scene, settings, progress)
 }
 
-/// The walk of a plan with a mistake, through the camera of the scene; `stream` names its random numbers.
+/// Renders the camera image of a scene with a given mistake. `stream` names the random numbers, so that different streams
+/// are independent.
 pub fn of(
     plan: &Plan,
     mistake: &dyn Mistake,
@@ -156,7 +159,7 @@ pub fn of(
     let label = (World::Terms, format!("walk, {}", plan.technique));
     let mut result = by_rays::sample(&t, &scene.camera, &walk(), stream, label.clone(), settings, progress);
     if mistake.finishes() {
-        // the image is no sum of its terms: the same paths again, of which only the sum is finished
+        // this image is not the sum of its terms: trace the same paths again, and apply `finish` to their sum
         let whole = by_rays::sample(&t, &scene.camera, &walk::Whole(walk()), stream, label, settings, progress);
         result.total = whole.total;
         for (f, w) in result.series.functionals.iter_mut().zip(whole.series.functionals) {

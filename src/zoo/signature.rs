@@ -1,32 +1,32 @@
-//! r_k in closed form, for the mistakes that have one.
+//! The signature r_k in closed form, for the mistakes that have one.
 //!
-//! | c falls on | r_k, k ≥ 1 | what is wrong |
+//! | factor c is applied | r_k, k ≥ 1 | the mistake is in |
 //! |---|---|---|
-//! | every term alike | c | the connection to the light |
-//! | every bounce | c^(k−1) | the bounce, or the roulette |
-//! | every reflection | c^k | the BSDF |
+//! | once to every term | c | the connection to the light |
+//! | at every bounce | c^(k−1) | the bounce, or the roulette |
+//! | at every reflection | c^k | the BSDF |
 //!
-//! r_0 = 1 in all three: what the eye sees directly goes through neither.
+//! In all three cases r_0 = 1, because light seen directly involves neither a connection nor a bounce.
 
 use crate::stats::Evidence;
 use crate::terms::{Estimate, Functional};
 
-/// c for k ≥ 1.
+/// A signature that is the same at all terms: c for k ≥ 1, and 1 for k = 0.
 pub fn flat(c: f64, k: usize) -> Option<f64> {
     Some(if k == 0 { 1.0 } else { c })
 }
 
-/// c^(k−1) for k ≥ 1.
+/// A factor c per bounce after direct light: c^(k−1) for k ≥ 1.
 pub fn per_bounce(c: f64, k: usize) -> Option<f64> {
     Some(c.powi(k.saturating_sub(1) as i32))
 }
 
-/// c^k.
+/// A factor c per reflection: c^k.
 pub fn per_reflection(c: f64, k: usize) -> Option<f64> {
     Some(c.powi(k as i32))
 }
 
-/// r_k that depends on the scene.
+/// A signature that depends on the scene: always none.
 pub fn unknown(_: usize) -> Option<f64> {
     None
 }
@@ -34,16 +34,16 @@ pub fn unknown(_: usize) -> Option<f64> {
 /// A measured r_k.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratio {
-    /// T_k^wrong / T_k^right, means over the channels.
+    /// T_k^wrong / T_k^right, from means over the channels.
     pub value: f64,
-    /// Its standard error: an upper bound where the channels are not perfectly correlated; NaN where it is not known.
+    /// Standard error of `value`. It is an upper bound if the channels are not perfectly correlated; NaN if it is not known.
     pub std_error: f64,
-    /// Replicates behind it.
+    /// Number of replicates from which the error is computed.
     pub replicates: u64,
 }
 
 impl Ratio {
-    /// Of two independent estimates, by the delta method; not a number where the right one is zero.
+    /// The ratio of two independent estimates, with its error by the delta method. NaN if the correct estimate is zero.
     pub fn of(wrong: &Estimate, right: &Estimate) -> Self {
         let average = |e: &Estimate| {
             let known = Evidence::of(e).no_error.is_none();
@@ -56,7 +56,7 @@ impl Ratio {
     }
 }
 
-/// r_0, …, r_K.
+/// The measured ratios r_0, …, r_K.
 pub fn measured(wrong: &Functional, right: &Functional) -> Vec<Ratio> {
     wrong.terms.iter().zip(&right.terms).map(|(w, r)| Ratio::of(w, r)).collect()
 }

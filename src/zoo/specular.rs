@@ -1,11 +1,13 @@
-//! Mirrors and glass.
+//! Mistakes at mirrors and glass.
 //!
 //! ```text
 //! weight = F/p or (1 − F)/(1 − p) · 1/η²      emission counts after a delta vertex: no connection finds what it shows
 //! ```
 //!
-//! Along a ray that meets a ball of glass with reflectance R in a sky of radiance 1, T¹ = R and T^k = (1 − R)² R^(k−2); without the
-//! probability of choice every meeting halves them: `R/2 + (1 − R)²/(4(1 − R/2))` in all. With η² counted on the way in only: `R + (1 − R)/η²`.
+//! Consider a ray that meets a glass ball with reflectance R in a sky of radiance 1. Then T¹ = R and T^k = (1 − R)² R^(k−2)
+//! for k ≥ 2. If the sample is not divided by the probability ½ of its choice, every interface halves the terms. The sum is
+//! then `R/2 + (1 − R)²/(4(1 − R/2))`. If the factor η² is applied only where the path enters the glass, the sum is
+//! `R + (1 − R)/η²`.
 
 use super::signature::{per_reflection, unknown};
 use super::{Bug, Ends, Mistake, Stage};
@@ -14,12 +16,12 @@ use crate::scene::bsdf::dielectric::{Odds, SmoothDielectric};
 use crate::scene::bsdf::{BsdfSample, TransportMode};
 use glam::Vec3;
 
-/// The members.
+/// The members of this family.
 pub static BUGS: [Bug; 4] = [
     Bug {
         name: "no-emission-after-mirror",
         what: "emission is never counted on a hit, not even after a mirror or glass",
-        place: "shares: w_s = 0 where no connection can find the light, instead of 1",
+        place: "MIS weights: w_s = 0 where no connection can find the light, instead of 1",
         expected: "lamps are black in mirrors, and there are no caustics",
         signature: "below 1 from k = 1 on; 0 in mirrors at k = 1",
         ratio: unknown,
@@ -32,10 +34,10 @@ pub static BUGS: [Bug; 4] = [
     },
     Bug {
         name: "glass-without-choice",
-        what: "reflection or refraction is chosen by a coin, and not divided by its ½",
+        what: "reflection or refraction is chosen with probability ½, but not divided by it",
         place: "glass: weight F or 1 − F instead of 2F or 2(1 − F)",
-        expected: "2^−k T^k E of a ball in a white sky: R/2 + (1 − R)²/(4(1 − R/2)) in all, instead of 1",
-        signature: "straight in log r_k: (1/2)^k where all is glass",
+        expected: "2^−k T^k E for a ball in a white sky; the sum is R/2 + (1 − R)²/(4(1 − R/2)) instead of 1",
+        signature: "a straight line in log r_k: (1/2)^k where all surfaces are glass",
         ratio: |k| per_reflection(0.5, k),
         technique: Technique::Connect,
         ends: Ends::AtK,
@@ -46,9 +48,9 @@ pub static BUGS: [Bug; 4] = [
     },
     Bug {
         name: "eta-squared-once",
-        what: "radiance is divided by η² where light goes in, and not multiplied where it comes out",
-        place: "glass: the factor 1/η² is left out on the way out of the denser side",
-        expected: "T^k E/η² for k ≥ 2 of a ball in a white sky: R + (1 − R)/η² in all, instead of 1",
+        what: "radiance is divided by η² where a path enters glass, not multiplied where it leaves",
+        place: "glass: the factor for refraction is left out where a path leaves the denser side",
+        expected: "T^k E/η² for k ≥ 2 of a ball in a white sky; the sum is R + (1 − R)/η² instead of 1",
         signature: "1 at k = 0 and 1, then flat: 1/η² = 0.44",
         ratio: |k| Some(if k < 2 { 1.0 } else { 1.0 / 2.25 }),
         technique: Technique::Connect,
@@ -60,9 +62,9 @@ pub static BUGS: [Bug; 4] = [
     },
     Bug {
         name: "total-reflection-dropped",
-        what: "a path ends where glass reflects totally",
+        what: "paths end at a total reflection inside glass",
         place: "glass: no sample where Snell's law has no solution, instead of a reflection with weight 1",
-        expected: "black cores and rims in whatever has corners; a ball seen from outside never reflects totally inside",
+        expected: "black areas in glass objects with corners; in a ball seen from outside, no total reflection occurs",
         signature: "1 up to k = 1, then below 1, falling with k",
         ratio: unknown,
         technique: Technique::Connect,

@@ -1,7 +1,8 @@
-//! The terms by one path at a time, as the lecture writes it, with a hook in every place that can go wrong.
+//! A path tracer that traces one path at a time, written as in the lecture. Every step that a [`Mistake`] can replace is a
+//! method call.
 //!
 //! ```text
-//! α ← 1, x ← what the eye sees;                       X_0 ← E(x)
+//! α ← 1, x ← the point seen through the pixel;         X_0 ← E(x)
 //! for k = 1, 2, …
 //!     y ← a light point, ω its direction:             X_k ← X_k + α w_c f(ω) cos θ_x E(y) V/p_ω
 //!     a random number below q: stop;                  α ← α/(1 − q)
@@ -9,9 +10,9 @@
 //!                                                     X_k ← X_k + α w_s E(x)
 //! ```
 //!
-//! Independent code on purpose, for surfaces and lights alike; it reads the addresses of random numbers that
-//! [`Prefix`](crate::estimator::Prefix) reads, so that without a [`Mistake`] the two give the same terms path by path, to
-//! rounding (`tests/zoo.rs`). Reference: Kajiya, *The Rendering Equation* (1986).
+//! This code is deliberately independent of the other estimators, for surfaces and lights. It uses the same addresses of
+//! random numbers as [`Prefix`](crate::estimator::Prefix). Without a mistake, both therefore give the same terms for every
+//! path, up to rounding (`tests/zoo.rs`). Reference: Kajiya, *The Rendering Equation* (1986).
 
 use super::mistake::{Connection, Mistake};
 use crate::estimator::{Batch, Job, Paths, Plan, TermEstimator, TermSink};
@@ -23,18 +24,19 @@ use crate::scene::bsdf::{Bsdf, TransportMode, diffuse::Diffuse};
 use crate::scene::{LightSample, Vertex, VertexWave, connection, offset_origin};
 use glam::Vec3;
 
-/// The walk with a mistake in it.
+/// The path tracer with a mistake.
 pub struct Walk<'a> {
-    /// How far terms are kept, how light is found, how paths end.
+    /// Number of terms, technique to find light, and roulette.
     pub plan: Plan,
-    /// What is wrong.
+    /// The mistake.
     pub mistake: &'a dyn Mistake,
 }
 
-/// The same walk, of which only the finished sum is kept: one slot.
+/// The same path tracer with one slot: only the sum of all terms is stored, after [`Mistake::finish`].
 pub struct Whole<'a>(pub Walk<'a>);
 
-/// A direction that was drawn, or looked at: f cos θ/p or f, its density, the normal on its side.
+/// A direction that was sampled or is evaluated. `value` is f cos θ/p for a sampled direction and f for an evaluated one;
+/// `pdf` is its density, `normal` the normal on its side.
 struct Scattered {
     to: Vec3,
     normal: Vec3,
@@ -44,7 +46,7 @@ struct Scattered {
 }
 
 impl Walk<'_> {
-    /// The terms of one path that starts at `start`, into `slots` (K + 2 of them), and the rays of each.
+    /// Adds the terms of one path from `start` to `slots` (K + 2 of them), and the number of rays of each slot to `rays`.
     pub fn terms(
         &self,
         t: &SceneTransport,
@@ -78,7 +80,7 @@ impl Walk<'_> {
                 break;
             }
 
-            // the light is sampled
+            // light sampling
             if technique.connects() {
                 rays[slot] += 1;
                 if let Some(value) = self.connect(t, &x, numbers(v, Purpose::Connect).four()) {
@@ -95,7 +97,7 @@ impl Walk<'_> {
                 throughput *= mistake.survivor(1.0 - q);
             }
 
-            // the next vertex, whose emission counts if hits do
+            // the next vertex; its emission counts if the technique counts hits
             rays[slot] += 1;
             let Some(s) = self.scatter(t, &x, numbers(v, Purpose::Scatter).four()) else { break };
             let Some(next) = t.scene.look(offset_origin(x.p, s.normal), s.to) else { break };
@@ -108,7 +110,7 @@ impl Walk<'_> {
         }
     }
 
-    /// `w_c f cos θ_x E(y) V/p_ω` for the light point that four numbers choose.
+    /// The contribution `w_c f cos θ_x E(y) V/p_ω` of the light point that the four random numbers select.
     fn connect(&self, t: &SceneTransport, at: &Vertex, u: [f32; 4]) -> Option<Rgb> {
         let (scene, mistake) = (t.scene, self.mistake);
         if scene.lights.is_empty() || !at.on_surface() {
@@ -116,7 +118,7 @@ impl Walk<'_> {
         }
         let LightSample { state, to, pdf, can_be_hit } = mistake.light(scene, at, mistake.light_numbers(scene, u))?;
 
-        // geometry; of a point drawn by area, the density in solid angle is p_A r²/cos θ_y
+        // geometry; for a point sampled by area, the density per solid angle is p_A r²/cos θ_y
         let (_, r2, _, towards) = connection(at.p, at.n, state.p, state.n);
         let by_area = state.on_surface() && scene.cone_pdf(at.p, &state).is_none();
         let per_area = by_area.then(|| scene.light_density(state.side));
@@ -137,7 +139,7 @@ impl Walk<'_> {
         Some(mistake.connection(weight * t.emission(&state) * share))
     }
 
-    /// f towards a direction, and the density with which scattering would have drawn it.
+    /// f for a given direction, and the density with which BSDF sampling would choose that direction.
     fn towards(&self, t: &SceneTransport, at: &Vertex, to: Vec3) -> Option<Scattered> {
         let cosine = at.n.dot(to);
         let (value, pdf) = match t.scene.bsdf(at) {
@@ -155,7 +157,7 @@ impl Walk<'_> {
         (value != Rgb::ZERO).then_some(Scattered { to, normal, value, pdf, delta: false })
     }
 
-    /// A direction with the weight f cos θ/p.
+    /// Samples a direction, with the weight f cos θ/p.
     fn scatter(&self, t: &SceneTransport, at: &Vertex, u: [f32; 4]) -> Option<Scattered> {
         let frame = Frame::new(at.n);
         let s = match t.scene.bsdf(at) {
@@ -171,7 +173,8 @@ impl Walk<'_> {
         Some(Scattered { to: frame.world(s.wi), normal, value: s.weight, pdf: s.pdf, delta: s.delta })
     }
 
-    /// The finished terms of every path of a batch that sees something, and the rays of each slot.
+    /// Traces all paths of a batch and passes the terms of each to `keep`. Paths that see nothing are left out. Returns the
+    /// rays of each slot.
     fn each<'s>(
         &self,
         t: &SceneTransport<'s>,
@@ -196,7 +199,7 @@ impl Walk<'_> {
     }
 }
 
-/// Adds one number to the sink.
+/// Adds one value to the sink.
 fn add(sink: &mut impl TermSink, slot: usize, pixel: u32, sample: u32, value: Rgb) {
     if value != Rgb::ZERO {
         let mut column = Columns::new(1);

@@ -76,7 +76,7 @@ fn terms_that_one_side_does_not_see_are_not_compared() {
     assert!(said.err.contains(missing), "{}", said.err);
     let said = desk.run("compare p l -o c");
     assert_eq!(said.code, 1, "{}", said.out);
-    assert!(said.out.contains("T1 and everything longer: not supported, light does not see"), "{}", said.out);
+    assert!(said.out.contains("T1 and everything longer: not supported, light cannot find"), "{}", said.out);
     let rows = desk.summary("c").verdicts;
     assert!(rows.iter().all(|v| v.name.contains("T0")) && rows.len() == 1, "{rows:?}");
     // a light that no ray hits is refused where rays must hit it

@@ -49,20 +49,20 @@ fn commands_end_as_they_say() {
     let desk = Desk::new();
     let said = desk.ok("info");
     insta::assert_snapshot!(said.out, @r#"
-    cornell         a Cornell box of quads and two blocks, colours bleeding
-    furnace         a closed box where every surface glows and reflects half: T^k E = 0.5^k everywhere
+    cornell         a Cornell box of quads with two blocks: colour bleeding between the walls
+    furnace         a closed box where every surface emits and has albedo 0.5: T^k E = 0.5^k everywhere
     sphere          an integrating sphere lit by its own cap: every term from k = 1 on is constant
     shells          two concentric spheres: pointwise exact terms of a 2 by 2 operator, with occlusion
     cornell-spheres a Cornell box with a mirror and a glass sphere: caustics from k = 2 and k = 3 on
-    veach-mis       glossy plates under lamps of equal power and unequal size: combined techniques
-    veach-ajar      a room lit only through a door ajar: a long series, the lamp out of sight
-    env-ggx         gold, copper and plastic under a sky and a point light: GGX at four widths
-    caustic         a glass sphere focuses a small lamp: easy from the light, hard from the eye
-    glass-furnace   a glass ball in a sky of radiance 1: every pixel sums to 1, terms known
-    mirror-corridor two parallel mirrors of 0.9: T^k E decays slowly
+    veach-mis       glossy plates under lamps of equal power, unequal size: multiple importance sampling
+    veach-ajar      a room lit through a slightly open door: the lamp is hidden and the series is long
+    env-ggx         gold, copper and plastic under a sky and a point light: GGX at four roughnesses
+    caustic         a glass sphere focuses a small lamp: easy to sample from the light, hard from the eye
+    glass-furnace   a glass ball in a sky of radiance 1: every pixel sums to 1, and all terms are known
+    mirror-corridor two parallel mirrors of reflectance 0.9: T^k E decays slowly
     sky-bowl        part of a sphere open to a sky of radiance 1: every term is constant
-    many-lights     96 lamps from 0.01 to 10 W: choosing lights by power or uniformly
-    cube            a closed cube under a glowing ceiling: means of L and r(T) known without patches
+    many-lights     96 lamps from 0.01 to 10 W: light selection by power or uniform
+    cube            a closed cube with an emitting ceiling: means of L and r(T) known without a mesh
     "#);
     let said = desk.ok("info furnace");
     insta::assert_snapshot!(said.out, @r#"

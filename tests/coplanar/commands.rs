@@ -23,7 +23,7 @@ fn commands_name_what_coincides() {
         let said = super::common::program::run(desk.path(), line);
         (said.code, said.out, said.err)
     };
-    let words = "shapes `shapes[0]` and `shapes[2]` lie in one plane and differ";
+    let words = "shapes `shapes[0]` and `shapes[2]` overlap in one plane and look different";
     let (code, out, err) = run("info flush.toml");
     assert_eq!(code, 0);
     assert!(out.contains("coplanar overlaps: 2"), "{out}");

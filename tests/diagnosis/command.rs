@@ -114,7 +114,7 @@ fn a_larger_scene_shows_mixed_measures() {
             write_exr(&desk, &format!("{name}{radius}.exr"), [16, 16], &[("T01", render.terms[1].mean.as_slice())]);
         }
     }
-    let lengths = "lengths enter where they must cancel";
+    let lengths = "lengths do not cancel as they must";
     // no candidates: what the two scales say by themselves
     let few = "--spp 256 --paths 1 -q --json";
     let names = |said: &Said| {

@@ -6,7 +6,7 @@ use fredholm::scene::description::{DielectricSurface, DiffuseSurface, MirrorSurf
 #[test]
 fn wrong_obj_files_are_refused_at_their_line() {
     for (file, in_file, line, key, what) in [
-        ("nan.obj", "nan.obj", Some(4), Some("v"), "the vertex 0 nan 1 is not finite, or beyond 1e12"),
+        ("nan.obj", "nan.obj", Some(4), Some("v"), "the vertex 0 nan 1 is not finite or exceeds 1e12"),
         ("short_vertex.obj", "short_vertex.obj", Some(4), Some("v"), "`0 1` is not a position"),
         (
             "out_of_range.obj",
@@ -32,7 +32,7 @@ fn wrong_obj_files_are_refused_at_their_line() {
         ("two_corners.obj", "two_corners.obj", Some(4), Some("f"), "the face `1 2` has fewer than 3 corners"),
         ("bad_corner.obj", "bad_corner.obj", Some(4), Some("f"), "`x` is not a corner"),
         ("nameless_material.obj", "nameless_material.obj", Some(4), Some("usemtl"), "usemtl needs a name"),
-        ("all_flat.obj", "all_flat.obj", None, None, "every triangle of the file is without area"),
+        ("all_flat.obj", "all_flat.obj", None, None, "no triangle of the file has an area"),
         ("no_faces.obj", "no_faces.obj", None, None, "the file has no faces"),
         ("missing_mtl.obj", "missing_mtl.obj", Some(2), Some("mtllib"), "cannot find the material file `nowhere.mtl`"),
         ("kd_above_one.obj", "kd_above_one.mtl", Some(3), Some("wall.Kd"), "reflectance 1.2 is outside [0, 1]"),
@@ -89,11 +89,11 @@ fn an_imperfect_obj_loads_with_warnings() {
     assert_eq!(
         warnings,
         [
-            ":10: material `ligth` is not defined, it is grey 0.5; did you mean `light`?",
-            ":13: material `light` has no Kd, it is grey 0.5",
-            ":16: material `glossy` has map_Kd wood.png on polygons without vt, Kd is used",
-            ":16: material `glossy` has Ks but no Ns, it is diffuse",
-            ": triangles without area, left out: 1",
+            ":10: material `ligth` is not defined; grey 0.5 is used; did you mean `light`?",
+            ":13: material `light` has no Kd; grey 0.5 is used",
+            ":16: material `glossy` has map_Kd wood.png, but its polygons have no vt; Kd is used",
+            ":16: material `glossy` has Ks but no Ns, so it is rendered as diffuse",
+            ": triangles without area that are ignored: 1",
         ]
     );
     // seen from +z, the two metres fill 90 % of the frame
@@ -128,61 +128,86 @@ fn mtl_materials() {
     for (statements, placed, wanted, said) in [
         ("Kd 0.25", true, diffuse(0.25), &[][..]),
         ("Kd 0.25\nKs 0\nNs 10\nillum 2\nNi 1.5\nd 1\nTr 0\nTf 1 1 1", true, diffuse(0.25), &[]),
-        ("", true, diffuse(0.5), &["has no Kd, it is grey 0.5"]),
+        ("", true, diffuse(0.5), &["has no Kd; grey 0.5 is used"]),
         // lobes
         ("Kd 0.25\nKs 0.5\nNs 20", true, phong(0.25, 0.5, 20.0), &[]),
         ("Kd 0\nKs 0.75\nNs 200\nillum 2", true, phong(0.0, 0.75, 200.0), &[]),
-        ("Kd 0.25\nKs 0.5", true, diffuse(0.25), &["has Ks but no Ns, it is diffuse"]),
-        ("Kd 0.25\nKs 0.5\nNs 20\nillum 1", true, diffuse(0.25), &["has Ks, which illum 1 leaves out"]),
+        ("Kd 0.25\nKs 0.5", true, diffuse(0.25), &["has Ks but no Ns, so it is rendered as diffuse"]),
+        ("Kd 0.25\nKs 0.5\nNs 20\nillum 1", true, diffuse(0.25), &["has Ks, which illum 1 does not use"]),
         (
             "Kd 1\nKs 1\nNs 20",
             true,
             phong(0.5, 0.5, 20.0),
-            &["returns more than it receives, Kd + Ks reach 2: divided by that"],
+            &["reflects more light than it receives: Kd + Ks reach 2, so its colours are divided by that"],
         ),
         (
             "Kd 0.25\nKs 0.5\nNs 20\nillum 3",
             true,
             phong(0.25, 0.5, 20.0),
-            &["mirrors in illum 3 beside its Kd: it is a lobe of exponent 20"],
+            &["has illum 3 (mirror) and Kd; it is rendered with a Phong lobe of exponent 20"],
         ),
         // mirrors
         ("Ks 0.75\nillum 3", true, mirror(0.75), &[]),
-        ("Kd 0.01\nKs 0.95\nNs 1024\nillum 5", true, mirror(0.95), &["is a mirror, without its Kd"]),
-        ("Ks 2\nillum 3", true, mirror(1.0), &["returns more than it receives, Ks reaches 2: divided by that"]),
+        ("Kd 0.01\nKs 0.95\nNs 1024\nillum 5", true, mirror(0.95), &["is rendered as a mirror, without its Kd"]),
+        (
+            "Ks 2\nillum 3",
+            true,
+            mirror(1.0),
+            &["reflects more light than it receives: Ks reaches 2, so its colours are divided by that"],
+        ),
         // glass
         ("Kd 0\nNi 1.33\nillum 7", true, glass(1.33), &[]),
         (
             "Kd 0.01\nKs 0.3\nTf 0.1\nNs 1024\nNi 2.5\nillum 7",
             true,
             glass(2.5),
-            &["is clear glass, without its Kd, Tf"],
+            &["is rendered as clear glass, without its Kd, Tf"],
         ),
-        ("d 0.5", true, glass(1.5), &["has no Ni, 1.5 is used"]),
+        ("d 0.5", true, glass(1.5), &["has no Ni; 1.5 is used"]),
         ("Tr 0.5\nNi 1.2", true, glass(1.2), &[]),
-        ("d -halo 0.5\nNi 1", true, glass(1.0), &["has Ni 1 and d below 1, it is invisible"]),
-        ("d 0.5\nNi 0", true, glass(1.5), &["has Ni 0 outside [1, 10], 1.5 is used"]),
-        ("Kd 0.25\nd 1\nTr 1", true, diffuse(0.25), &["has d 1 and Tr 1, which contradict each other: d counts"]),
+        ("d -halo 0.5\nNi 1", true, glass(1.0), &["has Ni 1 and d below 1, so it is invisible"]),
+        ("d 0.5\nNi 0", true, glass(1.5), &["has Ni 0 outside [1, 10]; 1.5 is used instead"]),
+        ("Kd 0.25\nd 1\nTr 1", true, diffuse(0.25), &["has d 1 and Tr 1, which contradict each other; d is used"]),
         (
             "Kd 0.25\nillum 4\nNi 1",
             true,
             diffuse(0.25),
-            &["has illum 4, but neither d below 1 nor Ni above 1: it is opaque"],
+            &["has illum 4, but neither d below 1 nor Ni above 1, so it is opaque"],
         ),
         // images
         ("map_Kd wall.png # beside the MTL", true, wall(1.0), &[]),
         ("Kd 0.5\nmap_Kd .\\wall.png", true, wall(0.5), &[]),
-        ("Kd 0.5\nmap_Kd wall.png", false, diffuse(0.5), &["has map_Kd wall.png on polygons without vt, Kd is used"]),
-        ("map_Kd -s 1 2 -clamp on wall.png", true, wall(1.0), &["has map_Kd options -s 1 2 -clamp on ignored"]),
-        ("Kd 0.5\nmap_Kd oak wood.png", true, diffuse(0.5), &["has map_Kd oak wood.png, which is missing, Kd is used"]),
+        (
+            "Kd 0.5\nmap_Kd wall.png",
+            false,
+            diffuse(0.5),
+            &["has map_Kd wall.png, but its polygons have no vt; Kd is used"],
+        ),
+        (
+            "map_Kd -s 1 2 -clamp on wall.png",
+            true,
+            wall(1.0),
+            &["has map_Kd options that are ignored: -s 1 2 -clamp on"],
+        ),
+        (
+            "Kd 0.5\nmap_Kd oak wood.png",
+            true,
+            diffuse(0.5),
+            &["has map_Kd oak wood.png, but the file is missing; Kd is used"],
+        ),
         (
             "Kd 0.5\nmap_Kd a.mtl",
             true,
             diffuse(0.5),
-            &["has map_Kd a.mtl, which is no EXR, HDR, PNG or JPEG, Kd is used"],
+            &["has map_Kd a.mtl, which is not an EXR, HDR, PNG or JPEG file; Kd is used"],
         ),
         ("Kd 0\nmap_Kd wall.png", true, wall(0.0), &["has Kd 0, which makes its map_Kd black"]),
-        ("Kd 0.25\nbump b.png\nmap_d c.png", true, diffuse(0.25), &["has bump b.png, map_d c.png ignored"]),
+        (
+            "Kd 0.25\nbump b.png\nmap_d c.png",
+            true,
+            diffuse(0.25),
+            &["has statements that are ignored: bump b.png, map_d c.png"],
+        ),
     ] {
         std::fs::write(&mtl, format!("newmtl a\nKe 1\n{statements}\n")).unwrap();
         let face = if placed { "f 1/1 2/2 3/3" } else { "f 1/1 2 3/3" };
@@ -198,7 +223,7 @@ fn mtl_materials() {
     // an image that is there but wrong is an error at its line
     std::fs::write(&mtl, "newmtl a\nKe 1\nmap_Kd bright.exr\n").unwrap();
     let e = scene(obj.to_str().unwrap(), &Options::default()).unwrap_err();
-    assert!(e.what.ends_with("reflects 1.5, more than it receives"), "{e}");
+    assert!(e.what.ends_with("reflects 1.5 times the light that it receives"), "{e}");
     assert_eq!((e.file, e.line, e.key.as_deref()), (Some(mtl), Some(3), Some("a.map_Kd")));
 }
 
@@ -224,7 +249,7 @@ fn images_go_where_texture_coordinates_are() {
         "type = \"obj\"\nfile = \"a.obj\"\nmaterial = \"wall\"",
     );
     let e = toml(&text, &dir.path().join("rich.toml"), &Options::default()).unwrap_err();
-    assert_eq!(e.what, "material `wall` has a texture, this obj has no texture coordinates");
+    assert_eq!(e.what, "material `wall` has a texture, but this obj has no texture coordinates");
     assert_eq!((e.line, e.key.as_deref()), (Some(56), Some("shapes[1].material")));
 }
 
@@ -260,7 +285,7 @@ fn obj_inside_toml() {
     assert_eq!(d.shapes[4].emission, DVec3::new(17.0, 12.0, 4.0));
     assert_eq!(d.shapes[4].geometry.primitives()[0].bounds()[0].x, 10.0);
     let e = load(&own, &["shapes[3].emission=[1,1,1]"]).unwrap_err();
-    assert_eq!(e.what, "the light of an OBJ comes from its MTL");
+    assert_eq!(e.what, "an OBJ without `material` takes its emission from its MTL");
     let e = load(&own, &["shapes[3].file=nowhere.obj"]).unwrap_err();
     assert_eq!(e.key.as_deref(), Some("--set shapes[3].file"));
 }

@@ -43,8 +43,13 @@ fn wrong_overrides_name_themselves() {
         ("camera.fov=[1", "camera.fov", "`[1` is not a TOML value", "number"),
         ("camera.fov", "camera.fov", "an override needs a value", "KEY=VALUE"),
         ("camera.fov=", "camera.fov", "`` is not a TOML value", "number"),
-        ("camera.fov.x=3", "camera.fov.x", "`camera.fov` is an integer, it has no `x`", "leave"),
-        ("shapes[5].emission=[1,1,1]", "shapes[5].emission", "`shapes` has no [5], it has 5 elements", "start at 0"),
+        ("camera.fov.x=3", "camera.fov.x", "`camera.fov` is an integer and has no `x`", "remove"),
+        (
+            "shapes[5].emission=[1,1,1]",
+            "shapes[5].emission",
+            "`shapes` has no element [5], only 5 elements",
+            "start at 0",
+        ),
         ("shapes[x].emission=[1,1,1]", "shapes[x].emission", "`shapes[x].emission` is not a key", "shapes[5].emission"),
         ("shapes[0].emission=[1,-1,1]", "shapes[0].emission", "emission -1 is negative", "at least 0"),
         (
@@ -70,7 +75,7 @@ fn emit_lights_every_shape_of_a_material() {
     let lit: Vec<_> = d.shapes.iter().map(|s| s.emission.x).collect();
     assert_eq!(lit, [1.0, 7.0, 7.0, 0.0, 0.0]);
     for (emit, what) in [
-        ("lfet=1,1,1", "no shape has a material `lfet`"),
+        ("lfet=1,1,1", "no shape uses a material `lfet`"),
         ("left", "no radiance is given"),
         ("left=1,1", "`1,1` is not a radiance of three channels"),
         ("left=1,1,x", "`1,1,x` is not a radiance of three channels"),

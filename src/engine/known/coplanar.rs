@@ -1,4 +1,4 @@
-//! Where two surfaces coincide, differ, and are seen: there a scene has no right answer, and no verdict is given.
+//! Visible surfaces that coincide and differ. The image of such a scene is undefined there, so no verdict is given.
 //!
 //! ```text
 //! seen(region)  ⇔  a path from the camera lands in it
@@ -7,13 +7,14 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | region | a part of a surface where two sides compete | [`Region`] |
-//! | landing | vertices of random walks from the camera | `walks` |
-//! | seeing | segments from points of the region to vertices where the walks scattered, and to the camera | `connects` |
+//! | region | a part of a surface where two sides coincide and compete | [`Region`] |
+//! | landing | vertices of random walks from the camera that lie in a region | `walks` |
+//! | seeing | free segments from points of a region to the camera, or to vertices where the walks scattered | `connects` |
 //!
-//! What no such path comes to changes no image: the bottom of a block on the floor. Light paths need no walk of their own; what
-//! they bring is seen along camera paths. The numbers are fixed, so the answer is always the same. A region can be missed if it
-//! is small and seen in mirrors or through glass only: connections find nothing there, and walks only what is large.
+//! A region that no such path reaches changes no image: the bottom of a block on the floor, for example. Light paths need no
+//! separate walk, because the light that they bring is seen along camera paths. The random numbers are fixed, so the answer
+//! is always the same. A small region that is seen only in mirrors or through glass can be missed: connections find nothing
+//! there, and walks find only large regions.
 
 use crate::math::{Key, Purpose, Rng};
 use crate::operator::{SceneTransport, Sensor, Transport};
@@ -24,18 +25,18 @@ use crate::scene::{Scene, Vertex};
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// Walks from the camera, and how far they go.
+/// Number of walks from the camera, and their length in vertices.
 const WALKS: u32 = 2048;
 const LENGTH: usize = 6;
-/// Vertices of walks that each point of a region is connected to.
+/// Number of walk vertices to which each point of a region is connected.
 const EACH: usize = 64;
-/// Regions of two shapes in which landings are looked for, at most.
+/// Maximum number of regions of a pair of shapes that are searched for landings.
 const REGIONS: usize = 1024;
-/// Points of two shapes that are tried, at least and at most, and segments in all.
+/// Minimum and maximum number of points tried for a pair of shapes, and the number of segments in all.
 const POINTS: (usize, usize) = (8, 64);
 const SEGMENTS: usize = 1 << 20;
 
-/// The pairs of shapes that coincide, differ, and are seen.
+/// The pairs of shapes that coincide, differ, and are visible.
 pub fn seen(scene: &Scene) -> Vec<&Relation> {
     let conflicts = scene.conflicts();
     if conflicts.is_empty() {
@@ -63,7 +64,7 @@ pub fn seen(scene: &Scene) -> Vec<&Relation> {
     found.map(|(_, (c, _))| c).collect()
 }
 
-/// Why no comparison of images of this scene is decided, if none is.
+/// Reason why no comparison of images of this scene gives a verdict; None if there is no such reason.
 pub fn undecided(scene: &Scene) -> Option<String> {
     let seen = seen(scene);
     let first = conflict(seen.first()?);
@@ -73,17 +74,17 @@ pub fn undecided(scene: &Scene) -> Option<String> {
     })
 }
 
-/// A conflict in words.
+/// A sentence that describes a conflict.
 pub fn conflict(c: &Relation) -> String {
     let [a, b] = &c.names;
     let place = if c.regions.iter().all(Region::is_flat) { "plane" } else { "sphere" };
     if c.shapes[0] == c.shapes[1] {
-        return format!("shape `{a}` lies twice in one {place}, and the two differ");
+        return format!("two parts of shape `{a}` overlap in one {place} and look different");
     }
-    format!("shapes `{a}` and `{b}` lie in one {place} and differ")
+    format!("shapes `{a}` and `{b}` overlap in one {place} and look different")
 }
 
-/// Where walks from the camera come to, in order.
+/// The vertices that walks from the camera reach, in order.
 fn walks(scene: &Scene, key: Key) -> Vec<Vertex> {
     let t = SceneTransport::new(scene);
     let [w, h] = scene.camera.size;
@@ -102,17 +103,17 @@ fn walks(scene: &Scene, key: Key) -> Vec<Vertex> {
     all
 }
 
-/// Whether light from anywhere is scattered here, so that a connection means a path.
+/// Returns true if light from any direction is scattered here, so that a connection is a possible path.
 fn connectable(scene: &Scene, x: &Vertex) -> bool {
     !matches!(scene.bsdf(x), Bsdf::Black | Bsdf::Mirror(_) | Bsdf::Dielectric(Dielectric::Smooth(_)))
         && scene.albedo(x.side) != Vec3::ZERO
 }
 
-/// Whether one of `points` points where two shapes compete is seen by the camera or by some of these vertices.
+/// Returns true if the camera, or one of these vertices, sees one of `points` points where two shapes compete.
 fn connects(scene: &Scene, c: &Relation, scatters: &[Vertex], points: usize, key: Key) -> bool {
     let n = c.regions.len();
     (0..points).any(|i| {
-        // evenly over the regions
+        // spread evenly over the regions
         let region = &c.regions[if n <= points { i % n } else { i * n / points }];
         let u = Rng::at(key, i as u32, 0, 0, Purpose::Connect).four();
         let (x, n) = region.point([f64::from(u[0]), f64::from(u[1])]);
@@ -122,7 +123,7 @@ fn connects(scene: &Scene, c: &Relation, scatters: &[Vertex], points: usize, key
             return true;
         }
         (0..EACH).any(|k| {
-            // other vertices for every point
+            // different vertices for every point
             let Some(y) = scatters.get((i + k * points) * 7919 % scatters.len().max(1)) else { return false };
             let d = y.p - x;
             let (to, throughput) = (d.dot(n) > 0.0, d.dot(y.n) < 0.0);

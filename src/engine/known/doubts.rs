@@ -1,27 +1,29 @@
-//! What the samples of a result cannot know: light that a way of sampling meets only by chance in a scene, and how often it is to be
-//! expected to. A short walk that connects to the lamps tells it without meeting any.
+//! Doubts: light that a sampling method finds only by chance in a scene, and how often it is expected to find it. The
+//! samples of a result cannot show this. A short pilot walk that connects to the lamps estimates it, without hitting any
+//! lamp.
 //!
 //! ```text
 //! a hit where a connection is found:     x_s p_s = x_c p_c      ⟹      E[x_s²] = E[x_c² p_c/p_s]
 //! events of N paths:                     n = N (E x_c)² / E[x_c² p_c/p_s]
 //! ```
 //!
-//! | way | meets by chance | events of a path |
+//! | sampling method | finds by chance | expected events per path |
 //! |---|---|---|
-//! | walks from the eye, with connections | lamps that the eye sees in mirrors or glass, k ≥ 1 | P(the eye sees mirror or glass) × that of k = 1 below |
-//! | walks from the eye, `scatter` | lamps | as above, term by term |
-//! | walks from the eye, with connections | lamps through mirrors or glass (caustics), k ≥ 2 | P(a step meets mirror or glass) × the same of k = 1 |
-//! | walks from both ends | the same where the eye sees it in mirrors or glass, k ≥ 3 | × P(the eye sees mirror or glass) |
-//! | walks from the light | what the camera sees | area in view over area of the scene |
+//! | walks from the eye, with connections | lamps that the eye sees in mirrors or glass, k ≥ 1 | P(the eye sees mirror or glass) × n/N for k = 1 |
+//! | walks from the eye, `scatter` | lamps | n/N, term by term |
+//! | walks from the eye, with connections | lamps through mirrors or glass (caustics), k ≥ 2 | P(a step hits mirror or glass) × n/N for k = 1 |
+//! | walks from both ends | such caustics, if the eye sees them in mirrors or glass, k ≥ 3 | the same × P(the eye sees mirror or glass) |
+//! | walks from the light | surfaces in view of the camera | area in view divided by the area of the scene |
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | x_c, p_c | a connection's contribution, and its density | `Pilot` |
-//! | x_s, p_s | the same path found by scattering | `Pilot` |
-//! | n | [`Doubt::per_path`] × N | [`doubts`] |
+//! | x_c, p_c | contribution of a connection, and its density | `Pilot` |
+//! | x_s, p_s | contribution of the same path if scattering finds it, and its density | `Pilot` |
+//! | N, n | number of paths, and expected number of events: n = N · [`Doubt::per_path`] | [`doubts`] |
 //!
-//! **What it does not know**: a small bright lamp in view beside a large dim one (k = 0), light behind a keyhole or a door, lobes of rough metal, lamps that no vertex of the short walk sees. It is
-//! right to an order of magnitude, which is what is asked of it.
+//! **Not detected**: a small bright lamp in view next to a large dim one (k = 0), light behind a keyhole or a door, lobes of
+//! rough metal, lamps that no vertex of the pilot walk sees. The estimate is right to an order of magnitude, which is enough
+//! for its purpose.
 
 use crate::engine::Settings;
 use crate::engine::estimator::{Begins, Estimator};
@@ -31,10 +33,10 @@ use crate::operator::{SceneTransport, Sensor, Transport};
 use crate::scene::{Scene, SurfaceSensor, Vertex};
 use crate::terms::Doubt;
 
-/// Walks of the pilot, and vertices of each from which it connects.
+/// Number of pilot walks, and number of vertices of each from which it connects.
 const WALKS: u32 = 1024;
 const DEEPEST: usize = 4;
-/// What fewer paths meet is met by chance.
+/// Light that fewer than this fraction of the paths find counts as found by chance.
 const BY_CHANCE: f64 = 0.1;
 
 /// The doubts about an estimator (`None` for the path tracer) in a scene.
@@ -43,10 +45,10 @@ pub fn doubts(scene: &Scene, estimator: Option<Estimator>, settings: &Settings) 
     let doubt = |what: &str, from: usize, per_path: f64| Doubt { what: what.to_owned(), from, per_path };
     let delta = scene.any_delta_surface();
     let mut found = match estimator.map_or(Begins::AtEye, Estimator::begins) {
-        Begins::AtLight => vec![doubt("what the camera sees", 1, share_in_view(&t))],
+        Begins::AtLight => vec![doubt("the surfaces in view of the camera", 1, share_in_view(&t))],
         Begins::AtBoth if delta => {
             let p = Pilot::walk(&t);
-            let what = "lamps through mirrors or glass that the eye sees in mirrors or glass";
+            let what = "caustics that the eye sees in mirrors or glass";
             vec![doubt(what, 3, p.starts * p.steps * p.hits(1))]
         }
         Begins::AtBoth => vec![],
@@ -58,17 +60,17 @@ pub fn doubts(scene: &Scene, estimator: Option<Estimator>, settings: &Settings) 
             let p = Pilot::walk(&t);
             vec![
                 doubt("lamps seen in mirrors or glass", 1, p.starts.max(0.5 / f64::from(WALKS)) * p.hits(1)),
-                doubt("lamps through mirrors or glass (caustics)", 2, p.steps * p.hits(1)),
+                doubt("caustics (lamps through mirrors or glass)", 2, p.steps * p.hits(1)),
             ]
         }
         _ => vec![],
     };
-    // what one path in ten meets is met often, and samples show how often
+    // light that one path in ten finds is found often, and the samples show how often
     found.retain(|d| d.per_path < BY_CHANCE);
     found
 }
 
-/// The area that the camera sees over that of all surfaces.
+/// Area that the camera sees, divided by the area of all surfaces.
 fn share_in_view(t: &SceneTransport<'_>) -> f64 {
     let camera = &t.scene.camera;
     let pixels = camera.size[0] * camera.size[1];
@@ -80,7 +82,7 @@ fn share_in_view(t: &SceneTransport<'_>) -> f64 {
     (area / SurfaceSensor::new(t.scene).area).min(1.0)
 }
 
-/// Where walk `i` begins: on what a random pixel sees.
+/// Start of walk `i`: a point on what a random pixel sees.
 fn start(t: &SceneTransport<'_>, i: u32) -> Option<Vertex> {
     let [w, h] = t.scene.camera.size;
     let mut rng = Rng::at(Key::new(0, "doubts"), i, 0, 0, Purpose::Start);
@@ -88,13 +90,13 @@ fn start(t: &SceneTransport<'_>, i: u32) -> Option<Vertex> {
     t.scene.camera.start(t, pixel, &mut rng).filter(Vertex::on_surface)
 }
 
-/// What a short walk from the eye found.
+/// Results of the pilot walks from the eye.
 #[derive(Default)]
 struct Pilot {
     /// Σ x_c and Σ x_c² p_c/p_s of connections that complete a path of term k.
     sum: [f64; DEEPEST + 1],
     square: [f64; DEEPEST + 1],
-    /// Share of the starts, and of the steps from any other surface, that are on mirror or glass.
+    /// Fraction of the starts, and of the steps from any other surface, that land on mirror or glass.
     starts: f64,
     steps: f64,
 }
@@ -125,12 +127,12 @@ impl Pilot {
                 }
             }
         }
-        // none of so many steps: less than one
+        // if no step landed there, count half a step, because the fraction is below one step
         p.steps = if from > 0.0 { f64::max(onto, 0.5) / from } else { 0.0 };
         p
     }
 
-    /// So many events of hitting a lamp a path is worth to term k.
+    /// Expected number of lamp hits per path in term k.
     fn hits(&self, k: usize) -> f64 {
         let (sum, square) = (self.sum[k], self.square[k]);
         if square > 0.0 { (sum * sum / square / f64::from(WALKS)).min(1.0) } else { 1.0 }

@@ -1,25 +1,26 @@
-//! Whether the variance of long paths is finite: how fast the second moment of their weight grows, measured.
+//! Measures whether the variance of long paths is finite: the growth of the second moment of their weight.
 //!
 //! ```text
 //! M = E[ w²/s · … ]: second moments from vertex to vertex        Var[Σ_k α_k E(x_k)] < ∞  if  r(M) < 1, or if α stays bounded and r(T) < 1
 //!
-//! n walkers with throughputs α:   one step each, factor (α'/α)²·s   →   g = mean factor   →   drawn anew in proportion to it
+//! n walkers with throughputs α:   one step each, factor (α'/α)²·s   →   g = mean factor   →   resampled in proportion to it
 //! r(M) ≈ exp(mean of ln g over the last steps)
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | w | weight of a step, whatever the material, the guide and the way directions are drawn | |
-//! | s | survival of roulette, more than 1 where paths split | [`WeightedWalk::q`] |
-//! | r(M) | with its standard error from independent populations | [`Growth::rate`] |
+//! | w | weight of a step; it depends on the material, the guide and the sampling of directions | |
+//! | s | survival probability of roulette, more than 1 where paths split | [`WeightedWalk::q`] |
+//! | r(M) | growth per vertex, with its standard error from independent populations | [`Growth::rate`] |
 //! | max α | the largest throughput that any walker had | [`Growth::largest`] |
 //!
-//! Drawing the walkers anew keeps their number while M acts on them: they come to stand where second moments are large, as a power
-//! iteration would. What none of them ever finds is not measured. Where nothing has to be measured, because surfaces are Lambertian,
-//! [`proved`] says so: with s = ρ M is T itself, and with constant s it is bounded by max ρ²/s.
+//! Resampling keeps the number of walkers constant while M acts on them. As in a power iteration, the walkers gather where
+//! second moments are large. A part of the scene that no walker finds is not measured. If all surfaces are Lambertian,
+//! nothing has to be measured, and [`proved`] returns true: with s = ρ, M is T itself, and with constant s it is bounded by
+//! max ρ²/s.
 //!
-//! Reference: the same is done to find the largest eigenvalue of transfer operators, with walkers that multiply and die; Grassberger,
-//! *Go with the winners* (2002).
+//! Reference: the same method finds the largest eigenvalue of transfer operators, with walkers that multiply and die;
+//! Grassberger, *Go with the winners* (2002).
 
 use crate::engine::Settings;
 use crate::estimator::Roulette;
@@ -30,29 +31,30 @@ use crate::scene::{Scene, Vertex};
 use crate::terms::Variance;
 use rayon::prelude::*;
 
-/// Independent populations, their size, steps of each, and the first that count.
+/// Number of independent populations, walkers in each, steps of each walker, and the first step that counts.
 const POPULATIONS: u32 = 8;
 const WALKERS: usize = 256;
 const STEPS: usize = 96;
 const SETTLED: usize = 40;
-/// Standard errors that a rate must be away from 1; with seven degrees of freedom it is wrong once in 200 times.
+/// Number of standard errors by which a rate must differ from 1. With seven degrees of freedom the decision is wrong once in
+/// 200 times.
 pub(crate) const CLEAR: f64 = 4.0;
-/// Throughputs above this have grown, and not by rounding.
+/// A throughput above this value has grown, and not only by rounding.
 const GROWN: f32 = 1.001;
 
-/// How fast a moment of the weight grows in one channel.
+/// Growth of a moment of the weight in one channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Growth {
-    /// Its factor per vertex.
+    /// Factor by which the moment grows per vertex.
     pub rate: f64,
-    /// Standard error.
+    /// Standard error of the factor.
     pub std_error: f64,
-    /// The largest throughput seen.
+    /// The largest throughput of any walker.
     pub largest: f32,
 }
 
 impl Growth {
-    /// What that says of the variance.
+    /// Tells whether the variance is finite, as far as this growth shows.
     pub fn variance(&self) -> Variance {
         let off = CLEAR * self.std_error;
         if self.largest <= GROWN || self.rate + off < 1.0 {
@@ -64,7 +66,7 @@ impl Growth {
         }
     }
 
-    /// In words, after the name of what is estimated; none where the variance is finite.
+    /// A sentence that follows the name of what is estimated; None if the variance is finite.
     pub fn doubt(&self) -> Option<String> {
         let Self { rate, std_error, .. } = self;
         let what = match self.variance() {
@@ -72,21 +74,23 @@ impl Growth {
             Variance::Infinite => "has infinite variance",
             Variance::Unknown => "may have infinite variance",
         };
-        Some(format!("{what}:\nthe second moment of a path's weight grows by {rate:.4} ± {std_error:.4} per vertex"))
+        Some(format!(
+            "{what}:\nthe second moment of a path's weight grows by a factor of {rate:.4} ± {std_error:.4} per vertex"
+        ))
     }
 }
 
 /// A walk that can be followed step by step.
 pub trait WeightedWalk: Sync {
-    /// Where it stands.
+    /// State of a walk.
     type State: Copy + Send;
-    /// Where walker `i` of so many starts.
+    /// Start of walker `i`.
     fn start(&self, i: usize, rng: &mut Rng) -> Option<Self::State>;
     /// One step and its weight.
     fn step(&self, at: &Self::State, rng: &mut Rng) -> Option<(Self::State, Rgb)>;
-    /// q at vertex v with this throughput.
+    /// q at vertex v for this throughput and state.
     fn q(&self, v: usize, throughput: Rgb, at: &Self::State) -> f32;
-    /// What it carries at the start.
+    /// Throughput at the start.
     fn lit(&self) -> Rgb;
 }
 
@@ -96,7 +100,7 @@ pub struct FromEye<'a, T, S, Q> {
     pub t: &'a T,
     /// Where paths start.
     pub sensor: &'a S,
-    /// How they end: q at vertex v with this throughput.
+    /// Roulette: q at vertex v for this throughput and state.
     pub q: Q,
 }
 
@@ -122,11 +126,11 @@ where
     }
 }
 
-/// Walks from the light under a schedule.
+/// Walks from the light with a roulette schedule.
 pub struct FromLight<'a, T> {
     /// The transport.
     pub t: &'a T,
-    /// How they end.
+    /// The roulette schedule of the walks.
     pub roulette: &'a Roulette,
 }
 
@@ -150,7 +154,7 @@ where
     }
 }
 
-/// How fast the moment of that order (2 for the variance) grows from vertex `from` on: in the channel where it grows fastest.
+/// Growth of the moment of that order (2 for the variance) from vertex `from` on, in the channel where it grows fastest.
 pub fn growth(walk: &impl WeightedWalk, from: usize, order: i32, seed: u64) -> Growth {
     let channels = (0..3).filter(|&c| walk.lit()[c] > 0.0);
     let all = channels.map(|c| in_channel(walk, from, order, c, Key::new(seed, "growth of moments")));
@@ -166,7 +170,7 @@ fn in_channel(walk: &impl WeightedWalk, from: usize, order: i32, channel: usize,
     let runs: Vec<(f64, f32)> =
         (0..POPULATIONS).into_par_iter().map(|p| population(walk, from, order, channel, key.branch(p))).collect();
     let largest = runs.iter().fold(0.0, |a: f32, r| a.max(r.1));
-    // a population that has died out grows by 0
+    // a population whose walkers have all ended has growth 0
     if runs.iter().all(|r| r.0 == f64::NEG_INFINITY) {
         return Growth { rate: 0.0, std_error: 0.0, largest };
     }
@@ -183,7 +187,7 @@ struct Walker<S> {
     throughput: Rgb,
 }
 
-/// The mean of ln g, and the largest throughput.
+/// Follows one population. Returns the mean of ln g, and the largest throughput.
 fn population<W: WeightedWalk>(walk: &W, from: usize, order: i32, channel: usize, key: Key) -> (f64, f32) {
     let rng = |i: usize, step: usize, purpose: Purpose| Rng::at(key, i as u32, 0, step, purpose);
     let begin = |i: usize| {
@@ -213,7 +217,7 @@ fn population<W: WeightedWalk>(walk: &W, from: usize, order: i32, channel: usize
         if step >= SETTLED {
             sum += (total / factors.len() as f64).ln();
         }
-        // as many walkers as before, evenly spaced over the sums of the factors
+        // as many walkers as before, evenly spaced over the cumulative sums of the factors
         let each = total / WALKERS as f64;
         let mut at = each * f64::from(rng(0, step, Purpose::Roulette).one());
         let (mut up_to, mut next) = (0.0, Vec::with_capacity(WALKERS));
@@ -229,7 +233,8 @@ fn population<W: WeightedWalk>(walk: &W, from: usize, order: i32, channel: usize
     (sum / (STEPS - SETTLED) as f64, largest)
 }
 
-/// Whether it is proved that the variance is finite: Lambertian surfaces whose directions are drawn by the cosine, without a guide.
+/// Returns true if the variance is proved to be finite. This needs Lambertian surfaces, directions drawn by the cosine, and
+/// no guide; with constant q, also ρ² < 1 − q.
 pub fn proved(scene: &Scene, sampling: Sampling, roulette: &Roulette) -> bool {
     let lambertian =
         |side: u32| matches!(scene.bsdf(&Vertex { side, ..Vertex::default() }), Bsdf::Diffuse(_) | Bsdf::Black);
@@ -247,13 +252,13 @@ pub fn proved(scene: &Scene, sampling: Sampling, roulette: &Roulette) -> bool {
     }
 }
 
-/// What is found of a walk whose schedule is the same everywhere from a vertex on: nothing where its variance is finite.
+/// Measures a walk whose schedule does not change any more from vertex `settled` on. None if its variance is finite.
 pub(crate) fn doubt(walk: &impl WeightedWalk, settled: usize, settings: &Settings) -> Option<Growth> {
     let found = growth(walk, settled, 2, settings.seed);
     (found.variance() != Variance::Finite).then_some(found)
 }
 
-/// The same of walks from the eye under a schedule.
+/// The same for walks from the eye with a roulette schedule.
 pub(crate) fn doubt_from_eye<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,

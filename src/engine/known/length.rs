@@ -1,6 +1,6 @@
-//! How long paths are, from a few of them: what a run is going to cost.
+//! Length of paths, measured on a few of them, from which the cost of a run is predicted.
 //!
-//! With survival ρ and no way out a path has 1/(1 − ρ) vertices in the mean: 1000 where ρ = 0.999.
+//! With survival probability ρ and no opening, a path has 1/(1 − ρ) vertices on average: 1000 for ρ = 0.999.
 
 use crate::engine::Settings;
 use crate::estimator::{PathTracer, Plan, Roulette};
@@ -10,19 +10,19 @@ use crate::scene::Scene;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Paths that are tried.
+/// Number of paths that are tried.
 const TRIED: u32 = 64;
 
-/// Rays of a path in the mean, and their time.
+/// Mean number of rays of a path, and the time that they take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Length {
     /// Rays per path.
     pub rays: f64,
-    /// Seconds per path of one thread.
+    /// Seconds per path on one thread.
     pub seconds: f64,
 }
 
-/// Paths under a schedule, tried.
+/// Traces a few paths with a roulette schedule.
 pub fn length(scene: &Scene, roulette: &Roulette, settings: &Settings) -> Length {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let tracer = PathTracer(Plan { roulette: roulette.clone(), ..settings.plan() });

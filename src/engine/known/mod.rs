@@ -1,14 +1,15 @@
-//! What is known of a scene before it is solved: what is missing, what is in doubt, what would never end.
+//! Examines a scene before it is solved: light that will be missing, results that will be doubtful, paths that would never
+//! end.
 //!
 //! | question | place |
 //! |---|---|
-//! | which surfaces coincide and differ, and are seen | [`coplanar::undecided`] |
-//! | which paths a way of sampling can never find | [`unsampled::unsampled`] |
-//! | which it finds too rarely | [`doubts::doubts`] |
+//! | which visible surfaces coincide and differ | [`coplanar::undecided`] |
+//! | which paths a sampling method can never find | [`unsampled::unsampled`] |
+//! | which paths it finds too rarely | [`doubts::doubts`] |
 //! | whether the variance of long paths is finite | [`growth`](mod@growth) |
-//! | whether light gets out | [`trap::trapped`] |
-//! | how paths end that nothing else ends | [`resort::with_last_resort`] |
-//! | how long they are | [`length`](mod@length) |
+//! | whether light can leave the scene | [`trap::trapped`] |
+//! | where paths end that nothing else ends | [`resort::with_last_resort`] |
+//! | how long paths are | [`length`](mod@length) |
 
 pub mod coplanar;
 pub mod doubts;

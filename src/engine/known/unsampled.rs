@@ -1,17 +1,18 @@
-//! What a way of sampling cannot find in a scene: said in words, never silently dark.
+//! Paths that a sampling method cannot find in a scene. They are reported in words, so that no light is missing silently.
 //!
-//! Two kinds of things have no area in ray space: lights that are a point or a direction, and the reflections of mirrors and
-//! glass. A path can be found from the eye (E … ), from the light (… L), or by linking two walks; a link needs
-//! a vertex on each side that is no delta vertex, a hit needs a light that has area. With S a delta vertex and D any other:
+//! Two kinds of things have no area in the space of rays: lights that are a point or a direction, and reflections by mirrors
+//! and glass. A path can be found from the eye (E … ), from the light (… L), or by a link between two walks. A link needs a
+//! vertex on each side that is not a delta vertex, and a hit needs a light with area. With S for a delta vertex and D for
+//! any other vertex:
 //!
-//! | way | does not see | from k = |
+//! | sampling method | cannot find | from k = |
 //! |---|---|---|
-//! | walks from the eye, `scatter` | paths to a point or a direction | 1 |
-//! | walks from the eye, with connections | such paths whose last vertex is S | 2 |
-//! | walks from the light | paths whose first vertex is S | 1 |
-//! | walks from both ends | paths to a point or a direction without two neighbours that can be linked | 3 |
+//! | walks from the eye, `scatter` | paths to point or directional lights | 1 |
+//! | walks from the eye, with connections | such paths whose last vertex before the light is S | 2 |
+//! | walks from the light | paths whose first vertex after the eye is S | 1 |
+//! | walks from both ends | paths to point or directional lights without two neighbouring vertices that can be linked | 3 |
 //!
-//! The reflection of a point in a mirror, E S L, is seen by nobody. A coat of smooth plastic is S, too.
+//! No method finds the reflection of a point light in a mirror, E S L. A coat of smooth plastic counts as S, too.
 
 use crate::engine::estimator::{Begins, Estimator};
 use crate::estimator::Technique;
@@ -24,10 +25,10 @@ pub fn unsampled(scene: &Scene, estimator: Option<Estimator>, technique: Techniq
     let missing = match estimator.map_or(Begins::AtEye, Estimator::begins) {
         Begins::AtLight => delta.then_some((1, "what the eye sees in mirrors or glass")),
         Begins::AtBoth => {
-            (delta && no_area).then_some((3, "light of a point or a direction between mirrors or glass at both ends"))
+            (delta && no_area).then_some((3, "point or directional lights on paths with mirrors or glass at both ends"))
         }
-        Begins::AtEye if technique == Technique::Scatter => no_area.then_some((1, "light of a point or a direction")),
-        Begins::AtEye => (delta && no_area).then_some((2, "light of a point or a direction through mirrors or glass")),
+        Begins::AtEye if technique == Technique::Scatter => no_area.then_some((1, "point or directional lights")),
+        Begins::AtEye => (delta && no_area).then_some((2, "point or directional lights through mirrors or glass")),
     };
     missing.map(|(from, what)| UnsampledPaths { what: what.to_owned(), from }).into_iter().collect()
 }

@@ -1,11 +1,12 @@
-//! Form factors of closed rooms, made to lose no light.
+//! Correction of the form factors of closed rooms, so that no light is lost.
 //!
 //! ```text
 //! F'ᵢⱼ = dᵢ Fᵢⱼ dⱼ        Σⱼ F'ᵢⱼ = 1        Aᵢ F'ᵢⱼ = Aⱼ F'ⱼᵢ as before
 //! ```
 //!
-//! Where nothing can leave, a row sum that is off by ε makes light at albedo ρ wrong by about ε/(1 − ρ): 1 % of an error becomes
-//! a factor at albedo 0.99. The numbers dᵢ are found by dᵢ ← √(dᵢ/Σⱼ Fᵢⱼ dⱼ).
+//! In a closed room no light can leave, so every row of F must sum to 1. If a row sum is wrong by ε, the light at albedo ρ
+//! is wrong by about ε/(1 − ρ): at albedo 0.99, an error of 1 % becomes an error of about 100 %. The scaling factors dᵢ are
+//! found by the iteration dᵢ ← √(dᵢ/Σⱼ Fᵢⱼ dⱼ).
 //!
 //! Reference: Sinkhorn and Knopp, *Concerning nonnegative matrices and doubly stochastic matrices* (1967); van Leersum, *A method
 //! for determining a consistent set of radiation view factors* (1989).
@@ -13,15 +14,16 @@
 use super::FormFactors;
 use rayon::prelude::*;
 
-/// Sums this far from 1 are no rounding, and no fine mesh either.
+/// A row sum this far from 1 is not caused by rounding or by a fine mesh.
 const WRONG: f64 = 0.1;
-/// Sums this near to 1 are left alone.
+/// Row sums this close to 1 need no correction.
 const RIGHT: f64 = 1e-6;
-/// Rounds at most; what they leave is what the row sums then show.
+/// Maximum number of iterations. An error that remains is visible in the row sums.
 const ROUNDS: usize = 500;
 
 impl FormFactors {
-    /// Scales the rows that are `inside` until they sum to 1, if they nearly do so already; whether it did.
+    /// Scales the rows of the patches that are `inside` the closed room until they sum to 1. Returns true if it did. It does
+    /// nothing if the sums are already right, or if they are so wrong that scaling would hide an error.
     ///
     /// ```
     /// use fredholm::operator::form_factor::FormFactors;

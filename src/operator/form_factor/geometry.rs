@@ -1,4 +1,4 @@
-//! Form factors of polygons that see each other whole.
+//! Form factors of polygons with nothing between them.
 //!
 //! ```text
 //! point → polygon    F = (1/2π) |Σᵢ θᵢ n·Γᵢ|                                         (Lambert 1760)
@@ -7,22 +7,23 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | θᵢ, Γᵢ | angle an edge spans seen from the point, unit normal of that fan | [`lambert`] |
+//! | θᵢ, Γᵢ | angle that edge i spans as seen from the point; unit normal of the triangle from the point to the edge | [`lambert`] |
 //! | n | normal at the point | |
-//! | g(u) | ½ ln(u² + h²): ln r between parallel lines at distance h | |
-//! | g₁, g₂ | its first and second antiderivative | [`g1`], [`g2`] |
+//! | g(u) | ½ ln(u² + h²): ln r between parallel lines at distance h, with offset u along them | |
+//! | g₁, g₂ | first and second antiderivative of g | [`g1`], [`g2`] |
 //!
-//! Parallel edges, also touching ones, integrate in closed form, so boxes are exact to rounding. Other edges take
-//! Gauss points on the first edge and g₁ on the second, the first halved towards the point where they meet.
-//! Far pairs take Lambert's formula on a small Gauss grid of the smaller polygon.
+//! Pairs of parallel edges are integrated in closed form, even if they touch, so that boxes are exact up to rounding. For
+//! other pairs, Gauss quadrature is used on the first edge and g₁ on the second. The first edge is halved repeatedly towards
+//! the point where the edges meet. For distant polygons, Lambert's formula is evaluated on a small Gauss grid on the smaller
+//! polygon.
 
 use crate::operator::patches::polygon::{area_vector, centroid, clip, radius_about};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// The share of the hemisphere (cosine-weighted) around the unit normal `n` at `p` that a convex polygon covers.
+/// The cosine-weighted share of the hemisphere around the unit normal `n` at `p` that a convex polygon covers.
 ///
-/// The polygon may show either side; what lies below the horizon of `p` is cut off.
+/// Either side of the polygon may face `p`. The part below the horizon of `p` is cut off.
 ///
 /// ```
 /// use fredholm::operator::form_factor::point_to_polygon;
@@ -36,7 +37,7 @@ pub fn point_to_polygon(p: DVec3, n: DVec3, polygon: &[DVec3]) -> f64 {
     lambert(p, n, &above).abs()
 }
 
-/// The share of the diffuse power leaving the front of `a` that arrives at the front of `b`, nothing in between.
+/// The share of the diffuse power leaving the front of `a` that arrives at the front of `b`, with nothing in between.
 ///
 /// ```
 /// use fredholm::operator::form_factor::polygon_to_polygon;
@@ -59,7 +60,7 @@ pub fn polygon_to_polygon(a: &[DVec3], b: &[DVec3]) -> f64 {
     }
 }
 
-/// What the formulas need to know of a polygon beside its corners.
+/// Properties of a polygon that the formulas use besides its corners.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
     pub(super) normal: DVec3,
@@ -68,7 +69,7 @@ pub(super) struct Side {
     pub(super) area: f64,
 }
 
-/// The parts of two polygons that lie in front of each other, if there are any.
+/// The parts of two polygons that lie in front of each other; `None` if there are none.
 pub(super) fn facing<'a>(
     a: &'a [DVec3],
     sa: &Side,
@@ -107,14 +108,16 @@ fn in_front<'a>(p: &'a [DVec3], of: &Side, own: &Side, out: &'a mut Vec<DVec3>) 
     (out.len() > 2).then_some(out)
 }
 
-/// A₁F₁₂ of two polygons in front of each other.
+/// A₁F₁₂ of two polygons that lie in front of each other.
 pub(super) fn exchange(a: &[DVec3], sa: &Side, b: &[DVec3], sb: &Side) -> f64 {
-    // Gauss points go on the smaller polygon: what counts is how far the other is, in its radii
+    // Gauss points lie on the smaller polygon, because the error depends on the distance to the other polygon in radii of
+    // this one
     let ((small, ss), (large, sl)) = if sa.radius <= sb.radius { ((a, sa), (b, sb)) } else { ((b, sb), (a, sa)) };
     let distance = (ss.centre - sl.centre).length() - sl.radius;
     if distance < 5.0 * ss.radius {
         let value = contour(a, b, sa.centre.distance_squared(sb.centre));
-        // parts that touch in a sliver exchange less than the rounding of the sum; anything worse stays visible
+        // parts that touch in a sliver exchange less than the rounding error of the sum; a larger negative value is an error
+        // and is returned
         let rounding = 1e-13 * ss.radius * sl.radius;
         return if value < 0.0 && value > -rounding { 0.0 } else { value };
     }
@@ -123,7 +126,7 @@ pub(super) fn exchange(a: &[DVec3], sa: &Side, b: &[DVec3], sb: &Side) -> f64 {
     match *small {
         [p, q, r] => integrate([p, q, r, r], rule, at),
         [p, q, r, s] => integrate([p, q, r, s], rule, at),
-        // a fan of quadrilaterals, and a triangle if the number of corners is odd
+        // a fan of quadrilaterals, plus one triangle if the number of corners is odd
         _ => (1..small.len() - 1)
             .step_by(2)
             .map(|i| integrate([small[0], small[i], small[i + 1], small[(i + 2).min(small.len() - 1)]], rule, at))
@@ -131,7 +134,7 @@ pub(super) fn exchange(a: &[DVec3], sa: &Side, b: &[DVec3], sb: &Side) -> f64 {
     }
 }
 
-/// Σ θᵢ n·Γᵢ / 2π: positive where the polygon is clockwise seen from `x`. It must lie above the horizon.
+/// Σ θᵢ n·Γᵢ / 2π: positive if the polygon is clockwise as seen from `x`. The polygon must lie above the horizon.
 #[inline]
 fn lambert(x: DVec3, n: DVec3, polygon: &[DVec3]) -> f64 {
     let Some(&last) = polygon.last() else { return 0.0 };
@@ -141,7 +144,7 @@ fn lambert(x: DVec3, n: DVec3, polygon: &[DVec3]) -> f64 {
         let b = q - x;
         let c = a.cross(b);
         let sine = c.length();
-        // an edge whose line passes through x spans no fan
+        // an edge whose line passes through x spans no angle
         if sine > 0.0 {
             sum += sine.atan2(a.dot(b)) * n.dot(c) / sine;
         }
@@ -150,7 +153,7 @@ fn lambert(x: DVec3, n: DVec3, polygon: &[DVec3]) -> f64 {
     sum / TAU
 }
 
-/// Nodes and weights on [0, 1].
+/// Nodes and weights of Gauss quadrature on [0, 1].
 const GAUSS2: [(f64, f64); 2] = [(0.211_324_865_405_187_13, 0.5), (0.788_675_134_594_812_9, 0.5)];
 const GAUSS3: [(f64, f64); 3] = [
     (0.112_701_665_379_258_31, 0.277_777_777_777_777_8),
@@ -166,7 +169,7 @@ const GAUSS6: [(f64, f64); 6] = [
     (0.966_234_757_101_576, 0.085_662_246_189_585_17),
 ];
 
-/// A product rule on the bilinear image of the square; two equal corners make it a triangle.
+/// A product quadrature rule on the bilinear image of the unit square; two equal corners make it a triangle.
 fn integrate([p, q, r, s]: [DVec3; 4], rule: &[(f64, f64)], f: impl Fn(DVec3) -> f64) -> f64 {
     let (eu, ev, twist) = (q - p, s - p, p - q + r - s);
     let mut sum = 0.0;
@@ -179,7 +182,7 @@ fn integrate([p, q, r, s]: [DVec3; 4], rule: &[(f64, f64)], f: impl Fn(DVec3) ->
     sum
 }
 
-/// (1/2π) ∮∮ ln r dx₁·dx₂ with r measured in units of √`unit`, which changes nothing but rounding.
+/// (1/2π) ∮∮ ln r dx₁·dx₂. Lengths r are measured in units of √`unit`, which only affects rounding.
 fn contour(a: &[DVec3], b: &[DVec3], unit: f64) -> f64 {
     let scale = if unit > 0.0 { 1.0 / unit } else { 1.0 };
     let mut sum = 0.0;
@@ -211,7 +214,8 @@ fn contour(a: &[DVec3], b: &[DVec3], unit: f64) -> f64 {
     sum / TAU
 }
 
-/// ∫∫ ln r ds dt of two skew edges: Gauss on the first, halved until it is short against its distance to the second.
+/// ∫∫ ln r ds dt of two skew edges, by Gauss quadrature on the first edge. This edge is halved until it is no longer than
+/// its distance to the second.
 fn edge_pair(p: DVec3, along: DVec3, c: DVec3, other: DVec3, scale: f64, depth: u32) -> f64 {
     let length = along.length();
     let middle = p + 0.5 * along;
@@ -255,7 +259,7 @@ fn g2(u: f64, h: f64, h2: f64, scale: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The plain twin: the double area integral by the midpoint rule.
+    /// Independent reference: the double area integral by the midpoint rule.
     fn midpoint(a: &[DVec3; 4], b: &[DVec3; 4], m: usize) -> f64 {
         use crate::operator::patches::polygon::at;
         let points = |p: &[DVec3; 4]| -> Vec<(DVec3, f64)> {
@@ -315,7 +319,7 @@ mod tests {
 
     #[test]
     fn edges_that_touch_at_an_angle_converge() {
-        // a triangle prism is closed: the rows of skew, touching faces sum to 1
+        // a triangular prism is closed: the rows of its skew, touching faces sum to 1
         let [a, b, c] = [[0., 0., 0.], [1., 0., 0.], [0.3, 0.8, 0.]].map(DVec3::from);
         let up = DVec3::new(0.0, 0.0, 0.7);
         let faces: Vec<Vec<DVec3>> = vec![

@@ -1,4 +1,4 @@
-//! What must hold for every matrix of form factors.
+//! Properties that every matrix of form factors must have.
 //!
 //! ```text
 //! Σⱼ Fᵢⱼ = 1 (closed), ≤ 1 (open)        Aᵢ Fᵢⱼ = Aⱼ Fⱼᵢ        0 ≤ Fᵢⱼ ≤ 1
@@ -6,14 +6,14 @@
 
 use super::FormFactors;
 
-/// The invariants of a matrix as measured; printed with every run.
+/// The measured properties of a matrix of form factors; every run prints them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Invariants {
-    /// max |1 − Σⱼ Fᵢⱼ|: small in a closed scene.
+    /// Largest error of a row sum, max |1 − Σⱼ Fᵢⱼ|; it is small in a closed scene.
     pub closure: f64,
     /// Smallest row sum.
     pub row_sum_min: f64,
-    /// Largest row sum: above 1 by errors of F only.
+    /// Largest row sum; a value above 1 shows an error of F.
     pub row_sum_max: f64,
     /// Largest |AᵢFᵢⱼ − AⱼFⱼᵢ| relative to the larger of the two.
     pub reciprocity: f64,
@@ -55,7 +55,7 @@ impl Invariants {
     }
 }
 
-/// The larger of the two, and NaN if there is one: `f64::max` would hide it.
+/// The larger of two numbers; NaN if one is NaN, which `f64::max` would hide.
 fn worst(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
 }

@@ -6,13 +6,13 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | Fᵢⱼ | share of the diffuse power leaving i that arrives at j | [`FormFactors::f`] |
-//! | Aᵢ | true, uncovered area | [`FormFactors::area`] |
-//! | sᵢ | true over flat area | [`Patch::stretch`] |
-//! | Vᵢⱼ | visible share of the pair | [`VisibilitySampling`] |
+//! | Fᵢⱼ | share of the diffuse power leaving patch i that arrives at patch j | [`FormFactors::f`] |
+//! | Aᵢ | area of the true surface of patch i that no other surface covers, m² | [`FormFactors::area`] |
+//! | sᵢ | area of the true surface over area of its flat polygon | [`Patch::stretch`] |
+//! | Vᵢⱼ | visible share of the pair, in [0, 1] | [`VisibilitySampling`] |
 //!
-//! Two patches of one sphere, seen from inside, need no facets: there the kernel is the constant 1/4πR², so
-//! AᵢFᵢⱼ = Vᵢⱼ AᵢAⱼ/4πR², i = j included.
+//! Two patches on the inside of one sphere of radius R need no flat facets. There the kernel is the constant 1/4πR², so that
+//! AᵢFᵢⱼ = Vᵢⱼ AᵢAⱼ/4πR²; this includes i = j.
 
 mod closure;
 mod geometry;
@@ -33,33 +33,33 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use visibility::visible_share;
 pub use visibility::{Visibility, VisibilitySampling};
 
-/// The matrix F with the areas that make it symmetric.
+/// The matrix F of form factors, with the areas for which AᵢFᵢⱼ is symmetric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormFactors {
     /// Number of patches.
     pub n: usize,
-    /// Fᵢⱼ at `i·n + j`.
+    /// The form factors: Fᵢⱼ at `i·n + j`.
     pub f: Vec<f32>,
-    /// Aᵢ, m².
+    /// The areas Aᵢ of the patches, m².
     pub area: Vec<f64>,
-    /// Visibility rays traced.
+    /// Number of visibility rays traced.
     pub rays: u64,
 }
 
-/// The computation was stopped before its end.
+/// The computation was stopped before it finished.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the form factors were stopped before their end")]
+#[error("the computation of the form factors was stopped before it finished")]
 pub struct Stopped;
 
-/// More possible blockers than this per pair are not listed; the visibility test then looks at the whole scene.
+/// Largest number of possible blockers listed per pair. With more, the visibility test searches the whole scene.
 const MAX_LISTED: usize = 32;
 
 impl FormFactors {
-    /// All form factors, the upper triangle computed and the lower mirrored. The result does not depend on the number
-    /// of threads.
+    /// Computes all form factors: the upper triangle by integration, the lower triangle by reciprocity. The result does not
+    /// depend on the number of threads.
     ///
     /// # Errors
-    /// [`Stopped`] when `progress` says so.
+    /// [`Stopped`] if `progress` asks to stop.
     pub fn new(
         patches: &Patches,
         visibility: &dyn Visibility,
@@ -98,13 +98,13 @@ impl FormFactors {
         &self.f[i * self.n..(i + 1) * self.n]
     }
 
-    /// Closure, reciprocity and bounds, measured.
+    /// Measures closure (row sums), reciprocity and bounds of the entries.
     pub fn invariants(&self) -> Invariants {
         Invariants::of(self)
     }
 }
 
-/// Fⱼᵢ = Fᵢⱼ Aᵢ/Aⱼ for i < j, tile by tile for the sake of the cache.
+/// Sets Fⱼᵢ = Fᵢⱼ Aᵢ/Aⱼ for i < j, tile by tile so that the data stay in the cache.
 fn mirror(f: &mut [f32], area: &[f64]) {
     const TILE: usize = 64;
     let n = area.len();
@@ -138,7 +138,7 @@ struct Scratch {
     sight: Sight,
 }
 
-/// What the look from one patch to another works with.
+/// Working memory for the visibility test of one pair.
 struct Sight {
     among: Vec<u32>,
     segments: Segments,
@@ -153,11 +153,11 @@ impl Scratch {
 }
 
 impl Pairs<'_> {
-    /// Aᵢ Fᵢⱼ.
+    /// The product Aᵢ Fᵢⱼ, m².
     fn exchange(&self, i: usize, j: usize, work: &mut Scratch) -> f64 {
         let (a, b) = (&self.patches[i], &self.patches[j]);
         if let (Some((_, radius)), true) = (a.ball, a.ball == b.ball) {
-            // a ball seen from outside is convex: no point of it sees another
+            // a sphere seen from outside is convex: no point of it sees another
             if !(a.is_concave() && b.is_concave()) {
                 return 0.0;
             }
@@ -173,7 +173,7 @@ impl Pairs<'_> {
         if share == 0.0 { 0.0 } else { share * a.stretch * b.stretch * exchange(pa, sa, pb, sb) }
     }
 
-    /// Vᵢⱼ of the two parts.
+    /// The visible share Vᵢⱼ of the two polygons `pa` and `pb`.
     fn visible(
         &self,
         i: usize,
@@ -227,7 +227,7 @@ mod tests {
     use glam::DVec3;
     use std::sync::atomic::AtomicBool;
 
-    /// A room with a turned block, a ball and a disk in it.
+    /// A room that contains a rotated block, a sphere and a disk.
     fn clutter() -> Description {
         let geometries = [
             Geometry::Box { min: DVec3::NEG_ONE, max: DVec3::ONE, rotate_y: 0.0, inward: true },
@@ -280,7 +280,7 @@ mod tests {
                 let pair = (i * patches.len() + j) as u64;
                 let (share, _) = visible_share(fine, (a, pa), (b, pb), true, pair, &mut segments, |segments| {
                     for k in 0..LANES {
-                        // a point below the true horizon of the other is no pair of the operator
+                        // if one point is below the true horizon of the other, the operator does not use the pair
                         let [x, y] = segments.ends(k, a, b);
                         let r = y.position - x.position;
                         let apart = x.normal.dot(r) <= 0.0 || y.normal.dot(r) >= 0.0;

@@ -1,11 +1,11 @@
-//! Which surfaces could stand between two patches at all.
+//! Search for the surfaces that may block light between two patches.
 //!
 //! ```text
 //! hull(P ∪ Q) ∩ B = ∅   if for some axis   max axis·B ≤ min axis·(P ∪ Q)   or the other way round
 //! ```
 //!
-//! A finite set of axes only ever proves that B is harmless, never that it blocks (after Haines and Wallace 1991,
-//! "Shaft culling for efficient ray-cast radiosity").
+//! P and Q are the two patches, B is the surface. A finite set of axes can prove that B blocks nothing, but never that it
+//! blocks (after Haines and Wallace 1991, "Shaft culling for efficient ray-cast radiosity").
 
 use crate::operator::patches::{
     Patch,
@@ -14,7 +14,7 @@ use crate::operator::patches::{
 use crate::scene::Primitive;
 use glam::DVec3;
 
-/// A surface in the form the test needs.
+/// The shape of a surface, in the form that the test uses.
 #[derive(Clone, Debug)]
 enum Solid {
     Flat { corners: Vec<DVec3>, normal: DVec3, edges: Vec<DVec3> },
@@ -22,7 +22,7 @@ enum Solid {
     Sphere { radius: f64 },
 }
 
-/// A primitive that may block.
+/// A primitive that may block light.
 #[derive(Clone, Debug)]
 pub(super) struct Blocker {
     bounds: [DVec3; 2],
@@ -30,7 +30,7 @@ pub(super) struct Blocker {
     solid: Solid,
 }
 
-/// One end of a shaft: a polygon, and how far the true surface bulges from it.
+/// One end of a shaft: a polygon of a patch, and bounds that include the distance of the true surface from it.
 #[derive(Clone, Copy)]
 pub(super) struct End<'a> {
     pub(super) patch: &'a Patch,
@@ -47,7 +47,7 @@ impl<'a> End<'a> {
     }
 }
 
-/// How far the true surface is from the polygon.
+/// Largest distance of the true surface from the polygon, metres.
 fn bulge(patch: &Patch) -> f64 {
     patch.ball.map_or(0.0, |(c, r)| r - patch.normal.dot(patch.centre - c).abs())
 }
@@ -74,7 +74,7 @@ impl Blocker {
         Self { bounds, centre, solid }
     }
 
-    /// Lowest and highest value of `axis·x`, `axis` a unit vector.
+    /// Lowest and highest value of `axis·x` on the surface, for a unit vector `axis`.
     fn extent(&self, axis: DVec3) -> [f64; 2] {
         let about = |half: f64| {
             let m = axis.dot(self.centre);
@@ -87,7 +87,7 @@ impl Blocker {
         }
     }
 
-    /// May this surface cut a segment between the two ends? `false` is a proof that it does not.
+    /// Returns true if this surface may cut a segment between the two ends. `false` is a proof that it cuts none.
     pub(super) fn may_block(&self, a: &End<'_>, b: &End<'_>) -> bool {
         let tolerance = 1e-9 * (a.bounds[1].max(b.bounds[1]) - a.bounds[0].min(b.bounds[0])).max_element();
         let (lo, hi) = (a.bounds[0].min(b.bounds[0]), a.bounds[1].max(b.bounds[1]));
@@ -125,24 +125,24 @@ impl Blocker {
                 }
             }
         }
-        // from the line between the centres straight to the middle of the blocker
+        // the axis from the line between the two centres towards the middle of the blocker
         let out = (self.centre - a.patch.centre).reject_from(between).normalize_or_zero();
         !(separates(a.patch.normal) || separates(b.patch.normal) || (out != DVec3::ZERO && separates(out)))
     }
 }
 
-/// `end` lies on this sphere, and none of its points has the sphere between itself and the polygon of `other`.
+/// Returns true if `end` lies on this sphere and the sphere blocks no segment from `end` to the polygon of `other`.
 fn own_ball(end: &End<'_>, other: &End<'_>, centre: DVec3, radius: f64) -> bool {
     if end.patch.ball != Some((centre, radius)) {
         return false;
     }
     let corners = || other.polygon.iter().map(|q| *q - centre);
     if end.patch.is_concave() {
-        // a ball is convex: a chord of it stays inside
+        // a ball is convex: every chord stays inside
         let margin = if other.patch.ball == Some((centre, radius)) { 0.0 } else { bulge(other.patch) };
         return corners().all(|v| v.length() + margin <= radius * (1.0 + 1e-9));
     }
-    // above the tangent planes of the whole cone of directions the patch spans
+    // `other` lies above the tangent planes at all points of the patch, taken as a cone of directions
     let middle = (end.patch.centre - centre).normalize();
     let half = end.patch.polygon.iter().map(|p| (*p - centre).angle_between(middle)).fold(0.0, f64::max);
     let margin = bulge(other.patch);

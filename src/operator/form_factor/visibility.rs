@@ -4,18 +4,18 @@
 //! V = Σ k(xₛ, yₛ) v(xₛ, yₛ) / Σ k(xₛ, yₛ)        k = cos θₓ cos θᵧ / r²,  v = 1 if the segment is free
 //! ```
 //!
-//! Numerator and denominator share the samples, so V is exactly 1 for a clear pair and reciprocity holds to rounding.
-//! The samples follow the additive recurrence of the four-dimensional golden ratio (Roberts 2018), shifted at random
-//! per pair so that the errors of a row do not add up.
+//! Numerator and denominator use the same samples. Therefore V is exactly 1 for a pair without blockers, and reciprocity
+//! holds up to rounding. The samples follow the additive recurrence of the four-dimensional golden ratio (Roberts 2018).
+//! Each pair has its own random shift, so that the errors in a row do not add up.
 
 use crate::operator::patches::{BruteForce, LANES, Lane, Patch, Segments, SurfacePoint};
 use glam::DVec3;
 use pulp::{Arch, Simd};
 
-/// Answers whether two surface points see each other.
+/// A test whether two surface points see each other.
 pub trait Visibility: Sync {
-    /// Is the open segment between the two points free? The points lie on the true surface; implementations move them
-    /// off it along their normals.
+    /// Returns true if nothing blocks the open segment between the two points. The points lie on the true surface;
+    /// implementations move them off it along their normals.
     fn visible(&self, a: SurfacePoint, b: SurfacePoint) -> bool;
 }
 
@@ -25,12 +25,12 @@ impl Visibility for BruteForce {
     }
 }
 
-/// Samples per pair that is not provably clear.
+/// Number of samples for a pair that is not provably unblocked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VisibilitySampling {
-    /// First look: 128.
+    /// Samples in the first pass; 128 by default.
     pub rays: u32,
-    /// Total for pairs of which the first look saw a part: 576.
+    /// Total samples for a pair that the first pass found partly visible; 576 by default.
     pub refined: u32,
 }
 
@@ -40,11 +40,11 @@ impl Default for VisibilitySampling {
     }
 }
 
-/// A patch with the part of it that can take part in the exchange.
+/// A patch, and the part of its polygon that faces the other patch.
 pub(super) type Part<'a> = (&'a Patch, &'a [DVec3]);
 
-/// The visible share of the pair (in [0, 1]) and the rays it took. `flat_kernel` is off for pairs on one sphere, where k
-/// is constant; `block` marks the segments that are not free.
+/// The visible share of the pair, in [0, 1], and the number of rays used. `flat_kernel` is false for pairs on one sphere,
+/// where k is constant. `block` marks the segments that are blocked.
 pub(super) fn visible_share(
     sampling: VisibilitySampling,
     a: Part<'_>,
@@ -61,7 +61,7 @@ pub(super) fn visible_share(
         for first in (from..to).step_by(LANES) {
             golden(shift, first, &mut numbers);
             segments.place(a, b, &numbers, flat_kernel);
-            // the last batch may be longer than asked for
+            // the last batch may hold more samples than required; ignore the surplus
             segments.weight[LANES.min((to - first) as usize)..].fill(0.0);
             block(segments);
             tally(&segments.weight, &segments.blocked, &mut seen);
@@ -80,7 +80,7 @@ pub(super) fn visible_share(
 const STEP: [f64; 4] =
     [0.856_674_883_854_502_9, 0.733_891_856_627_125_9, 0.628_706_721_037_806_6, 0.538_597_257_223_612_5];
 
-/// Points `first`, `first` + 1, … of the additive recurrence.
+/// Points `first`, `first` + 1, … of the additive recurrence, written to `numbers`.
 #[pulp::with_simd(golden = Arch::new())]
 #[inline(always)]
 fn golden_with_simd<S: Simd>(_simd: S, shift: [f64; 4], first: u32, numbers: &mut [Lane; 4]) {
@@ -92,7 +92,7 @@ fn golden_with_simd<S: Simd>(_simd: S, shift: [f64; 4], first: u32, numbers: &mu
     }
 }
 
-/// Sums in eight interleaved parts, so that they are the same whatever the width of the registers.
+/// Sums in eight interleaved parts, so that the result does not depend on the width of the vector registers.
 #[derive(Default)]
 struct Tally {
     free: [f64; 8],
@@ -120,7 +120,7 @@ fn tally_with_simd<'a, S: Simd>(_simd: S, weight: &'a Lane, blocked: &'a Lane, s
     sums.misses += used - free;
 }
 
-/// A number in [0, 1) per key (Steele, Lea and Flood 2014, SplitMix64).
+/// A pseudo-random number in [0, 1) for each key (Steele, Lea and Flood 2014, SplitMix64).
 fn uniform(key: u64) -> f64 {
     let mut z = key.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

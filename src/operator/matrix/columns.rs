@@ -1,32 +1,34 @@
-//! Columns of T: what one patch sends to all others.
+//! Columns of T: the light that one patch sends to all others.
 //!
 //! ```text
 //! T eⱼ = Σᵢ Tᵢⱼ eᵢ        Tᵢⱼ = ρᵢ Fᵢⱼ
 //! ```
 //!
-//! Both realisations hold F by rows; whoever sends light patch by patch asks once for a copy by columns.
+//! The dense matrix and the stored rays both hold F by rows. A solver that sends light patch by patch makes a copy by
+//! columns once.
 
 use super::{LinearOperator, PatchOperator, Rows};
 use rayon::prelude::*;
 
 /// The columns of an operator.
 pub trait Columns {
-    /// Calls `visit` with i and Tᵢⱼ, or with parts of it that sum to it, for every i whose Tᵢⱼ may not be 0.
+    /// Calls `visit` with i and Tᵢⱼ for every i whose Tᵢⱼ may be nonzero. An entry may arrive in several parts that sum to
+    /// Tᵢⱼ.
     fn visit(&self, j: usize, visit: impl FnMut(usize, f64));
 
-    /// Multiplications that this takes.
+    /// Number of multiplications of [`Columns::visit`] for column j.
     fn work(&self, j: usize) -> usize;
 
-    /// Multiplications of an application of T.
+    /// Number of multiplications of one application of T.
     fn whole(&self) -> usize;
 }
 
 /// An operator that can be copied by columns.
 pub trait Transposed: Rows {
-    /// The copy.
+    /// The type of the copy.
     type Columns: Columns;
 
-    /// T by columns.
+    /// Copies T by columns.
     fn columns(&self) -> Self::Columns;
 }
 
@@ -34,7 +36,7 @@ pub trait Transposed: Rows {
 #[derive(Clone, Debug)]
 pub struct PatchColumns {
     rho: Vec<f64>,
-    /// `n·j + i`: the share that i sees of j.
+    /// Fᵢⱼ at `n·j + i`.
     f: Vec<f32>,
 }
 

@@ -1,4 +1,4 @@
-//! The ends of the spectrum of T, by the method of Lanczos, with error bounds.
+//! The smallest and the largest eigenvalue of T by the method of Lanczos, with error bounds.
 //!
 //! ```text
 //! T V = V H + β v eᵀ        V: orthonormal in ⟨u, v⟩_w = Σ wᵢ uᵢ vᵢ,  H: tridiagonal
@@ -7,40 +7,41 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | w | the weight in which T is self-adjoint: A/ρ for a matrix over patches | [`Weight`] |
-//! | θ | Ritz value | [`Extremes::smallest`], [`Extremes::largest`] |
-//! | β \|s_last\| | residual ‖T u − θ u‖_w of its unit vector | [`Extremes::residual`] |
+//! | w | the weight in which T is self-adjoint: w = A/ρ for a matrix over patches | [`Weight`] |
+//! | θ | Ritz value: approximation of an eigenvalue | [`Extremes::smallest`], [`Extremes::largest`] |
+//! | β \|s_last\| | residual ‖T u − θ u‖_w of the Ritz vector u with ‖u‖_w = 1 | [`Extremes::residual`] |
 //!
-//! Vectors are made orthogonal to all before them, twice, so no eigenvalue appears as a ghost of another. The start is a fixed
-//! pseudo-random vector: an eigenvalue is missed only if its whole eigenspace is orthogonal to it.
+//! Each vector is made orthogonal to all previous ones, twice. Without this, rounding would produce spurious copies of
+//! eigenvalues. The start is a fixed pseudo-random vector: an eigenvalue is missed only if its whole eigenspace is
+//! orthogonal to this vector.
 //!
 //! Reference: Lanczos (1950); Parlett, *The Symmetric Eigenvalue Problem* (1980), chapter 13.
 
 use super::{LinearOperator, Weight};
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// The ends of the spectrum on the patches that count in the weight.
+/// Estimates of the smallest and the largest eigenvalue, on the patches with nonzero weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extremes {
-    /// The smallest Ritz value: not below the smallest eigenvalue.
+    /// The smallest Ritz value; it is never below the smallest eigenvalue.
     pub smallest: f64,
-    /// The largest Ritz value: not above the largest eigenvalue.
+    /// The largest Ritz value; it is never above the largest eigenvalue.
     pub largest: f64,
-    /// How far from them an eigenvalue is at most.
+    /// Error bounds: some eigenvalue lies within `residual[0]` of `smallest`, and some within `residual[1]` of `largest`.
     pub residual: [f64; 2],
-    /// Applications spent.
+    /// Number of applications of T.
     pub steps: usize,
 }
 
 impl Extremes {
-    /// [a, b] that holds the spectrum, as far as the residuals can tell.
+    /// An interval [a, b] that contains the spectrum, if the residuals bound the distance of the two ends correctly.
     pub fn bracket(&self) -> [f64; 2] {
         [self.smallest - self.residual[0], self.largest + self.residual[1]]
     }
 }
 
-/// Smallest and largest eigenvalue of T, self-adjoint in w, to a residual of `tolerance`, in at most `max_steps`
-/// applications.
+/// Smallest and largest eigenvalue of an operator T that is self-adjoint in `weight`. The iteration ends when both residuals
+/// are at most `tolerance`, or after `max_steps` applications.
 ///
 /// ```
 /// use fredholm::operator::{form_factor::FormFactors, matrix::{PatchOperator, extremes}};
@@ -62,18 +63,19 @@ pub fn extremes<T: LinearOperator + ?Sized>(t: &T, weight: &Weight, tolerance: f
     found
 }
 
-/// A Ritz value.
+/// A Ritz value with its error bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ritz {
-    /// θ.
+    /// The Ritz value θ.
     pub value: f64,
-    /// Some eigenvalue lies within this of it.
+    /// Some eigenvalue lies within this distance of θ.
     pub residual: f64,
 }
 
-/// The `count` largest and the `count` smallest eigenvalues of T, self-adjoint in w, by falling distance from 0, to a
-/// residual of `tolerance`, in at most `max_steps` applications. Only positive ones come first, only negative ones second;
-/// one that is several times there may be listed once.
+/// The `count` largest and the `count` smallest eigenvalues of an operator T that is self-adjoint in `weight`, ordered by
+/// decreasing distance from 0. The first list holds only positive values, the second only negative ones. A multiple
+/// eigenvalue may be listed once. The iteration ends when all residuals are at most `tolerance`, or after `max_steps`
+/// applications.
 ///
 /// ```
 /// use fredholm::operator::{form_factor::FormFactors, matrix::{PatchOperator, leading}};
@@ -102,7 +104,7 @@ pub fn leading<T: LinearOperator + ?Sized>(
     found
 }
 
-/// Shows the Ritz values, ascending, after every `every` steps and at the end, until `done` says so.
+/// Passes the Ritz values, ascending, to `done` after every `every` steps and at the end. Stops when `done` returns true.
 fn iterate<T: LinearOperator + ?Sized>(
     t: &T,
     weight: &Weight,
@@ -110,7 +112,7 @@ fn iterate<T: LinearOperator + ?Sized>(
     max_steps: usize,
     mut done: impl FnMut(&[Ritz], usize) -> bool,
 ) {
-    // ρ where T is diag(ρ) F: the first bounce of a room that is about uniformly lit
+    // the start is A/w, times random factors; for T = diag(ρ) F this is ρ, about the first bounce in a uniformly lit room
     let rho = t.area().iter().zip(weight.values()).map(|(a, w)| if *w > 0.0 { a / w } else { 0.0 });
     let mut v: Vec<f64> = rho.enumerate().map(|(i, r)| r * scrambled(i as u64)).collect();
     let (mut basis, mut diagonal, mut below): (Vec<Vec<f64>>, Vec<f64>, Vec<f64>) = (vec![], vec![], vec![]);
@@ -132,7 +134,7 @@ fn iterate<T: LinearOperator + ?Sized>(
             }
         }
         length = weight.norm(&v);
-        // nothing new is left: the Ritz values are eigenvalues
+        // the Krylov space is exhausted: the Ritz values are eigenvalues
         let last = steps == max_steps || length <= 1e-14 * start;
         let looked = (last || steps % every == 0) && done(&ritz(&diagonal, &below, length), steps);
         if looked || last {
@@ -142,7 +144,7 @@ fn iterate<T: LinearOperator + ?Sized>(
     }
 }
 
-/// The Ritz values of a tridiagonal matrix, ascending.
+/// The Ritz values of a tridiagonal matrix, ascending; `next` is β, the next entry below the diagonal.
 fn ritz(diagonal: &[f64], below: &[f64], next: f64) -> Vec<Ritz> {
     let m = diagonal.len();
     let entry = |i: usize, j: usize| match i.abs_diff(j) {

@@ -1,4 +1,4 @@
-//! Which patches light reaches: a search through the graph of T.
+//! The patches that light reaches, found by a search through the graph of T.
 //!
 //! ```text
 //! R₀ = supp E,    Rₙ₊₁ = Rₙ ∪ { i : Tᵢⱼ > 0 for some j in Rₙ },    R = ∪ Rₙ = supp L
@@ -6,15 +6,17 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | sends | patches that emit, or are reached and reflect | `sends` |
-//! | R | patches at which light arrives, or starts | [`reached`] |
+//! | sends | patches that send light: they emit, or light reaches them and they reflect it | `sends` |
+//! | R | patches that emit light or that light reaches | [`reached`] |
 //!
-//! Outside R the solution is 0 whatever T does there. What light never reaches may keep all the light that it does not get: there
-//! I − T is singular, and r(T) is not the rate at which anything decays. On R alone both are what they should be.
+//! Outside R the solution is 0, whatever T does there. A part of the scene that light never reaches may have a reflectance
+//! of 1: then I − T is singular there, and the spectral radius r(T) is not the rate at which the terms decay. Restricted to
+//! R, I − T and r(T) describe the light that exists.
 
 use rayon::prelude::*;
 
-/// Whether light reaches each of `n` patches. `sees(i, sends)` tells whether patch i sees any patch that sends light.
+/// For each of `n` patches, whether light reaches it. The function `sees(i, sends)` tells whether patch i sees any patch
+/// that sends light.
 ///
 /// ```
 /// use fredholm::operator::matrix::reached;

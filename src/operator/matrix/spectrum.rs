@@ -1,37 +1,39 @@
-//! The spectral radius of `diag(w) F`, with a lower bound at every step.
+//! The spectral radius of `diag(w) F` by power iteration, with a lower bound at every step.
 //!
 //! ```text
 //! S = √(wᵢAᵢ) Fᵢⱼ √(wⱼ/Aⱼ)         symmetric, same non-zero eigenvalues as diag(w) F
 //! r ≥ ‖S v‖ / ‖v‖ ≥ ‖v·S v‖ / ‖v‖²   and the ratio ‖S^{k+1} v‖ / ‖S^k v‖ never falls
 //! ```
 //!
-//! | symbol | meaning |
+//! | choice of w | use of the result |
 //! |---|---|
-//! | w = ρ | T itself: the terms fall at the rate r |
-//! | w = ρ²/s | second moments of walks with constant survival s: the variance is finite iff r < 1 (F > 0 connected) |
+//! | w = ρ | T itself: the terms T^k E fall at the rate r |
+//! | w = ρ²/s | second moments of random walks with constant survival probability s: the variance is finite iff r < 1 (F > 0 connected) |
 //!
-//! The step ratio is the root of the Rayleigh quotient of S²: it converges also when +r and −r are both eigenvalues
-//! (two plates), where the Rayleigh quotient of S itself need not.
+//! The ratio of lengths is the square root of the Rayleigh quotient of S². It converges even if both +r and −r are
+//! eigenvalues (two plates); the Rayleigh quotient of S itself need not converge then.
 
 use crate::operator::form_factor::FormFactors;
 use rayon::prelude::*;
 
-/// What the power iteration found.
+/// Result of the power iteration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectral {
-    /// ‖S v‖ for the last unit vector v: a lower bound of the spectral radius that rises to it.
+    /// ‖S v‖ for the last unit vector v: a lower bound that increases towards the spectral radius.
     pub radius: f64,
-    /// v·S v for the same vector: the eigenvalue v belongs to; well below `radius` if ±r are both eigenvalues.
+    /// v·S v for the same vector: an estimate of the eigenvalue to which v belongs. It is well below `radius` if both +r and
+    /// −r are eigenvalues.
     pub rayleigh: f64,
     /// ‖S v − rayleigh·v‖: some eigenvalue lies within this distance of `rayleigh`.
     pub residual: f64,
-    /// Steps taken.
+    /// Number of steps.
     pub steps: usize,
-    /// The mode u with T u ≈ radius·u, largest value 1.
+    /// The mode u with diag(w) F u ≈ radius·u, scaled so that its largest magnitude is 1.
     pub mode: Vec<f64>,
 }
 
-/// The spectral radius of `diag(w) F` to the relative change `tolerance` per step, in at most `max_steps` steps.
+/// The spectral radius of `diag(w) F`. The iteration ends when the relative change per step is at most `tolerance`, or after
+/// `max_steps` steps.
 ///
 /// ```
 /// use fredholm::operator::{form_factor::FormFactors, matrix::spectral_radius};
@@ -48,7 +50,8 @@ pub fn spectral_radius(factors: &FormFactors, w: &[f64], tolerance: f64, max_ste
             .enumerate()
             .for_each(|(i, y)| *y = left[i] * super::dot(factors.row(i), &scaled));
     };
-    // u = w, the first bounce of a uniformly lit scene, has a positive part along the top mode of every component
+    // the start u = w is the first bounce of a uniformly lit scene; it has a positive part along the top mode of every
+    // connected component
     let mut v = left.clone();
     let mut y = vec![0.0; factors.n];
     let mut found = Spectral { radius: 0.0, rayleigh: 0.0, residual: 0.0, steps: 0, mode: vec![0.0; factors.n] };
@@ -62,7 +65,7 @@ pub fn spectral_radius(factors: &FormFactors, w: &[f64], tolerance: f64, max_ste
         found.rayleigh = y.iter().zip(&v).map(|(y, v)| y * v).sum();
         found.residual = y.iter().zip(&v).map(|(y, v)| (y - found.rayleigh * v).powi(2)).sum::<f64>().sqrt();
         (found.radius, found.steps) = (radius, steps);
-        // a ±pair keeps the residual up; then the ratio alone decides
+        // if both +r and −r are eigenvalues, the residual stays large; so only the change of the ratio decides
         if settled {
             break;
         }
@@ -79,7 +82,7 @@ pub fn spectral_radius(factors: &FormFactors, w: &[f64], tolerance: f64, max_ste
     found
 }
 
-/// Scales to length 1; `false` for the zero vector.
+/// Scales the vector to length 1; returns false for the zero vector.
 fn normalise(v: &mut [f64]) -> bool {
     let length = v.iter().map(|v| v * v).sum::<f64>().sqrt();
     v.iter_mut().for_each(|v| *v /= if length > 0.0 { length } else { 1.0 });

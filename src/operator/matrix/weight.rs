@@ -6,16 +6,16 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | w | A/ρ, and 0 where ρ = 0: T u vanishes there | [`Weight::new`] |
+//! | w | A/ρ; 0 where ρ = 0, because T u vanishes there | [`Weight::new`] |
 //!
-//! The same weight serves whatever is built of one T by sums and powers.
+//! Sums and powers of T are self-adjoint in the same weight.
 
-/// One weight per patch.
+/// The weight w: one number per patch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weight(Vec<f64>);
 
 impl Weight {
-    /// A/ρ.
+    /// The weight wᵢ = Aᵢ/ρᵢ, and 0 where ρᵢ = 0.
     ///
     /// ```
     /// use fredholm::operator::matrix::Weight;
@@ -26,17 +26,17 @@ impl Weight {
         Self(area.iter().zip(rho).map(|(a, r)| if *r > 0.0 { a / r } else { 0.0 }).collect())
     }
 
-    /// wᵢ.
+    /// The weights wᵢ, one per patch.
     pub fn values(&self) -> &[f64] {
         &self.0
     }
 
-    /// ⟨u, v⟩_w.
+    /// The inner product ⟨u, v⟩_w.
     pub fn inner(&self, u: &[f64], v: &[f64]) -> f64 {
         self.0.iter().zip(u).zip(v).map(|((w, u), v)| w * u * v).sum()
     }
 
-    /// √⟨u, u⟩_w.
+    /// The norm ‖u‖_w = √⟨u, u⟩_w.
     pub fn norm(&self, u: &[f64]) -> f64 {
         self.inner(u, u).sqrt()
     }

@@ -1,12 +1,12 @@
-//! A primitive as something that hides: its plane and outline, or its ball.
+//! A primitive in the form used to test whether it blocks rays: its plane and outline, or its sphere.
 
 use crate::scene::Primitive;
 use glam::DVec3;
 
-/// Outlines reach this far over their edge, in lengths of the edge, so that neighbours leave no gap.
+/// Outlines are enlarged by this share of the edge length, so that neighbours leave no gap.
 pub(super) const SLACK: f64 = 1e-12;
 
-/// Outline of a flat primitive in its own coordinates.
+/// Outline of a flat primitive, in its own coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Outline {
     Triangle,
@@ -38,7 +38,7 @@ pub(super) fn body(p: Primitive) -> Body {
 }
 
 impl Body {
-    /// The first crossing with 0 < t < `limit`, and whether the ray comes from the front.
+    /// The first crossing with 0 < t < `limit`: its t, and true if the ray comes from the front.
     #[inline]
     pub(super) fn crossing(&self, o: DVec3, d: DVec3, limit: f64) -> Option<(f64, bool)> {
         match *self {
@@ -65,7 +65,7 @@ impl Body {
                     return None;
                 }
                 let root = root.sqrt();
-                // the stable pair of roots: no subtraction of nearly equal numbers
+                // the numerically stable pair of roots, which does not subtract nearly equal numbers
                 let q = if b > 0.0 { -b - root } else { -b + root };
                 let (s, t) = (q / a, c / q);
                 let kept = |t: f64| {
@@ -73,7 +73,7 @@ impl Body {
                     t > 0.0 && t < limit && height >= z[0] - SLACK && height <= z[1] + SLACK
                 };
                 let (near, far) = (s.min(t), s.max(t));
-                // entering meets the outside, leaving the inside
+                // a ray that enters the sphere hits its outside; a ray that leaves hits its inside
                 if kept(near) {
                     Some((near, !inward))
                 } else if kept(far) {

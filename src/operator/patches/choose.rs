@@ -1,7 +1,7 @@
-//! How finely each surface is divided.
+//! Division of each surface into cells: where it is cut, and into how many cells.
 //!
 //! ```text
-//! cells of a region of area A = max(1, round(A/a)),      a such that the patches are as near n as can be
+//! cells of a region of area A = max(1, round(A/a)),      a such that the number of patches is as near to n as possible
 //! ```
 
 use super::cover::{Cover, CoverTest};
@@ -15,39 +15,40 @@ use crate::scene::{Primitive, description::Sides};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// More meetings with other surfaces than this on one primitive are left uncut; its cells are sampled instead.
+/// Maximum number of cuts per primitive. A primitive with more is not cut completely; the cover of its cells is sampled
+/// instead.
 const MAX_CUTS: usize = 64;
 
-/// A primitive after the cuts, with the cover of every piece on both sides.
+/// A primitive after the cuts; each piece has its cover on both sides.
 pub(super) enum Region {
     Flat { tree: Tree, pieces: Vec<Piece> },
     Curved { primitive: Primitive, sides: usize },
 }
 
-/// A cell of the cut tree.
+/// A cell of the tree after the cuts, before the division.
 #[derive(Clone, Copy)]
 pub(super) struct Piece {
     node: usize,
     cover: [Cover; 2],
-    /// On a graded mesh, where it has four corners.
+    /// The chart for grading, on a graded mesh and if the cell has four corners.
     chart: Option<Chart>,
 }
 
-/// A primitive after the division.
+/// A primitive after the division into cells.
 #[derive(Clone, Debug)]
 pub(super) enum Shape {
     Flat { tree: Tree, cover: Vec<[Cover; 2]> },
     Curved(Grid),
 }
 
-/// Finds the cell of a point.
+/// Search structure that finds the cell of a point.
 #[derive(Clone, Debug)]
 pub(super) enum Search {
     Flat(Finder),
     Curved(Grid),
 }
 
-/// A cell on its way to become a patch.
+/// A cell from which patches are made.
 pub(super) struct Cell {
     pub(super) number: usize,
     pub(super) polygon: Corners,
@@ -55,8 +56,8 @@ pub(super) struct Cell {
     pub(super) cover: [Cover; 2],
 }
 
-/// Cuts every flat primitive where others meet it and finds out which pieces are covered. Lengths below `tiny` (and below a
-/// share of the primitive's size) count as zero: emitters that were moved leave no slivers.
+/// Cuts every flat primitive where others meet it, and determines which pieces are covered. Lengths below `tiny`, or below a
+/// small share of the primitive's size, count as zero. This way the small displacement of emitters causes no slivers.
 pub(super) fn regions(primitives: &[(Primitive, Sides)], cover: &CoverTest, grading: f64, tiny: f64) -> Vec<Region> {
     let one = |(number, &(primitive, sides)): (usize, &(Primitive, Sides))| {
         let Some(polygon) = outline(&primitive) else {
@@ -82,7 +83,7 @@ pub(super) fn regions(primitives: &[(Primitive, Sides)], cover: &CoverTest, grad
     primitives.par_iter().enumerate().map(one).collect()
 }
 
-/// Returns whether straight cuts were enough to separate what is covered from what is free.
+/// Cuts the tree of the primitive `own`. Returns true if straight cuts were enough to separate covered from free parts.
 fn cut(
     tree: &mut Tree,
     polygon: &[DVec3],
@@ -106,7 +107,8 @@ fn cut(
             continue;
         }
         let Some(q) = outline(other) else {
-            // a sphere or disk that reaches the plane covers a region with a curved edge
+            // a sphere or disk that reaches the plane covers a region with a curved edge, which straight cuts cannot
+            // separate
             let corners = (0..8).map(|i| DVec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), a, b));
             let [s, t] = extent(&corners.collect::<Vec<_>>(), normal);
             let d = normal.dot(polygon[0]);
@@ -127,12 +129,12 @@ fn cut(
     true
 }
 
-/// The cell area that brings the number of patches nearest to `n`.
+/// The cell area for which the number of patches is nearest to `n`.
 pub(super) fn cell_area(regions: &[Region], n: usize) -> f64 {
     let count = |a: f64| regions.iter().map(|r| r.count(a)).sum::<usize>();
     let whole: f64 = regions.iter().map(Region::area).sum();
     let (mut fine, mut coarse) = (whole / (4 * n + 4 * regions.len()) as f64, whole);
-    // invariant: count(fine) ≥ n > count(coarse), unless even the coarsest mesh has n patches
+    // invariant: count(fine) ≥ n > count(coarse), unless even the coarsest mesh has at least n patches
     if count(coarse) >= n || count(fine) == 0 {
         return coarse;
     }
@@ -154,7 +156,7 @@ impl Region {
         }
     }
 
-    /// Patches at cell area `a`.
+    /// Number of patches for the cell area `a`.
     fn count(&self, a: f64) -> usize {
         match self {
             Self::Flat { tree, pieces } => {
@@ -165,7 +167,7 @@ impl Region {
         }
     }
 
-    /// Divides into cells of about the area `a`.
+    /// Divides the region into cells of about the area `a`.
     pub(super) fn divide(self, primitive: &Primitive, a: f64) -> Shape {
         match self {
             Self::Flat { mut tree, pieces } => {
@@ -207,7 +209,7 @@ fn grid(p: &Primitive, a: f64) -> Option<Grid> {
 }
 
 impl Shape {
-    /// The cells in order; their numbers count up from 0.
+    /// The cells in order, numbered from 0.
     pub(super) fn cells(&self) -> Vec<Cell> {
         match self {
             Self::Flat { tree, cover } => {
@@ -231,7 +233,7 @@ impl Shape {
         }
     }
 
-    /// What finds the cell of a point.
+    /// The search structure that finds the cell of a point.
     pub(super) fn finder(self) -> Search {
         match self {
             Self::Flat { tree, .. } => Search::Flat(tree.finder()),
@@ -263,7 +265,8 @@ impl Search {
         }
     }
 
-    /// Groups of up to `most` neighbouring cells; a curved surface keeps its cells.
+    /// For every cell the number of its group; a group has up to `most` neighbouring cells. On a curved surface every cell
+    /// is a separate group.
     pub(super) fn groups(&self, cells: usize, most: usize) -> Vec<u32> {
         match self {
             Self::Flat(finder) => finder.groups(cells, most),

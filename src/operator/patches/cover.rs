@@ -1,15 +1,16 @@
-//! Which part of a surface is free: the floor under a block neither emits nor reflects.
+//! Finds the uncovered (free) part of a surface: for example, the floor under a block neither emits nor reflects.
 //!
 //! ```text
-//! covered(x)  ⇔  every ray from x meets first the black back of a one-sided surface
-//!               or x lies on a side that coincides with one in front of it
+//! covered(x)  ⇔  every ray from x first hits the black back of a one-sided surface
+//!               or x lies on a side with a coincident side in front of it
 //! ```
 //!
-//! Which surfaces coincide, and that emitters lie in front, is decided in [`crate::scene::coplanar`], for rays and patches
-//! alike. Where that leaves it open, the lower number is in front if it reflects.
+//! [`crate::scene::coplanar`] decides which surfaces coincide, and that emitters lie in front; this holds for rays and
+//! patches. If it does not decide between two surfaces, the one with the lower number is in front, provided that it
+//! reflects.
 //!
-//! The rays are a fixed set of 32: 16 over the hemisphere and 16 that graze the surface (slope 10⁻³), because only
-//! these leave the thin gap between a ceiling and a light hung below it.
+//! The rays are a fixed set of 32: 16 cover the hemisphere, and 16 graze the surface (slope 10⁻³). Grazing rays are needed
+//! because only they leave the thin gap between a ceiling and a lamp just below it.
 
 use super::brute_force::BruteForce;
 use super::near::Near;
@@ -20,7 +21,7 @@ use crate::scene::{Primitive, description::Sides};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Is a region free?
+/// Result of the test for a region: free, covered, or some of both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cover {
     Free,
@@ -28,15 +29,16 @@ pub(super) enum Cover {
     Mixed,
 }
 
-/// The test for points.
+/// The test whether a point of a surface is covered.
 #[derive(Clone, Debug)]
 pub(super) struct CoverTest {
     caster: BruteForce,
     primitives: Vec<(Primitive, Sides)>,
     pub(super) near: Near,
-    /// (side, primitive that coincides with it and lies in front), ascending; side 2i is the front of i, 2i + 1 its back.
+    /// Pairs (side, primitive that coincides with it and lies in front of it), ascending. Side 2i is the front of primitive
+    /// i, 2i + 1 its back.
     in_front: Vec<(u32, u32)>,
-    /// Some surface has a black back, so that rays can meet one.
+    /// True if some surface has a black back that rays can hit.
     one_sided: bool,
     directions: Vec<DVec3>,
 }
@@ -57,7 +59,7 @@ impl CoverTest {
         Self { caster, primitives, near, in_front, one_sided, directions }
     }
 
-    /// What coincides with one side of a primitive and lies in front of it.
+    /// The primitives that coincide with one side of a primitive and lie in front of it.
     fn over(&self, primitive: usize, normal: DVec3, position: DVec3) -> impl Iterator<Item = usize> {
         let front = outward(&self.primitives[primitive].0, position).dot(normal) > 0.0;
         let side = 2 * primitive as u32 + u32::from(!front);
@@ -80,7 +82,7 @@ impl CoverTest {
             .all(|hit| hit.is_some_and(|hit| !hit.reflects))
     }
 
-    /// Whether two primitives coincide, one of them in front of the other.
+    /// Returns true if two primitives coincide, with one of them in front of the other.
     pub(super) fn coincide(&self, a: usize, b: usize) -> bool {
         let any = |own: usize, other: usize| {
             [0, 1].iter().any(|s| self.in_front.binary_search(&(2 * own as u32 + s, other as u32)).is_ok())
@@ -88,7 +90,7 @@ impl CoverTest {
         any(a, b) || any(b, a)
     }
 
-    /// The share of an m×m grid of points of `polygon` that is free; `lift` maps them to the true surface.
+    /// The free share of a polygon, from an m×m grid of points; `lift` maps them to the true surface.
     pub(super) fn free_share(
         &self,
         primitive: usize,
@@ -108,7 +110,7 @@ impl CoverTest {
         if free == all { 1.0 } else { free / all }
     }
 
-    /// Free, covered, or some of both, by a 4×4 grid of points.
+    /// Classifies a polygon as free, covered, or some of both, with a 4×4 grid of points.
     pub(super) fn classify(&self, primitive: usize, polygon: &[DVec3], normal: DVec3) -> Cover {
         match self.free_share(primitive, polygon, 4, |position| SurfacePoint { position, normal }) {
             1.0 => Cover::Free,
@@ -118,7 +120,7 @@ impl CoverTest {
     }
 }
 
-/// For every side, what lies in front of it.
+/// For every side, the primitives that lie in front of it.
 fn in_front(primitives: &[(Primitive, Sides)], overlaps: &[Overlap]) -> Vec<(u32, u32)> {
     let mut all = vec![];
     for o in overlaps {
@@ -135,7 +137,7 @@ fn in_front(primitives: &[(Primitive, Sides)], overlaps: &[Overlap]) -> Vec<(u32
     all
 }
 
-/// Normal of the front at a point of a primitive, of any length.
+/// Normal of the front at a point of a primitive; its length is arbitrary.
 fn outward(primitive: &Primitive, at: DVec3) -> DVec3 {
     match *primitive {
         Primitive::Triangle([a, b, c]) => (b - a).cross(c - a),
@@ -151,7 +153,7 @@ fn outward(primitive: &Primitive, at: DVec3) -> DVec3 {
     }
 }
 
-/// Whether a point of a surface that coincides with a primitive lies on it, too.
+/// Returns true if a point lies on the primitive; it must lie on a surface that coincides with the primitive.
 fn holds(primitive: &Primitive, at: DVec3) -> bool {
     let inside = |origin: DVec3, e: DVec3, f: DVec3, triangle: bool| {
         let n = e.cross(f);

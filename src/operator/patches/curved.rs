@@ -1,17 +1,18 @@
-//! Spheres and disks as flat facets that know their true area.
+//! Spheres and disks as flat facets that store the area of the true surface.
 //!
 //! ```text
 //! sphere: rows of equal polar angle θ, each cut into nearly square cells; area R² Δz Δφ (Archimedes)
 //! disk:   rings of equal width, each cut into sectors;                   area ½ (r₁² − r₀²) Δφ
 //! ```
 //!
-//! Rows of equal angle, not of equal height: the polar rows of an equal-height mesh span an angle of order √h,
-//! so their facets would miss the sphere by O(h) instead of O(h²).
+//! The rows of a sphere have equal angle, not equal height. With equal height, the rows at the poles would span an angle of
+//! order √h (h: cell size), and their facets would deviate from the sphere by O(h) instead of O(h²).
 
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-/// Cells `first .. first + columns` between two values of height (sphere, in radii) or radius (disk).
+/// The cells `first .. first + columns` of one row. `lo` and `hi` limit the height (sphere, in radii) or the radius (disk,
+/// metres).
 #[derive(Clone, Copy, Debug)]
 struct Row {
     lo: f64,
@@ -20,7 +21,7 @@ struct Row {
     first: usize,
 }
 
-/// Which surface the rows lie on.
+/// The surface on which the rows lie.
 #[derive(Clone, Copy, Debug)]
 enum Chart {
     Sphere { center: DVec3, radius: f64, inward: bool },
@@ -34,21 +35,22 @@ pub(super) struct Grid {
     rows: Vec<Row>,
 }
 
-/// A flat stand-in for a piece of a curved surface.
+/// A flat polygon that approximates a piece of a curved surface.
 pub(super) struct Facet {
-    /// Counter-clockwise seen from the front.
+    /// Corners, counter-clockwise as seen from the front.
     pub(super) polygon: Vec<DVec3>,
-    /// Area of the piece it stands for.
+    /// Area of the piece of the curved surface, m².
     pub(super) area: f64,
 }
 
 impl Grid {
-    /// Cells of about the area `a` on the band `z` of a sphere; at least 60°-wide rows of six.
+    /// Cells of about the area `a` on the band `z` of a sphere. A row spans at most 60° of the polar angle and has at least
+    /// six cells.
     pub(super) fn sphere(center: DVec3, radius: f64, z: [f64; 2], inward: bool, a: f64) -> Self {
         let [top, bottom] = [z[1].acos(), z[0].acos()];
         let span = bottom - top;
         let count = (radius * span / a.sqrt()).round().max((span / FRAC_PI_3 - 1e-9).ceil()).max(1.0) as usize;
-        // the last angles are the given heights to the last bit
+        // the first and the last height are exactly the given ones
         let height = |i: usize| match i {
             0 => z[1],
             i if i == count => z[0],
@@ -59,7 +61,7 @@ impl Grid {
         Self { chart: Chart::Sphere { center, radius, inward }, rows }
     }
 
-    /// Cells of about the area `a` on a disk; at least six sectors.
+    /// Cells of about the area `a` on a disk; every ring has at least six sectors.
     pub(super) fn disk(center: DVec3, normal: DVec3, radius: f64, a: f64) -> Self {
         let count = (radius / a.sqrt()).round().max(1.0) as usize;
         let r = |i: usize| radius * i as f64 / count as f64;
@@ -68,12 +70,12 @@ impl Grid {
         Self { chart: Chart::Disk { center, u, v }, rows: rows(count, 6, a, |i| [r(i), r(i + 1)], area) }
     }
 
-    /// How many cells.
+    /// Number of cells.
     pub(super) fn len(&self) -> usize {
         self.rows.last().map_or(0, |r| r.first + r.columns)
     }
 
-    /// All facets in order.
+    /// All facets in the order of their cells.
     pub(super) fn facets(&self) -> Vec<Facet> {
         self.rows.iter().flat_map(|row| (0..row.columns).map(move |c| self.facet(row, c))).collect()
     }
@@ -166,7 +168,7 @@ mod tests {
                 assert!(a.length() < f.area * (1.0 + 1e-12) && a.length() > 0.8 * f.area);
                 assert!(outward * a.dot(centroid(&f.polygon) - c) >= 0.0);
                 assert!(outward != 0.0 || a.dot(DVec3::new(0.6, 0.0, 0.8)) > 0.0);
-                // planar
+                // facets are planar
                 assert!(f.polygon.iter().all(|p| a.normalize().dot(*p - f.polygon[0]).abs() < 1e-12));
             }
         }

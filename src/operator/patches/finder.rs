@@ -1,17 +1,17 @@
-//! The cell of a point: the lines of a tree in the plane's own coordinates, twenty bytes each.
+//! Finds the cell of a point: the dividing lines of a tree, stored in the plane's own coordinates with twenty bytes each.
 //!
 //! ```text
 //! (s, t) = ((x − o)·e₁, (x − o)·e₂)        go low where a s + b t ≤ c, else high, until a cell is reached
 //! ```
 //!
-//! The way down from the root of a million cells is twenty reads, each waiting for the one before. A table over the plane
-//! with about one square per cell holds the lowest node that all points of a square pass, so that four or five reads
-//! are left. The answer is the same for every point.
+//! The search from the root of a tree of a million cells needs twenty reads, each of which waits for the previous one. A
+//! table covers the plane with about one square per cell. It stores for each square the lowest node through which the search
+//! passes for every point of the square. Only four or five reads remain. The answer is the same for every point.
 
 use super::polygon::area_vector;
 use glam::DVec3;
 
-/// Marks a child that is a cell.
+/// Bit that marks a child as a cell.
 pub(super) const LEAF: u32 = 1 << 31;
 
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +21,7 @@ pub(super) struct Line {
     pub(super) children: [u32; 2],
 }
 
-/// Finds cells by their number in the order of the tree's cells.
+/// Finds the number of the cell of a point; cells are numbered in the order of [`Tree::cells`](super::tree::Tree::cells).
 #[derive(Clone, Debug)]
 pub(super) struct Finder {
     origin: DVec3,
@@ -31,7 +31,7 @@ pub(super) struct Finder {
     table: Table,
 }
 
-/// A point on its way down to its cell.
+/// The state of a search: the current node and the point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Descent {
     at: u32,
@@ -39,7 +39,7 @@ pub(super) struct Descent {
 }
 
 impl Descent {
-    /// Already in a cell.
+    /// A finished search whose result is `cell`.
     pub(super) fn arrived(cell: usize) -> Self {
         Self { at: LEAF | cell as u32, point: [0.0; 2] }
     }
@@ -48,27 +48,27 @@ impl Descent {
         self.at & LEAF != 0
     }
 
-    /// The cell, at the end.
+    /// The cell found; the search must be finished.
     pub(super) fn cell(&self) -> usize {
         (self.at ^ LEAF) as usize
     }
 }
 
-/// Nodes to start from, square by square.
+/// The start node of the search for every square of the plane.
 #[derive(Clone, Debug, Default)]
 struct Table {
-    /// Lower corner, and squares per metre.
+    /// Lower corner of the table (`low`, metres), and squares per metre (`scale`).
     low: [f32; 2],
     scale: [f32; 2],
     squares: [usize; 2],
     start: Vec<u32>,
 }
 
-/// Rounding moves a point by less than this share of the table's width.
+/// Rounding moves a point by less than this share of the width of the table.
 const ROUNDING: f64 = 2e-6;
 
 impl Table {
-    /// The node to start from, unless the point lies outside.
+    /// The start node for a point; `None` if the point lies outside the table.
     fn start(&self, at: [f32; 2]) -> Option<u32> {
         let [x, y] = [0, 1].map(|k| (at[k] - self.low[k]) * self.scale[k]);
         let inside = x >= 0.0 && y >= 0.0 && x < self.squares[0] as f32 && y < self.squares[1] as f32;
@@ -77,7 +77,7 @@ impl Table {
 }
 
 impl Finder {
-    /// No lines yet, in the plane of some cell.
+    /// A finder without lines, in the plane of `cell`.
     pub(super) fn new(cell: Option<&[DVec3]>) -> Self {
         let origin = cell.map_or(DVec3::ZERO, |p| p[0]);
         let normal = cell.map_or(DVec3::Z, |p| area_vector(p).normalize());
@@ -95,7 +95,7 @@ impl Finder {
         Line { axis: axis2, offset: (offset - axis.dot(self.origin)) as f32, children: [LEAF; 2] }
     }
 
-    /// Lays the table over these points, with about `squares` squares. The lines must be there.
+    /// Builds a table with about `squares` squares that covers the points `corners`. The lines must exist already.
     pub(super) fn index(&mut self, corners: impl Iterator<Item = DVec3>, squares: usize) {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for d in corners.map(|p| p - self.origin) {
@@ -124,7 +124,8 @@ impl Finder {
         self.table.start = start;
     }
 
-    /// Gives all squares of the block (ranges of columns and of rows) the lowest node that all their points pass.
+    /// Sets for all squares of the block (a range of columns and a range of rows) the lowest node through which all their
+    /// points pass.
     fn descend(&self, node: u32, plane: &Plane, block: [[usize; 2]; 2], set: &mut impl FnMut(usize, usize, u32)) {
         let mut node = node;
         while node & LEAF == 0 {
@@ -147,7 +148,8 @@ impl Finder {
         }
     }
 
-    /// The cell a point of the plane belongs to; points outside belong to the cell whose side of every line they share.
+    /// The cell of a point of the plane. A point outside gets the cell that lies on the same side of every line that was
+    /// tested.
     pub(super) fn locate(&self, p: DVec3) -> usize {
         let mut walk = self.begin(p);
         while !walk.is_over() {
@@ -156,7 +158,7 @@ impl Finder {
         walk.cell()
     }
 
-    /// Where the way down to the cell of a point begins.
+    /// Begins the search for the cell of a point.
     #[inline(always)]
     pub(super) fn begin(&self, p: DVec3) -> Descent {
         let d = p - self.origin;
@@ -164,7 +166,7 @@ impl Finder {
         Descent { at: self.table.start(at).unwrap_or(self.root), point: at }
     }
 
-    /// One line further down; the walk must not have arrived.
+    /// Moves the search one line down; it must not be finished.
     #[inline(always)]
     pub(super) fn step(&self, walk: &mut Descent) {
         let line = &self.lines[walk.at as usize];
@@ -172,7 +174,7 @@ impl Finder {
         walk.at = line.children[usize::from(line.axis[0] * s + line.axis[1] * t > line.offset)];
     }
 
-    /// For every cell, the number of the group it belongs to: the largest subtrees of at most `most` cells.
+    /// For every cell, the number of its group. Groups are the largest subtrees of at most `most` cells.
     pub(super) fn groups(&self, cells: usize, most: usize) -> Vec<u32> {
         let (mut group, mut next) = (vec![0; cells], 0);
         self.collect(self.root, most, &mut group, &mut next);
@@ -201,7 +203,7 @@ impl Finder {
     }
 }
 
-/// The squares of a table in metres.
+/// The geometry of the squares of a table, in metres.
 struct Plane {
     low: [f64; 2],
     side: [f64; 2],
@@ -209,7 +211,8 @@ struct Plane {
 }
 
 impl Plane {
-    /// The child of the line on whose side the whole block lies, with room for rounding.
+    /// The child on whose side of the line the whole block lies, with a margin for rounding; `None` if the line may cut the
+    /// block.
     fn side_of(&self, line: &Line, block: [[usize; 2]; 2]) -> Option<usize> {
         let (mut least, mut most) = (-f64::from(line.offset), -f64::from(line.offset));
         for (k, range) in block.iter().enumerate() {
@@ -234,7 +237,7 @@ mod tests {
 
     #[test]
     fn the_table_changes_no_answer() {
-        // a skew quadrilateral, cut by a line that is parallel to nothing, in uneven parts
+        // a skew quadrilateral, divided into uneven parts by a line that is parallel to none of its sides
         let v = DVec3::new;
         let mut tree = Tree::new(vec![v(0.0, 0.0, 1.0), v(2.0, 0.1, 1.0), v(1.7, 1.3, 1.0), v(0.2, 1.0, 1.0)], 0.0);
         assert!(tree.cut(DVec3::Z, [v(0.3, 0.1, 1.0), v(1.5, 1.1, 1.0)]));

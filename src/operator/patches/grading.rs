@@ -1,4 +1,4 @@
-//! Cells that get narrower towards the edges where faces meet: on request.
+//! Optional grading of cells: they get narrower towards the edges where faces meet.
 //!
 //! ```text
 //! x(S(s), S(t)),  x: [0, 1]² → quadrilateral bilinear,      S(s) = s^q towards a side at an edge, mirrored for two,  else s
@@ -6,16 +6,17 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | q | grading: 1 divides evenly; q ≥ 1 | [`Chart::power`] |
-//! | S | where the line at s goes | [`warped`] |
-//! | edge | a side along which another face rises that turns its reflecting side here | [`rises`] |
+//! | q | grading, q ≥ 1; q = 1 divides evenly | [`Chart::power`] |
+//! | S | position of the line with the parameter s | [`warped`] |
+//! | edge | a side of the quadrilateral at which another face rises, with a reflecting side turned towards the quadrilateral | [`rises`] |
 //!
-//! Near an edge between albedos of √(ρ₁ρ₂) = ρ a mode of eigenvalue λ goes like c₀ + c₁ d^β with κ(β) = λ/ρ, κ(β) =
-//! ¼ B(1 + β/2, ½ − β/2). On even cells the eigenvalue then is off by h^{1+2β} (β < ½) instead of h². Cells of width
-//! ∝ d^{1−1/q} across the edge, as long as ever along it, restore h² for q > 2/(1 + 2β).
+//! Consider an edge between albedos with √(ρ₁ρ₂) = ρ. Near it, a mode of eigenvalue λ behaves like c₀ + c₁ d^β at the
+//! distance d. The exponent β solves κ(β) = λ/ρ with κ(β) = ¼ B(1 + β/2, ½ − β/2). On even cells of size h the error of the
+//! eigenvalue is then of order h^{1+2β} (β < ½) instead of h². Cells with a width ∝ d^{1−1/q} across the edge, and an
+//! unchanged length along it, restore h² if q > 2/(1 + 2β).
 //!
-//! Quadrilaterals are graded: whole faces, and the pieces of faces cut by others. Triangles, pieces with more corners,
-//! spheres and disks keep cells of equal area. A piece gets as many cells as without grading.
+//! Quadrilaterals are graded: whole faces, and pieces of faces cut by others. Triangles, pieces with more corners, spheres
+//! and disks keep cells of equal area. The number of cells of a piece is the same as without grading.
 //!
 //! Reference: Atkinson, *The Numerical Solution of Integral Equations of the Second Kind* (1997), 4.2.5 and chapter 8.
 
@@ -27,20 +28,20 @@ use glam::DVec3;
 /// Lengths below this share of a face's size count as zero.
 const TINY: f64 = 1e-7;
 
-/// A quadrilateral piece of a face with the sides that lie at an edge.
+/// A quadrilateral piece of a face, with the information which of its sides lie at an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chart {
     corners: [DVec3; 4],
-    /// Towards s = 0, s = 1; t = 0, t = 1.
+    /// True for the sides that lie at an edge: those at s = 0, s = 1; t = 0, t = 1.
     edges: [[bool; 2]; 2],
     power: f64,
 }
 
-/// A box of (s, t): the range of s, the range of t.
+/// A rectangle of parameters (s, t): the range of s, then the range of t.
 pub(super) type Part = [[f64; 2]; 2];
 
 impl Chart {
-    /// The chart of a piece of the face `own`; `None` unless it has four corners.
+    /// The chart of a piece of the face `own`; `None` if the piece does not have four corners.
     pub(super) fn new(power: f64, piece: &[DVec3], all: &[(Primitive, Sides)], own: usize) -> Option<Self> {
         let corners: [DVec3; 4] = piece.try_into().ok()?;
         let [p, q, r, s] = corners;
@@ -55,8 +56,8 @@ impl Chart {
         Some(Self { corners, edges, power })
     }
 
-    /// Across its longer extent, before it is warped, at the share `share`: both parts, and the line `(axis, offset)`
-    /// with the first part at `axis·x ≤ offset`.
+    /// Cuts `part` across its longer extent at the share `share` of the parameter range, measured before warping. Returns
+    /// both parts and the line `(axis, offset)`; the first part is the one with `axis·x ≤ offset`.
     pub(super) fn cut(&self, part: Part, share: f64) -> ([Part; 2], (DVec3, f64)) {
         let [p, q, r, s] = self.corners;
         let length =
@@ -70,13 +71,13 @@ impl Chart {
         let w = warped(self.power, self.edges[k], at);
         let (a, b) = if k == 0 { (p.lerp(q, w), s.lerp(r, w)) } else { (p.lerp(s, w), q.lerp(r, w)) };
         let normal = area_vector(&self.corners).normalize();
-        // towards growing s the normal is to the right of t, and the other way round
+        // seen along t, increasing s is to the right; seen along s, increasing t is to the left: hence the sign
         let axis = (b - a).cross(normal).normalize() * if k == 0 { 1.0 } else { -1.0 };
         (parts, (axis, axis.dot(a)))
     }
 }
 
-/// S(s).
+/// The warped parameter S(s).
 fn warped(power: f64, edges: [bool; 2], s: f64) -> f64 {
     match edges {
         [true, true] if s > 0.5 => 1.0 - 0.5 * (2.0 - 2.0 * s).powf(power),
@@ -87,7 +88,8 @@ fn warped(power: f64, edges: [bool; 2], s: f64) -> f64 {
     }
 }
 
-/// Does this face pass through x, rise over a reflecting side of the plane there, and turn a reflecting side to `middle`?
+/// Returns true if this face passes through x, rises there over a reflecting side of the plane, and turns a reflecting side
+/// towards `middle`.
 fn rises((primitive, sides): &(Primitive, Sides), x: DVec3, middle: DVec3, normal: DVec3, own: Sides) -> bool {
     let Some(polygon) = outline(primitive) else { return false };
     let tiny = TINY * polygon[0].distance(polygon[2]);
@@ -102,7 +104,7 @@ fn rises((primitive, sides): &(Primitive, Sides), x: DVec3, middle: DVec3, norma
     on && over && (*sides == Sides::Both || face.dot(middle - x) > tiny)
 }
 
-/// The outline of a flat primitive with straight edges.
+/// The outline of a flat primitive with straight edges; `None` for others.
 pub(super) fn outline(p: &Primitive) -> Option<Vec<DVec3>> {
     match *p {
         Primitive::Triangle(p) => Some(p.to_vec()),

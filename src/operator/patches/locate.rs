@@ -1,18 +1,19 @@
-//! From points of surfaces to patches, one at a time or many together.
+//! Finds the patch of a surface point, for one point or for many together.
 //!
 //! ```text
 //! (primitive, side, x)  ↦  cell of the primitive  ↦  patch of the cell's side
 //! ```
 //!
-//! In a mesh of a million patches every read waits for main memory. [`Lookup`] takes all its points one step down before it
-//! takes the next, so that the waits overlap; the answers are those of [`Patches::locate`].
+//! In a mesh of a million patches, every read waits for main memory. [`Lookup`] advances all its points by one step of the
+//! search before it takes the next step, so that the waits overlap. Its answers are those of [`Patches::locate`].
 
 use super::finder::Descent;
 use super::{NONE, Patches};
 use glam::DVec3;
 
 impl Patches {
-    /// The patch of a point of the surface, also when rounding has put it slightly outside; `None` where covered.
+    /// The patch of a point of the surface, even if rounding has put the point slightly outside; `None` if the point is
+    /// covered.
     pub fn locate(&self, primitive: usize, front: bool, point: DVec3) -> Option<usize> {
         let index = self.indices.get(primitive)?;
         let patch = &index.patch[usize::from(!front)];
@@ -22,17 +23,17 @@ impl Patches {
         patch.get(index.search.locate(point)).filter(|i| **i != NONE).map(|i| *i as usize)
     }
 
-    /// The cells of both sides belong to the same tree; what stands on this side of this one.
+    /// The patch on the given side of a cell, or [`NONE`]. Both sides of a primitive share one tree of cells.
     fn on(&self, primitive: u32, front: bool, cell: usize) -> u32 {
         self.indices[primitive as usize].patch[usize::from(!front)].get(cell).copied().unwrap_or(NONE)
     }
 }
 
-/// Points that look for their patches together.
+/// A batch of points whose patches are searched together.
 #[derive(Debug, Default)]
 pub(crate) struct Lookup {
     asked: Vec<Asked>,
-    /// Those of `asked` that are still on their way.
+    /// The indices of the points in `asked` whose search is not finished.
     open: Vec<u32>,
 }
 
@@ -44,7 +45,7 @@ struct Asked {
 }
 
 impl Lookup {
-    /// Forgets all points.
+    /// Removes all points.
     pub(crate) fn clear(&mut self) {
         self.asked.clear();
     }
@@ -56,7 +57,7 @@ impl Lookup {
         self.asked.push(Asked { walk, primitive, front });
     }
 
-    /// The patches of all points in the order they were added; `None` where covered.
+    /// The patches of all points, in the order in which the points were added; `None` for a covered point.
     pub(crate) fn answers<'a>(&'a mut self, patches: &'a Patches) -> impl Iterator<Item = Option<u32>> + 'a {
         let Self { asked, open } = self;
         open.clear();
@@ -93,7 +94,7 @@ mod tests {
         let patches = Patches::new(&scene, 3000).unwrap();
         let (mut lookup, mut found) = (Lookup::default(), 0);
         for part in patches.chunks(100) {
-            // centres, and corners, where rounding decides; the floor's corners under the blocks have no patch
+            // test centres, and corners, where rounding decides; the corners of the floor under the blocks have no patch
             let points = || part.iter().flat_map(|p| p.polygon.iter().copied().chain([p.centre]).map(move |x| (p, x)));
             lookup.clear();
             points().for_each(|(p, x)| lookup.ask(&patches, p.primitive as u32, p.front, x));

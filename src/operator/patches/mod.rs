@@ -1,4 +1,4 @@
-//! The surfaces of a scene as patches: the basis of the discrete operator.
+//! The surfaces of a scene divided into patches: the basis functions of the discrete operator.
 //!
 //! ```text
 //! L ≈ Σᵢ Lᵢ 1_{Pᵢ}        Pᵢ convex, flat, of nearly equal area, restricted to what is uncovered
@@ -6,15 +6,15 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | Pᵢ | patch: one side of a cell | [`Patch::polygon`] |
-//! | Aᵢ | its true, uncovered area, m² | [`Patch::area`] |
+//! | Pᵢ | patch: one side of one cell of a surface | [`Patch::polygon`] |
+//! | Aᵢ | area of the true surface of the patch that no other surface covers, m² | [`Patch::area`] |
 //! | Aᵢᶠ | area of the flat polygon, m² | [`Patch::flat_area`] |
 //! | ρᵢ, Eᵢ | albedo and emitted radiance | [`SurfaceSide::reflectance`], [`SurfaceSide::emission`] |
 //! | A | area of all reflecting sides, covered or not | [`Patches::surface_area`] |
 //!
-//! Flat primitives are first cut where others touch or cross them, so that a block standing on the floor cuts its
-//! footprint out of it (after Baum, Mann, Smith and Winget 1991, "Making radiosity usable"); spheres and disks become
-//! facets that keep their true area.
+//! Flat primitives are first cut along the lines where others touch or cross them. A block on the floor therefore cuts its
+//! footprint out of the floor (after Baum, Mann, Smith and Winget 1991, "Making radiosity usable"). Spheres and disks become
+//! flat facets, each with the area of the true surface.
 
 mod body;
 mod brute_force;
@@ -41,7 +41,8 @@ pub use patch::{Corners, Patch, SurfacePoint, SurfaceSide};
 pub(crate) use segments::{LANES, Lane, Segments};
 use std::sync::Arc;
 
-/// All patches of a scene. They are numbered primitive by primitive, front before back.
+/// All patches of a scene. They are numbered by primitive; within a primitive, those of its front come before those of its
+/// back.
 #[derive(Clone, Debug)]
 pub struct Patches {
     list: Vec<Patch>,
@@ -53,10 +54,10 @@ pub struct Patches {
     origin: DVec3,
 }
 
-/// No patch: the cell is covered there, or the side does not reflect.
+/// Marks a cell side without a patch, because it is covered or does not reflect.
 const NONE: u32 = u32::MAX;
 
-/// The cells of a primitive and the patch on each side of each.
+/// The cells of a primitive, and the number of the patch on each side of each cell.
 #[derive(Clone, Debug)]
 struct Index {
     search: Search,
@@ -64,8 +65,9 @@ struct Index {
 }
 
 impl Patches {
-    /// About `n` patches of nearly equal area; at least one per uncovered side, six per disk, eighteen per sphere. Their points are
-    /// about the middle of the scene, as those of [`Scene`](crate::scene::Scene) are ([`Patches::origin`]).
+    /// Divides the scene into about `n` patches of nearly equal area: at least one per uncovered side, six per disk and
+    /// eighteen per sphere. Their points are relative to the middle of the scene ([`Patches::origin`]), as those of
+    /// [`Scene`](crate::scene::Scene) are.
     ///
     /// ```
     /// use fredholm::{operator::patches::Patches, scene::description::*};
@@ -82,24 +84,27 @@ impl Patches {
     /// ```
     ///
     /// # Errors
-    /// If `n` is zero, nothing reflects, a surface has no area, a shape names a material that is not there, or the scene
-    /// has surfaces that are not Lambertian or lights that are no surfaces ([`Description::radiosity_suits`]).
+    /// If `n` is zero, nothing reflects, a surface has no area, or a shape names a material that does not exist. Also if the
+    /// scene has surfaces that are not Lambertian or lights that are not surfaces ([`Description::radiosity_suits`]).
     pub fn new(scene: &Description, n: usize) -> Result<Self, SceneError> {
         Self::graded(scene, n, 1.0)
     }
 
-    /// About `n` patches, narrower towards the edges where faces meet: widths across an edge go like d^{1 − 1/grading}.
-    /// 1 divides evenly; 2 is enough for the order 2 of eigenvalues. Quadrilaterals are graded, whole faces and pieces of
-    /// faces alike; triangles, pieces with more corners, spheres and disks keep cells of equal area.
+    /// Divides the scene into about `n` patches that are narrower near the edges where faces meet: at the distance d from an
+    /// edge, the width across the edge is proportional to d^{1 − 1/grading}. A grading of 1 divides evenly; 2 is enough for
+    /// eigenvalues with an error of order h². Quadrilaterals are graded, both whole faces and pieces of faces. Triangles,
+    /// pieces with more corners, spheres and disks keep cells of equal area.
     ///
     /// # Errors
-    /// As [`Patches::new`]; or if `grading` is not in [1, 8].
+    /// The errors of [`Patches::new`], and an error if `grading` is not in [1, 8].
     pub fn graded(scene: &Description, n: usize, grading: f64) -> Result<Self, SceneError> {
         if !(1.0..=8.0).contains(&grading) {
-            return Err(SceneError::new(format!("a grading of {grading}")).help("give a number from 1 to 8"));
+            return Err(SceneError::new(format!("the grading {grading} is not in the range 1 to 8"))
+                .help("give a number from 1 to 8"));
         }
         if n == 0 {
-            return Err(SceneError::new("a mesh of 0 patches cannot hold anything").help("ask for at least one patch"));
+            return Err(SceneError::new("a mesh needs at least one patch, but 0 were requested")
+                .help("ask for at least one patch"));
         }
         let crate::scene::centre::Centred { scene, origin, .. } = scene.centred();
         let scene = &scene;
@@ -110,7 +115,7 @@ impl Patches {
         let primitives: Vec<(Primitive, Sides)> = listed.iter().map(|&(s, p)| (p, sides(s))).collect();
         let cover = CoverTest::new(primitives.clone(), &surfaces.overlaps);
 
-        // cut, classify, and only then divide: covered regions take no patches
+        // cut, classify, and only then divide, so that covered regions get no patches
         let regions = choose::regions(&primitives, &cover, grading, 2.0 * surfaces.moved);
         let a = choose::cell_area(&regions, n);
 
@@ -158,20 +163,22 @@ impl Patches {
             patches.indices.push(Index { search: shape.finder(), patch });
         }
         if patches.list.is_empty() {
-            return Err(
-                SceneError::new("every surface of the scene is covered").help("check which sides face the light")
-            );
+            return Err(SceneError::new(
+                "no surface of the scene can receive light: each is covered or faces only black backs",
+            )
+            .help("check which sides of the surfaces reflect"));
         }
         Ok(patches)
     }
 
-    /// Is this point of patch `i` under something, where it neither emits nor reflects?
+    /// Returns true if another surface covers this point of patch `i`, so that the point neither emits nor reflects.
     pub fn is_covered(&self, i: usize, at: SurfacePoint) -> bool {
         self.cover.is_covered(self.list[i].primitive, at)
     }
 
-    /// Takes from each patch the reflectance in the channels in which light never reaches it: 0 is reflected there either way, and T
-    /// is then the operator on what light does reach.
+    /// Sets the reflectance of each patch to 0 in the channels in which light never reaches it; `lit` tells per patch and
+    /// channel whether light does. No light is reflected there in either case. Afterwards T is the operator restricted to
+    /// the patches that light reaches.
     pub fn darken(&mut self, lit: &[[bool; 3]]) {
         let mut made: std::collections::HashMap<(*const SurfaceSide, [bool; 3]), Arc<SurfaceSide>> =
             std::collections::HashMap::new();
@@ -185,13 +192,13 @@ impl Patches {
         }
     }
 
-    /// A mesh twice as coarse: [`Patches::unions`] of up to four.
+    /// A mesh twice as coarse: [`Patches::unions`] of up to four patches each.
     pub fn parents(&self) -> Vec<u32> {
         self.unions(4)
     }
 
-    /// A coarser mesh, each patch the union of up to `most` neighbours on one side of one flat surface: for every patch the
-    /// number of the union it belongs to. Patches of curved surfaces stay alone.
+    /// A coarser mesh: each of its patches is the union of up to `most` neighbours on one side of one flat surface. Returns
+    /// for every patch the number of its union. Patches of curved surfaces are not united.
     pub fn unions(&self, most: usize) -> Vec<u32> {
         let mut parent = vec![0; self.list.len()];
         let mut next = 0;
@@ -209,55 +216,57 @@ impl Patches {
         parent
     }
 
-    /// Where their coordinates begin, in those of the file, m.
+    /// The origin of the patch coordinates, in the coordinates of the scene file, m.
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
-    /// How many patches there are.
+    /// Number of patches.
     pub fn len(&self) -> usize {
         self.list.len()
     }
 
-    /// Never true: [`Patches::new`] refuses such scenes.
+    /// Always false: [`Patches::new`] returns an error for a scene without patches.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Area of all reflecting sides, covered or not, m²: what a sensor that samples all surfaces divides by.
+    /// Area of all reflecting sides, covered or not, m². A sensor that samples all surfaces divides by this area.
     pub fn surface_area(&self) -> f64 {
         self.surface_area
     }
 
-    /// Σ Aᵢ xᵢ / A: the mean over all reflecting sides, with zero on what is covered.
+    /// Σ Aᵢ xᵢ / A: the mean over all reflecting sides, where covered parts count as zero.
     pub fn surface_mean(&self, x: &[DVec3]) -> DVec3 {
         self.iter().zip(x).map(|(p, x)| p.area * *x).sum::<DVec3>() / self.surface_area
     }
 
-    /// Area of the reflecting sides that no patch holds because they are covered, m².
+    /// Area of the reflecting sides that belongs to no patch because it is covered, m².
     pub fn covered_area(&self) -> f64 {
         self.covered_area
     }
 
-    /// The primitives the patches lie on, those of [`Description::surfaces`].
+    /// The primitives on which the patches lie: those of [`Description::surfaces`].
     pub fn primitives(&self) -> &[Primitive] {
         &self.primitives
     }
 
-    /// The areas Aᵢ.
+    /// The areas Aᵢ of all patches, m².
     pub fn areas(&self) -> Vec<f64> {
         self.list.iter().map(|p| p.area).collect()
     }
 }
 
-/// Whether a matrix can hold these surfaces.
+/// Returns an error if a radiosity matrix cannot represent these surfaces.
 fn suits(scene: &Description, listed: &[(usize, Primitive)]) -> Result<(), SceneError> {
     if listed.is_empty() {
-        return Err(SceneError::new("the scene has no surface").help("add a shape"));
+        return Err(
+            SceneError::new("the scene has no surface, so there is nothing to divide into patches").help("add a shape")
+        );
     }
     if !scene.lights.is_empty() {
-        let e = SceneError::new("a radiosity matrix holds light from surfaces only").key("lights");
-        return Err(e.help("leave the radiosity world out"));
+        let e = SceneError::new("a radiosity matrix can only hold light that surfaces emit").key("lights");
+        return Err(e.help("run without radiosity, or replace these lights by emitting shapes"));
     }
     for &(s, p) in listed {
         let shape = &scene.shapes[s];
@@ -266,12 +275,18 @@ fn suits(scene: &Description, listed: &[(usize, Primitive)]) -> Result<(), Scene
         }
         let material = &scene.materials[shape.material];
         if material.lambertian().is_none() {
-            let e = SceneError::new("a radiosity matrix holds Lambertian surfaces of one colour only");
-            return Err(e.key(format!("materials.{}", material.name)).help("leave the radiosity world out"));
+            let e = SceneError::new("a radiosity matrix can only hold Lambertian surfaces of one colour");
+            return Err(e
+                .key(format!("materials.{}", material.name))
+                .help("run without radiosity, or use a Lambertian material of one colour"));
         }
         if !(p.area() > 0.0 && p.area().is_finite()) {
-            let what = format!("a surface of {} has the area {}", shape.name, p.area());
-            return Err(SceneError::new(what).key(&shape.name).help("remove or repair it"));
+            let what = format!(
+                "a surface of the shape {} has the area {} m², which is not a positive number",
+                shape.name,
+                p.area()
+            );
+            return Err(SceneError::new(what).key(&shape.name).help("remove the shape or correct its size"));
         }
     }
     Ok(())

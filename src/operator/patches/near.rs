@@ -1,11 +1,12 @@
-//! Which primitives are near: a tree of boxes, so that a mesh of many triangles is not compared pair by pair.
+//! Search for nearby primitives with a tree of bounding boxes, so that a mesh of many triangles is not compared pair by
+//! pair.
 //!
 //! ```text
 //! near(box) ⊇ { primitives that meet the box }        first_hit(ray) = the nearest of all
 //! ```
 //!
-//! The tree is in `f32` with boxes widened by 10⁻⁵ of the scene; what counts as met is decided in `f64` by
-//! [`BruteForce`], so the answers are those of comparing with every primitive.
+//! The tree stores boxes in `f32`, enlarged by 10⁻⁵ of the scene's size. [`BruteForce`] decides in `f64` which primitive is
+//! hit. The answers are therefore the same as those of a comparison with every primitive.
 
 use super::brute_force::{BruteForce, Hit};
 use super::patch::SurfacePoint;
@@ -14,7 +15,7 @@ use glam::DVec3;
 use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2, ray::Ray};
 use std::sync::Arc;
 
-/// Boxes reach this far over, in sizes of the scene: far more than `f32` loses.
+/// Boxes are enlarged by this share of the scene's size, which is far more than the rounding error of `f32`.
 const MARGIN: f64 = 1e-5;
 
 /// The tree over the boxes of all primitives.
@@ -41,7 +42,7 @@ impl Near {
         Self { tree: Arc::new(tree), margin }
     }
 
-    /// Calls `see` with primitives until it returns false: all those that meet the box, and some close to it.
+    /// Calls `see` with the numbers of all primitives that meet the box, and of some close to it, until `see` returns false.
     pub(super) fn within(&self, bounds: [DVec3; 2], mut see: impl FnMut(usize) -> bool) {
         self.tree.aabb_traverse(wide(bounds, self.margin), |tree, node| {
             let node = &tree.nodes[node as usize];
@@ -50,7 +51,7 @@ impl Near {
         });
     }
 
-    /// [`BruteForce::first_hit`], without asking every primitive.
+    /// The same result as [`BruteForce::first_hit`], without testing every primitive.
     pub(super) fn first_hit(&self, all: &BruteForce, from: SurfacePoint, direction: DVec3) -> Option<Hit> {
         let (o, mut best) = (all.lifted(from), None::<Hit>);
         let ray = Ray::new(o.as_vec3().into(), direction.as_vec3().into(), 0.0, f32::INFINITY);

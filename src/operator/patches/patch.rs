@@ -4,7 +4,7 @@
 //! Pᵢ = { x : x on the polygon of Patch i, uncovered }        x ↦ the true surface by [`Patch::lift`]
 //! ```
 //!
-//! What all patches of one side of a primitive share is stored once, so that a million patches are 0.2 GB.
+//! The data that all patches of one side of a primitive share are stored once. A million patches then need 0.2 GB.
 
 use super::polygon::{area_vector, centroid};
 use crate::scene::description::Sides;
@@ -12,31 +12,32 @@ use glam::DVec3;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// A point of the true surface with the normal of the side meant.
+/// A point of the true surface, with the normal of one of its two sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
-    /// Metres.
+    /// Position, metres.
     pub position: DVec3,
-    /// Unit normal of the side meant.
+    /// Unit normal of the chosen side.
     pub normal: DVec3,
 }
 
-/// One side of one cell of a surface. The fields of its [`SurfaceSide`] are read as if they were its own.
+/// One side of one cell of a surface. The fields of its [`SurfaceSide`] can be read like its own fields.
 #[derive(Clone, Debug)]
 pub struct Patch {
-    /// Corners, counter-clockwise seen from the side meant.
+    /// Corners, counter-clockwise as seen from this side.
     pub polygon: Corners,
-    /// Unit normal of the side meant.
+    /// Unit normal of this side.
     pub normal: DVec3,
     /// Centre of mass of the polygon.
     pub centre: DVec3,
-    /// True area, without what is covered, m².
+    /// Area of the true surface without its covered part, m².
     pub area: f64,
     /// Area of the polygon, m².
     pub flat_area: f64,
-    /// True area, covered or not, over the area of the polygon: 1 on flat surfaces with straight edges.
+    /// Area of the true surface, covered or not, divided by the area of the polygon. It is 1 on flat surfaces with straight
+    /// edges.
     pub stretch: f64,
-    /// What it shares with the others of its side.
+    /// The data shared by all patches of the same side of the primitive.
     pub side: Arc<SurfaceSide>,
 }
 
@@ -45,22 +46,22 @@ pub struct Patch {
 pub struct SurfaceSide {
     /// Number of the primitive.
     pub primitive: usize,
-    /// The side of the primitive's normal.
+    /// True for the side to which the primitive's normal points.
     pub front: bool,
-    /// The sphere the polygons stand for pieces of: centre and radius.
+    /// Centre and radius of the sphere whose pieces the polygons approximate; `None` on other surfaces.
     pub ball: Option<(DVec3, f64)>,
     /// Albedo per channel.
     pub reflectance: DVec3,
-    /// Radiance it emits, W·sr⁻¹·m⁻²; zero on the back.
+    /// Emitted radiance per channel, W·sr⁻¹·m⁻²; zero on the back.
     pub emission: DVec3,
 }
 
-/// The corners of a polygon; four, the usual number, are stored in place.
+/// The corners of a polygon. Four corners, the usual number, are stored without a separate allocation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Corners {
     /// A quadrilateral.
     Four([DVec3; 4]),
-    /// Any other number.
+    /// A polygon with any other number of corners.
     Many(Box<[DVec3]>),
 }
 
@@ -91,7 +92,8 @@ impl Deref for Patch {
 }
 
 impl Patch {
-    /// An uncovered patch; `polygon` is counter-clockwise seen from the front, `area` that of the true surface.
+    /// A patch that nothing covers; `polygon` is counter-clockwise as seen from the front, and `area` is the area of the
+    /// true surface.
     pub(super) fn new(side: &Arc<SurfaceSide>, mut polygon: Vec<DVec3>, area: f64) -> Self {
         if !side.front {
             polygon.reverse();
@@ -109,7 +111,7 @@ impl Patch {
         }
     }
 
-    /// The point of the true surface that a point of the polygon stands for.
+    /// The point of the true surface that corresponds to a point `p` of the polygon.
     pub fn lift(&self, p: DVec3) -> SurfacePoint {
         match self.ball {
             None => SurfacePoint { position: p, normal: self.normal },
@@ -120,13 +122,13 @@ impl Patch {
         }
     }
 
-    /// A piece of the inside of a sphere.
+    /// Returns true for a piece of the inside of a sphere.
     pub fn is_concave(&self) -> bool {
         self.ball.is_some_and(|(center, _)| self.normal.dot(self.centre - center) < 0.0)
     }
 }
 
-/// The reflecting sides: 0 is the front, 1 the back.
+/// The numbers of the reflecting sides: 0 is the front, 1 the back.
 pub(super) fn sides_of(sides: Sides) -> std::ops::Range<usize> {
     match sides {
         Sides::Front => 0..1,

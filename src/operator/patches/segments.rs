@@ -1,11 +1,12 @@
-//! Many segments against one primitive at a time: the visibility of a pair of patches, sixty-four samples at once.
+//! Visibility of a pair of patches: sixty-four segments are tested against one primitive at a time.
 //!
 //! ```text
 //! h₀ = n·(x − o),  h₁ = n·(y − o)        crossed:  h₀h₁ < 0  and  x + (h₀/(h₀ − h₁))(y − x) inside the outline
 //! ```
 //!
-//! The plain twin is [`BruteForce`](super::BruteForce), one segment at a time (tested). Loops over lanes are plain Rust
-//! that the compiler vectorises; `pulp` compiles them for several instruction sets and chooses at run time.
+//! The simple reference is [`BruteForce`](super::BruteForce), which tests one segment at a time; a test compares both. The
+//! loops over lanes (one lane per segment) are ordinary Rust that the compiler vectorises. `pulp` compiles them for several
+//! instruction sets and chooses one at run time.
 
 use super::body::{Body, Outline, SLACK};
 use super::patch::{Patch, SurfacePoint};
@@ -13,33 +14,34 @@ use super::polygon::{area_vector, at};
 use glam::DVec3;
 use pulp::{Arch, Simd};
 
-/// Segments in a batch.
+/// Number of segments in a batch.
 pub(crate) const LANES: usize = 64;
 /// One number per segment.
 pub(crate) type Lane = [f64; LANES];
 
-/// Pairs of points, one on each of two patches, with the weight of each pair.
+/// A batch of point pairs, one point on each of two patches, with the weight of each pair.
 #[derive(Clone, Debug)]
 pub(crate) struct Segments {
     pub(crate) from: [Lane; 3],
     pub(crate) to: [Lane; 3],
-    /// cos θ cos θ'/r² times the density of the points; 0 for pairs that do not face each other.
+    /// cos θ cos θ'/r² times the Jacobian of the points (area per unit of the random numbers); 0 for pairs that do not face
+    /// each other.
     pub(crate) weight: Lane,
-    /// 1 where something was met, else 0.
+    /// 1 if the segment is blocked, else 0.
     pub(crate) blocked: Lane,
-    /// How far both ends are moved off their surface.
+    /// Distance by which both ends are moved off their surfaces, metres.
     offset: f64,
 }
 
 impl Segments {
-    /// Room for a batch whose ends are moved `offset` off their surfaces.
+    /// Room for a batch whose ends are moved by `offset` off their surfaces.
     pub(crate) fn new(offset: f64) -> Self {
         let zero = [0.0; LANES];
         Self { from: [zero; 3], to: [zero; 3], weight: zero, blocked: zero, offset }
     }
 
-    /// The points of the parts `pa` and `pb` of two patches at `numbers` in [0, 1)⁴; nothing is blocked yet.
-    /// `flat_kernel` is off for pairs on one sphere, where the kernel is constant.
+    /// Places the end points of all segments on the parts `pa` and `pb` of two patches, at the random `numbers` in [0, 1)⁴.
+    /// No segment is blocked yet. `flat_kernel` is false for pairs on one sphere, where the kernel is constant.
     pub(crate) fn place(
         &mut self,
         (a, pa): (&Patch, &[DVec3]),
@@ -58,7 +60,7 @@ impl Segments {
         lift(b, self.offset, &mut self.to);
     }
 
-    /// Both ends of segment `k` as points of their surfaces.
+    /// Both ends of segment `k`, moved back onto their surfaces.
     pub(crate) fn ends(&self, k: usize, a: &Patch, b: &Patch) -> [SurfacePoint; 2] {
         let back = |patch: &Patch, lanes: &[Lane; 3]| {
             let p = DVec3::new(lanes[0][k], lanes[1][k], lanes[2][k]);
@@ -103,7 +105,7 @@ struct Bilinear<'a> {
     density: &'a mut Lane,
 }
 
-/// p + u e + v f + uv g with density n·(e + v g) × (f + u g), which is linear in u and v.
+/// The bilinear map p + u e + v f + uv g. Its Jacobian n·(e + v g) × (f + u g), stored in `density`, is linear in u and v.
 #[pulp::with_simd(bilinear = Arch::new())]
 #[inline(always)]
 fn bilinear_with_simd<'a, S: Simd>(_simd: S, job: Bilinear<'a>) {
@@ -144,7 +146,7 @@ fn weigh_with_simd<'a, S: Simd>(_simd: S, job: Weighing<'a>) {
         let r = DVec3::new(to[0][k] - from[0][k], to[1][k] - from[1][k], to[2][k] - from[2][k]);
         let square = r.length_squared();
         let w = density[0][k] * density[1][k] * n.dot(r) * -m.dot(r) / (square * square);
-        // the horizon of a clipped part may be missed by rounding, and touching parts may share a point
+        // rounding may place points of a clipped part below the horizon, and touching parts may share a point
         weight[k] = if (w > 0.0) & (w < f64::INFINITY) { w } else { 0.0 };
     }
 }
@@ -207,8 +209,9 @@ pub(super) fn block(body: &Body, segments: &mut Segments) {
     }
 }
 
-/// Does the flat body cut every segment between a corner of `a` and a corner of `b`? Then, both being convex, it hides
-/// them from each other altogether: its plane meets the hull of both in the hull of those cuts.
+/// Returns true if the flat body cuts every segment between a corner of `a` and a corner of `b`. Because the body and both
+/// polygons are convex, it then hides them from each other completely: its plane cuts the convex hull of `a` and `b` in the
+/// convex hull of these crossing points.
 pub(super) fn hides(body: &Body, a: &[DVec3], b: &[DVec3]) -> bool {
     let Body::Flat { .. } = body else { return false };
     debug_assert!(area_vector(a) != DVec3::ZERO && area_vector(b) != DVec3::ZERO);
@@ -264,7 +267,7 @@ mod tests {
                 for k in 0..LANES {
                     let [x, y] = segments.ends(k, a, b);
                     let free = caster.free(x, y, std::iter::once(number));
-                    // the ends are moved off their own flat surface by rounding's grace only
+                    // the ends are only just off their own flat surface, so rounding decides there
                     let own = a.primitive == number || b.primitive == number;
                     assert!(own || free == (segments.blocked[k] == 0.0), "{number} {k} {x:?} {y:?}");
                     met[usize::from(free)] += 1;

@@ -1,4 +1,5 @@
-//! A flat primitive cut into convex cells by lines, kept as a tree so that the cell of a point is found by signs.
+//! A flat primitive that lines cut into convex cells. It is stored as a tree, so that the cell of a point is found by the
+//! signs at the lines.
 //!
 //! ```text
 //! split(cell, axis, s):   low  = cell ∩ {axis·x ≤ s}      high = cell ∩ {axis·x > s}
@@ -21,17 +22,17 @@ enum Node {
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    /// Size of the primitive, metres: the unit of all tolerances.
+    /// Size of the primitive, metres; tolerances are shares of it.
     size: f64,
     /// Lengths below this count as zero, metres.
     tiny: f64,
 }
 
-/// Lengths below this share of the primitive's size count as zero, whatever else does.
+/// Lengths below this share of the primitive's size always count as zero.
 const TINY: f64 = 1e-9;
 
 impl Tree {
-    /// One cell; lengths below `tiny` will count as zero.
+    /// A tree with one cell; lengths below `tiny` will count as zero.
     pub(super) fn new(polygon: Vec<DVec3>, tiny: f64) -> Self {
         let size = polygon.iter().map(|p| p.distance(polygon[0])).fold(0.0, f64::max);
         Self { nodes: vec![Node::Cell(polygon.into())], size, tiny: tiny.max(TINY * size) }
@@ -42,7 +43,7 @@ impl Tree {
         self.tiny
     }
 
-    /// Numbers of the nodes that are cells, and their outlines.
+    /// The node numbers of the cells, and their outlines.
     pub(super) fn cells(&self) -> impl Iterator<Item = (usize, &[DVec3])> {
         self.nodes.iter().enumerate().filter_map(|(i, n)| match n {
             Node::Cell(p) => Some((i, &**p)),
@@ -50,12 +51,12 @@ impl Tree {
         })
     }
 
-    /// How many nodes there are: cell numbers are below this.
+    /// Number of nodes; the node numbers of cells are below it.
     pub(super) fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// The cells without their outlines, in the order of [`Tree::cells`].
+    /// The search structure for the cells, without their outlines; cells are numbered in the order of [`Tree::cells`].
     pub(super) fn finder(&self) -> Finder {
         let mut leaf = vec![0; self.nodes.len()];
         self.cells().enumerate().for_each(|(ordinal, (node, _))| leaf[node] = ordinal as u32 | LEAF);
@@ -78,7 +79,8 @@ impl Tree {
         at as u32
     }
 
-    /// Splits every cell that the segment really crosses along the line of the segment. Returns whether any was.
+    /// Splits every cell whose interior the segment crosses, along the line of the segment. Returns true if any cell was
+    /// split.
     pub(super) fn cut(&mut self, normal: DVec3, [a, b]: [DVec3; 2]) -> bool {
         let along = b - a;
         if along.length() <= self.tiny {
@@ -107,7 +109,7 @@ impl Tree {
         self.bisect(children[1], count - low);
     }
 
-    /// Replaces a quadrilateral cell, the part `part` of its chart, by `count` cells.
+    /// Replaces a quadrilateral cell, which is the part `part` of its chart, by `count` cells.
     pub(super) fn grade(&mut self, cell: usize, count: usize, chart: &Chart, part: Part) {
         if count < 2 {
             return;
@@ -132,7 +134,8 @@ impl Tree {
     }
 }
 
-/// Does the segment run inside the polygon for more than `tiny`, with corners more than `tiny` away on both sides?
+/// Returns true if the segment runs inside the polygon for more than `tiny`, with corners more than `tiny` away on both
+/// sides.
 fn crosses(p: &[DVec3], normal: DVec3, a: DVec3, b: DVec3, axis: DVec3, offset: f64, tiny: f64) -> bool {
     let [lo, hi] = extent(p, axis);
     if lo > offset - tiny || hi < offset + tiny {
@@ -153,8 +156,7 @@ fn crosses(p: &[DVec3], normal: DVec3, a: DVec3, b: DVec3, axis: DVec3, offset: 
     (to - from) * a.distance(b) > tiny
 }
 
-/// The segments in which the convex polygon `q` meets the plane of `p`, if it comes near `p` at all. Heights up to `tiny` count
-/// as zero.
+/// The segments in which the convex polygon `q` meets the plane of `p`, or none. Heights up to `tiny` count as zero.
 pub(super) fn meeting(p: &[DVec3], normal: DVec3, q: &[DVec3], tiny: f64) -> Vec<[DVec3; 2]> {
     let offset = normal.dot(p[0]);
     let height = |x: DVec3| {
@@ -181,7 +183,7 @@ pub(super) fn meeting(p: &[DVec3], normal: DVec3, q: &[DVec3], tiny: f64) -> Vec
     }
 }
 
-/// Number of cells a region of this area gets when cells have area `a`.
+/// Number of cells of a region if cells have about the area `a`.
 pub(super) fn share(polygon: &[DVec3], a: f64) -> usize {
     ((area_vector(polygon).length() / a).round() as usize).max(1)
 }

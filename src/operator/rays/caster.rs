@@ -1,4 +1,4 @@
-//! Who sends the rays of a row, and where they arrive.
+//! Traces the rays of a row and finds the patches that they hit.
 
 use super::lamps::Lamps;
 use super::lattice::Lattice;
@@ -9,15 +9,16 @@ use crate::operator::patches::{Lookup, Patches};
 use crate::scene::{Scene, Vertex, VertexWave, error, offset_origin};
 use glam::{DVec3, Vec3};
 
-/// Of a row being traced: a ray that left the scene, or met a side that takes no part.
+/// Entry of a row for a ray that left the scene or hit a side that takes no part in transport.
 pub(super) const NOTHING: u32 = u32::MAX;
 
-/// Room for the rays of a row, in whole packets, and for what its pairs carry if nothing is between them.
+/// Working memory for the rays of a row, in whole packets, and for the contributions of point pairs before the visibility
+/// test.
 pub(super) struct Scratch {
     pub(super) row: Vec<u32>,
     pub(super) wave: VertexWave,
     pub(super) lookup: Lookup,
-    /// Where rays arrived: their numbers, and what they met.
+    /// The numbers of the rays that arrived somewhere, and the vertices that they hit.
     pub(super) met: Vec<(usize, Vertex)>,
     pub(super) unblocked: Vec<DVec3>,
 }
@@ -39,8 +40,8 @@ pub(super) struct Caster<'a> {
 }
 
 impl Caster<'_> {
-    /// Fills row `i` with hits in the order of the sequence. Returns how many rays met a reflecting surface without a
-    /// patch.
+    /// Fills row `i` with hits, in the order of the lattice points. Returns the number of rays that hit a reflecting surface
+    /// at a point without a patch.
     pub(super) fn row(&self, i: usize, scratch: &mut Scratch, row: &mut [u32]) -> u64 {
         row.fill(NOTHING);
         let mut origins = Origins::new(self.patches, i);
@@ -72,7 +73,8 @@ impl Caster<'_> {
         lost
     }
 
-    /// Rounding may put a hit under the foot of whatever stands there: a little back along the ray it is free.
+    /// Finds the patch of a hit that rounding has placed under another object that stands on the surface. A small step back
+    /// along the ray leads to an uncovered point.
     fn nearby(&self, v: &Vertex) -> Option<u32> {
         let offset = error(v.p, Vec3::ONE);
         let find = |back: f32| {

@@ -1,35 +1,35 @@
-//! What must hold for sampled rows, within the sampling error where it is sampled.
+//! Properties that sampled rows must have: exactly where they follow from counting, otherwise within the sampling error.
 //!
 //! ```text
 //! Fᵢⱼ ≥ 0,  Fᵢⱼ ≤ 1,  Σⱼ Fᵢⱼ = 1 (closed)            exactly, by counting
 //! ⟨f, F g⟩ = ⟨F f, g⟩ in the area inner product       within z standard errors, for smooth f and g
 //! ```
 //!
-//! f and g run over 1, x, y, z of the patch centres, measured from the middle of the scene. The standard error is that of
-//! independent rays, which is longer than that of lattice points: a sound z stays well below 1.
+//! f and g run over the functions 1, x, y, z of the patch centres, measured from the middle of the scene. The standard error
+//! is computed as if the rays were independent. Lattice points have a smaller error, so that a correct z stays well below 1.
 
 use super::{Half, Hit, Light};
 use glam::DVec3;
 
-/// The invariants as measured.
+/// The measured properties of sampled rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayChecks {
     /// Smallest row sum.
     pub row_sum_min: f64,
-    /// Largest row sum: 1 at most, by counting.
+    /// Largest row sum; by counting it is at most 1.
     pub row_sum_max: f64,
     /// Largest entry.
     pub largest: f64,
     /// Largest |⟨f, F g⟩ − ⟨F f, g⟩| relative to ‖f‖ ‖g‖.
     pub reciprocity: f64,
-    /// The same in standard errors of independent rays.
+    /// The same difference in standard errors, computed as if the rays were independent.
     pub reciprocity_z: f64,
-    /// Share of the rays that met a reflecting surface where no patch is.
+    /// Share of the rays that hit a reflecting surface at a point without a patch.
     pub lost: f64,
 }
 
 impl Light<'_> {
-    /// Measures them.
+    /// Measures the properties of the sampled rows.
     pub fn checks(&self) -> RayChecks {
         let rays = self.rays;
         let n = rays.per_row as f64;
@@ -60,7 +60,7 @@ impl Light<'_> {
         let place: Vec<DVec3> = self.patches.iter().map(|p| p.centre - middle).collect();
         let one = vec![DVec3::ONE; place.len()];
         let (f_place, f_one) = (self.arrive(&place), self.arrive(&one));
-        // second moments of what a row sees, for the standard error
+        // second moments of the values that the rays of a row hit, for the standard error
         let square = self.arrive(&place.iter().map(|p| *p * *p).collect::<Vec<_>>());
         let of = |c: Option<usize>, x: &[DVec3], i: usize| c.map_or(1.0, |c| x[i][c]);
         let (mut relative, mut z) = (0.0f64, 0.0f64);
@@ -75,7 +75,7 @@ impl Light<'_> {
                     difference += area[i] * (x * fy - fx * y);
                     let spread =
                         |c: Option<usize>, mean: f64| (c.map_or(f_one[i].x, |c| square[i][c]) - mean * mean).max(0.0);
-                    // |cov| ≤ root of the product: (a + b)² bounds it
+                    // the covariance is at most the root of the product of the variances, so (a + b)² bounds the variance
                     let error = x.abs() * spread(g, fy).sqrt() + y.abs() * spread(f, fx).sqrt();
                     variance += (area[i] * error).powi(2) / self.rays.per_row as f64;
                     (ff, gg) = (ff + area[i] * x * x, gg + area[i] * y * y);
@@ -89,18 +89,18 @@ impl Light<'_> {
         (relative, z)
     }
 
-    /// F x, without albedos.
+    /// F x: the arriving light, without albedos.
     fn arrive(&self, x: &[DVec3]) -> Vec<DVec3> {
         self.gathered(x, Half::Both, |_| DVec3::ONE)
     }
 }
 
-/// The larger of the two, and NaN if there is one.
+/// The larger of two numbers; NaN if one is NaN.
 fn worst(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
 }
 
-/// How often the patch met most often was met.
+/// Number of rays that hit the most frequent patch of the row.
 fn largest_count([a, b]: [&[Hit]; 2]) -> usize {
     let (mut i, mut j, mut largest) = (0, 0, 0);
     let at = |run: &[Hit], k: usize| run.get(k).map_or(Hit::MOST, |h| h.patch());

@@ -1,4 +1,4 @@
-//! Light that comes directly from emitters, by pairs of points instead of chance hits.
+//! Direct light from the emitters, estimated with pairs of points instead of chance hits.
 //!
 //! ```text
 //! (T E)ᵢ = ρᵢ/Aᵢ ∫_{Pᵢ} Σ_l E_l ∫_l v cos θ cos θ' / πr² dA' dA
@@ -8,10 +8,14 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | l | emitting primitive, chosen ∝ power | [`Lamps`](super::lamps::Lamps) |
-//! | near | closer to the patch than 1.5 radii of the emitter: there the kernel varies too much for few pairs | [`Lamps::is_near`](super::lamps::Lamps::is_near) |
+//! | l | emitting primitive, chosen with probability proportional to its power | [`Lamps`](super::lamps::Lamps) |
+//! | S | number of pairs of points | `PAIRS` |
+//! | p_l | density of a point on emitter l, m⁻² | [`Lamp::density`](super::lamps::Lamp) |
+//! | v | 1 if nothing blocks the segment between the points, else 0 | |
+//! | N, hit(i, s) | number of rays of a patch; the patch that ray s hits | [`Rays`](super::Rays) |
+//! | near | the distance from the patch to the centre of the emitter is below 1.5 radii of the emitter; there the kernel varies too much for few pairs | [`Lamp::is_near`](super::lamps::Lamp::is_near) |
 //!
-//! Either way the estimate is unbiased, so the line between near and far costs no accuracy in the mean.
+//! Both estimates are unbiased, so the choice of the limit between near and far does not bias the mean.
 
 use super::caster::{Caster, Scratch};
 use super::lamps::Lamp;
@@ -23,12 +27,12 @@ use crate::scene::segment;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Pairs per half of a row: half as many as rays, and no more than this. Their error is less than a third of that of
-/// the rays.
+/// Largest number of pairs per half of a row. Half as many pairs as rays are used, up to this limit. Their error is less
+/// than a third of that of the rays.
 const PAIRS: usize = 256;
 
 impl Caster<'_> {
-    /// T E of patch `i` by both halves of its samples; `row` holds the hits.
+    /// Direct light T E of patch `i`, estimated separately from each half of its samples; `row` holds the hits.
     pub(super) fn direct(&self, i: usize, row: &[u32], scratch: &mut Scratch) -> [[f32; 3]; 2] {
         if self.lamps.0.is_empty() {
             return [[0.0; 3]; 2];
@@ -48,7 +52,7 @@ impl Caster<'_> {
         light.map(|l| (patch.reflectance * l).as_vec3().to_array())
     }
 
-    /// Adds the mean over `pairs` pairs of points for either half.
+    /// Adds to the light of each half the mean over `pairs` pairs of points.
     fn pairs(
         &self,
         i: usize,

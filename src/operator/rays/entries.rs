@@ -1,10 +1,10 @@
-//! Single rows and columns of stored rays.
+//! Access to single rows and columns of stored rays.
 //!
 //! ```text
 //! (T x)ᵢ = (ρᵢ/N) Σₛ x_{hit(i,s)}        T eⱼ = Σ_{(i,s): hit(i,s) = j} (ρᵢ/N) eᵢ
 //! ```
 //!
-//! Rows are stored; columns are their transpose by counting: another u32 per ray.
+//! Rows are stored. Columns are their transpose, built by counting; they need another u32 per ray.
 
 use super::{Hit, RayOperator};
 use crate::operator::matrix::{Columns, LinearOperator, Rows, Transposed};
@@ -18,20 +18,20 @@ impl Rows for RayOperator<'_> {
 
     fn row_times(&self, i: usize, x: &[f64]) -> f64 {
         let (runs, weight) = self.runs(i);
-        // what met nothing sorts last
+        // rays that hit nothing sort last
         let met = |run: &[Hit]| run.iter().take_while(|h| **h != Hit::NOTHING).map(|h| x[h.patch()]).sum::<f64>();
         self.rho[i] * weight * runs.map(met).sum::<f64>()
     }
 }
 
-/// `diag(ρ) F` of stored rays by columns.
+/// `diag(ρ) F` of stored rays, by columns.
 #[derive(Clone, Debug)]
 pub struct RayColumns {
-    /// What a ray of each row counts: ρᵢ/N.
+    /// The weight of a ray of each row: ρᵢ/N.
     weight: Vec<f64>,
     /// Column j is `rows[first[j]..first[j + 1]]`.
     first: Vec<usize>,
-    /// The row of every ray that met something, by what it met.
+    /// The row of every ray that hit a patch, sorted by that patch.
     rows: Vec<u32>,
 }
 

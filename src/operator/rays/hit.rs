@@ -1,23 +1,23 @@
-//! What a ray met, in three bytes: rows are most of the memory of a mesh of a million patches.
+//! The patch that a ray hit, in three bytes, because the rows take most of the memory of a mesh of a million patches.
 
 /// The number of a patch, or [`Hit::NOTHING`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hit([u8; 3]);
 
 impl Hit {
-    /// The ray left the scene, or met a side that takes no part. Sorts last.
+    /// The ray left the scene or hit a side that takes no part in transport. This value sorts last.
     pub const NOTHING: Self = Self([u8::MAX; 3]);
-    /// Patches have numbers below this.
+    /// All patch numbers are below this number.
     pub const MOST: usize = (1 << 24) - 1;
 
-    /// The lower three bytes of `patch`.
+    /// The hit of patch number `patch`; only the lower three bytes are stored.
     #[inline(always)]
     pub(super) fn new(patch: u32) -> Self {
         let [a, b, c, _] = patch.to_le_bytes();
         Self([a, b, c])
     }
 
-    /// The number of the patch; [`Hit::MOST`] of nothing.
+    /// The number of the patch; [`Hit::MOST`] for [`Hit::NOTHING`].
     #[inline(always)]
     pub fn patch(self) -> usize {
         let [a, b, c] = self.0;

@@ -1,4 +1,4 @@
-//! The emitting primitives, as something to choose from.
+//! The emitting primitives, with a distribution for choosing one of them.
 
 use crate::operator::patches::Patches;
 use glam::DVec3;
@@ -6,14 +6,14 @@ use std::ops::Range;
 
 pub(super) struct Lamp {
     pub(super) primitive: u32,
-    /// The patches of its front, the only ones that emit.
+    /// The patches on its front side; only these emit.
     pub(super) patches: Range<u32>,
     pub(super) emission: DVec3,
     pub(super) centre: DVec3,
     pub(super) radius: f64,
-    /// Share of the choices that fall on this lamp or an earlier one.
+    /// Probability of choosing this lamp or an earlier one.
     pub(super) cumulative: f64,
-    /// Density of its points, 1/m².
+    /// Probability of choosing this lamp divided by its area: the density of its points, 1/m².
     pub(super) density: f64,
 }
 
@@ -50,7 +50,7 @@ impl Lamps {
         Self(lamps.collect())
     }
 
-    /// The lamp that the number `u` in [0, 1) chooses, and what is left of `u` as a number in [0, 1).
+    /// The lamp that the number `u` in [0, 1) chooses, and the rest of `u`, rescaled to [0, 1).
     pub(super) fn choose(&self, u: f64) -> (&Lamp, f64) {
         let at = self.0.partition_point(|l| l.cumulative <= u).min(self.0.len() - 1);
         let below = if at == 0 { 0.0 } else { self.0[at - 1].cumulative };
@@ -58,7 +58,7 @@ impl Lamps {
         (&self.0[at], rest.clamp(0.0, 1.0 - f64::EPSILON))
     }
 
-    /// The lamp that patch `hit` belongs to.
+    /// The lamp to which patch `hit` belongs.
     pub(super) fn find(&self, hit: u32) -> Option<&Lamp> {
         let at = self.0.partition_point(|l| l.patches.end <= hit);
         self.0.get(at).filter(|l| l.patches.contains(&hit))

@@ -1,4 +1,4 @@
-//! The points of a row: an extensible lattice rule, shifted at random.
+//! The points that define the rays of a row: an extensible lattice rule with a random shift.
 //!
 //! ```text
 //! xₛ = { φ₂(s) z + Δ },  s = 0, 1, …        z = (1, 182667, 469891, 498753),  Δ uniform in [0, 1)⁴, one per row
@@ -6,13 +6,14 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | φ₂ | the bits of s mirrored at the point | [`Lattice::at`] |
-//! | { } | fractional part | wrapping arithmetic of 32 bits |
+//! | φ₂ | radical inverse: the bits of s mirrored at the binary point | [`Lattice::at`] |
+//! | { } | fractional part | wrapping 32-bit arithmetic |
 //!
-//! The first 2^m points are a lattice for every m, so that rows are nested and both halves of a row are lattices, too. What
-//! a patch sees jumps along edges; there a shifted lattice has less variance than a scrambled net, whose points are random
-//! within their cells: the error of u in the Cornell box at 256 rays is 0.76 of that with Sobol points, and a point costs
-//! four multiplications. The first two numbers are the direction, the last two the place on the patch.
+//! The first 2^m points are a lattice for every m. Rows are therefore nested, and both halves of a row are lattices, too.
+//! The light that a patch sees jumps at edges. For such functions a shifted lattice has less variance than a scrambled net,
+//! whose points are random within their cells: the error of u in the Cornell box at 256 rays is 0.76 of the error with Sobol
+//! points. A point costs four multiplications. The first two numbers give the direction, the last two the place on the
+//! patch.
 //!
 //! References: Cools, Kuo and Nuyens, *Constructing embedded lattice rules for multivariate integration* (2006), for z;
 //! Hickernell, Hong, L'Écuyer and Lemieux, *Extensible lattice sequences for quasi-Monte Carlo quadrature* (2000).
@@ -21,7 +22,7 @@ use crate::math::{Key, Purpose, Rng};
 
 const Z: [u32; 4] = [1, 182_667, 469_891, 498_753];
 
-/// Points of one row.
+/// The points of one row.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lattice {
     shift: [u32; 4],
@@ -33,7 +34,7 @@ impl Lattice {
         Self { shift: shift.map(|x| ((x * 16_777_216.0) as u32) << 8) }
     }
 
-    /// Point s, its coordinates multiples of 2⁻²⁴ below 1.
+    /// Point s; its coordinates are multiples of 2⁻²⁴ below 1.
     #[inline(always)]
     pub(super) fn at(&self, s: u32) -> [f32; 4] {
         let mirrored = s.reverse_bits();

@@ -1,4 +1,4 @@
-//! The operator over patches as stored rays: rows sampled once, applied as often as wanted.
+//! The discrete operator over patches in the form of stored rays: the rows are sampled once and applied as often as needed.
 //!
 //! ```text
 //! Fᵢⱼ ≈ #{s : ray s of patch i arrives at j} / N        (F x)ᵢ ≈ (1/N) Σₛ x_{hit(i,s)}
@@ -7,19 +7,19 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | N | rays of a row, all of the same weight 1/N | [`Rays::per_row`] |
-//! | hit(i, s) | patch met, or [`Hit::NOTHING`] | [`Rays::row`] |
-//! | T = diag(ρ) F | the operator of one channel | [`RayOperator`] |
-//! | D | T E of the emitters, by pairs of points where they are far | `direct` |
+//! | N | number of rays of a row; each has the weight 1/N | [`Rays::per_row`] |
+//! | hit(i, s) | the patch that ray s of patch i hits, or [`Hit::NOTHING`] | [`Rays::row`] |
+//! | T = diag(ρ) F | the operator of one colour channel | [`RayOperator`] |
+//! | D | direct light T E; for distant emitters it is sampled with pairs of points | `direct` |
 //!
-//! The four numbers of a ray are a point of a lattice with a random shift of its own in every row (`lattice`). Rows of a
-//! closed scene sum to exactly 1; single entries are poor, but the errors of a row cancel in T x, which converges about
-//! like N^−0.7. Restoring AᵢFᵢⱼ = AⱼFⱼᵢ by averaging both would break that cancellation and is not done: T is self-adjoint
-//! only within the sampling error, which [`Light::checks`] states.
+//! The four numbers that define a ray are a point of a lattice (`lattice`), which has a separate random shift in every row.
+//! Rows of a closed scene sum to exactly 1. Single entries are inaccurate, but the errors of a row cancel in T x, whose
+//! error falls about like N^−0.7. Averaging Fᵢⱼ and Fⱼᵢ to restore AᵢFᵢⱼ = AⱼFⱼᵢ would destroy this cancellation and is not
+//! done. T is therefore self-adjoint only within the sampling error, which [`Light::checks`] reports.
 //!
-//! The first and the second half of a row are lattices of N/2 rays each: their difference gives every result an error bar
-//! ([`Light::noise`]). Both share one shift and complement each other, so the bar is a little too long (1.1 to 1.5 times)
-//! rather than too short.
+//! The first and the second half of a row are lattices of N/2 rays each. Their difference gives every result an error bar
+//! ([`Light::noise`]). Both halves share one shift and complement each other. The error bar is therefore somewhat too long
+//! (1.1 to 1.5 times), never too short for this reason.
 //!
 //! Reference: Pattanaik and Mudur, *Computation of global illumination by Monte Carlo simulation of the particle model of light* (1992).
 
@@ -52,32 +52,32 @@ use lamps::Lamps;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// Rows of F as rays.
+/// The rows of F, stored as rays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rays {
     /// Number of patches.
     pub n: usize,
-    /// N, even.
+    /// N, the number of rays per row; it is even.
     pub per_row: usize,
-    /// Aᵢ, m².
+    /// The areas Aᵢ of the patches, m².
     pub area: Vec<f64>,
-    /// Row i at `i·N`: the hits of its first half, ascending, then those of its second.
+    /// The hits of row i begin at `i·N`: those of its first half, ascending, then those of its second half, ascending.
     hits: Vec<Hit>,
-    /// T E per patch and half, with ρ.
+    /// Direct light T E per patch, half of the rays, and channel; the reflectance ρ is included.
     direct: Vec<[[f32; 3]; 2]>,
-    /// Rays that met a reflecting surface where no patch is, and count as having met nothing.
+    /// Number of rays that hit a reflecting surface at a point without a patch. They count as rays that hit nothing.
     pub lost: u64,
 }
 
-/// Rows that are told together: they are short.
+/// Number of rows per progress report, because a row takes little time.
 const ROWS: u64 = 64;
 
 impl Rays {
-    /// Traces `per_row` rays (rounded up to an even number; powers of two are best) from every patch. The result does
-    /// not depend on the number of threads.
+    /// Traces `per_row` rays from every patch. The number is rounded up to an even number; powers of two are best. The
+    /// result does not depend on the number of threads.
     ///
     /// # Errors
-    /// [`Stopped`] when `progress` says so.
+    /// [`Stopped`] if `progress` asks to stop.
     ///
     /// # Panics
     /// If the mesh has more than [`Hit::MOST`] patches.
@@ -117,12 +117,12 @@ impl Rays {
         Ok(Self { n, per_row, area: patches.areas(), hits, direct, lost: lost.into_inner() })
     }
 
-    /// What the rays of patch `i` met: the halves, each ascending, with [`Hit::NOTHING`] last.
+    /// The hits of the rays of patch `i`, as two halves. Each half is ascending, with [`Hit::NOTHING`] last.
     pub fn row(&self, i: usize) -> [&[Hit]; 2] {
         self.hits[i * self.per_row..(i + 1) * self.per_row].split_at(self.per_row / 2).into()
     }
 
-    /// D, the light that comes directly from the emitters, reflected once: `T E`.
+    /// D, the direct light of patch `i`: light that comes from the emitters and is reflected once, `T E`.
     pub fn direct(&self, i: usize) -> DVec3 {
         0.5 * (self.direct_half(i, 0) + self.direct_half(i, 1))
     }
@@ -131,13 +131,13 @@ impl Rays {
         DVec3::from(self.direct[i][half].map(f64::from))
     }
 
-    /// Fᵢⱼ as sampled, for looking at: not accurate one by one.
+    /// The sampled value of Fᵢⱼ, for inspection; a single entry is not accurate.
     pub fn entry(&self, i: usize, j: usize) -> f64 {
         let count = |half: &[Hit]| half.partition_point(|h| h.patch() <= j) - half.partition_point(|h| h.patch() < j);
         self.row(i).into_iter().map(count).sum::<usize>() as f64 / self.per_row as f64
     }
 
-    /// Bytes the rows take.
+    /// Memory used by the rows, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.hits) + size_of_val(&*self.direct)
     }

@@ -1,4 +1,4 @@
-//! T = diag(ρ) F of stored rays, its halves, and its Galerkin projection on a coarser mesh.
+//! T = diag(ρ) F of stored rays, the same operator with half of the rays, and its Galerkin projection on a coarser mesh.
 //!
 //! ```text
 //! (T x)ᵢ  = ρᵢ (1/N) Σₛ x_{hit(i,s)}
@@ -6,40 +6,40 @@
 //! T_H = R T P       (P X)ᵢ = X_{parent(i)}      (R x)_I = Σ_{i∈I} Aᵢ xᵢ / A_I
 //! ```
 //!
-//! T_H is what the same rays give when every patch of I has its share of the rays of I by area, so a study in h costs no
-//! further ray.
+//! T_H is the operator on the coarse patches I, built from the same rays: each fine patch contributes its rays in proportion
+//! to its area. A study of the mesh size h therefore needs no further rays.
 
 use super::{Hit, Rays};
 use crate::operator::matrix::{LinearOperator, Rows};
 use rayon::prelude::*;
 
-/// Which rays of every row are used.
+/// The part of the rays of every row that is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Half {
-    /// All N.
+    /// All N rays.
     Both,
-    /// The first N/2.
+    /// The first N/2 rays.
     First,
-    /// The last N/2.
+    /// The last N/2 rays.
     Second,
 }
 
-/// `diag(ρ) F` of one channel, F as sampled.
+/// `diag(ρ) F` of one colour channel, where F is sampled.
 #[derive(Clone, Debug)]
 pub struct RayOperator<'a> {
-    /// The rows.
+    /// The stored rays.
     pub rays: &'a Rays,
     /// Albedo per patch.
     pub rho: Vec<f64>,
-    /// The rays used.
+    /// The part of the rays that is used.
     pub half: Half,
 }
 
 impl Rays {
-    /// T of these albedos.
+    /// The operator T for the albedos `rho`, one per patch.
     ///
     /// # Panics
-    /// If there are not as many albedos as patches.
+    /// If the number of albedos is not the number of patches.
     pub fn operator(&self, rho: Vec<f64>) -> RayOperator<'_> {
         assert_eq!(rho.len(), self.n, "one albedo per patch");
         RayOperator { rays: self, rho, half: Half::Both }
@@ -47,13 +47,13 @@ impl Rays {
 }
 
 impl<'a> RayOperator<'a> {
-    /// The same operator by other rays.
+    /// The same operator with another part of the rays.
     #[must_use]
     pub fn by(self, half: Half) -> Self {
         Self { half, ..self }
     }
 
-    /// The runs of ascending hits that are used of row i, and the weight of a ray.
+    /// The used hits of row i as runs in ascending order, and the weight of one ray.
     pub(super) fn runs(&self, i: usize) -> (impl Iterator<Item = &'a [Hit]> + use<'a>, f64) {
         let [a, b] = self.rays.row(i);
         let (runs, rays) = match self.half {
@@ -75,7 +75,7 @@ impl LinearOperator for RayOperator<'_> {
     }
 
     fn apply_adjoint(&self, x: &[f64], y: &mut [f64]) {
-        // a fixed number of blocks, each of which reads its part of every row: the sums have a fixed order
+        // a fixed number of blocks, each of which reads its part of every row, so that sums have a fixed order
         let block = self.len().div_ceil(32).max(1);
         y.par_chunks_mut(block).enumerate().for_each(|(number, y)| {
             let first = number * block;
@@ -98,7 +98,7 @@ impl LinearOperator for RayOperator<'_> {
     }
 }
 
-/// `R T P`: an operator on a coarser mesh whose patches are unions of fine ones.
+/// `R T P`: the operator on a coarser mesh whose patches are unions of fine patches.
 #[derive(Clone, Debug)]
 pub struct Coarse<'a, T: ?Sized> {
     fine: &'a T,
@@ -108,10 +108,10 @@ pub struct Coarse<'a, T: ?Sized> {
 }
 
 impl<'a, T: LinearOperator + ?Sized> Coarse<'a, T> {
-    /// The projection of `fine`; `parent` holds the number of the union of every patch, `area` the areas of the patches.
+    /// The projection of `fine`. For every fine patch, `parent` holds the number of its union and `area` its area.
     ///
     /// # Panics
-    /// If the three differ in length.
+    /// If `parent` and `area` do not have one entry per patch of `fine`.
     pub fn new(fine: &'a T, parent: &'a [u32], area: &'a [f64]) -> Self {
         assert!(parent.len() == fine.len() && area.len() == fine.len(), "one parent and one area per patch");
         let mut coarse_area = vec![0.0; parent.iter().max().map_or(0, |m| *m as usize + 1)];
@@ -119,7 +119,7 @@ impl<'a, T: LinearOperator + ?Sized> Coarse<'a, T> {
         Self { fine, parent, area, coarse_area }
     }
 
-    /// P: every patch takes the value of its union.
+    /// P: gives every fine patch the value of its union.
     pub fn prolong(&self, coarse: &[f64]) -> Vec<f64> {
         self.parent.iter().map(|p| coarse[*p as usize]).collect()
     }

@@ -1,24 +1,25 @@
-//! Where the rays of a patch start: uniformly on what is uncovered of it.
+//! Origins of the rays of a patch, distributed uniformly on its uncovered part.
 //!
 //! ```text
 //! x = polygon(u, v), lifted to the true surface; points under something are left out and the sequence goes on
 //! ```
 //!
-//! Of a piece of a sphere the flat facet is sampled uniformly, whose image on the sphere is uniform up to O(h²).
+//! For a piece of a sphere, the flat facet is sampled uniformly. Its image on the sphere is uniform up to O(h²).
 
 use crate::operator::patches::{Patch, Patches, SurfacePoint, polygon::uniform};
 
-/// Draws origins one after the other.
+/// Samples origins one after the other.
 pub(super) struct Origins<'a> {
     patches: &'a Patches,
     patch: &'a Patch,
     number: usize,
-    /// Some of the patch is covered.
+    /// True if a part of the patch is covered.
     partly: bool,
     next: u32,
 }
 
-/// After so many covered points in a row the next is used all the same; its ray meets a black back and counts as nothing.
+/// After this number of consecutive covered points, the next point is used in any case. Its ray hits a black back and counts
+/// as a ray that hit nothing.
 const PATIENCE: u32 = 4096;
 
 impl<'a> Origins<'a> {
@@ -28,7 +29,7 @@ impl<'a> Origins<'a> {
         Self { patches, patch, number, partly: patch.area < whole * (1.0 - 1e-9), next: 0 }
     }
 
-    /// The next origin, from the last two of four numbers, and all four.
+    /// The next origin, computed from the last two of four numbers, and the four numbers.
     pub(super) fn next(&mut self, numbers: impl Fn(u32) -> [f32; 4]) -> (SurfacePoint, [f32; 4]) {
         let first = self.next;
         loop {

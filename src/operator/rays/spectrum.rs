@@ -4,8 +4,8 @@
 //! r ≈ ‖T v‖ / ‖v‖ in the weight A/w, w = ρ,    v ← T v / ‖T v‖
 //! ```
 //!
-//! T is self-adjoint in that weight only within the sampling error, so the ratio is an estimate and no bound. Its noise is
-//! that of a sum over all rays, much smaller than that of a row.
+//! T is self-adjoint in this weight only within the sampling error. The ratio is therefore an estimate, not a bound. Its
+//! noise is that of a sum over all rays, which is much smaller than that of one row.
 
 use super::solution::channels;
 use super::{Light, Record, record};
@@ -13,12 +13,14 @@ use crate::operator::matrix::Spectral;
 use glam::DVec3;
 
 impl Light<'_> {
-    /// r(T) per channel, from `start` (u = ρ will do) to the relative change `tolerance` per step.
+    /// The spectral radius r(T) per channel, by power iteration from `start` (for example u = ρ). The iteration ends when
+    /// the relative change per step is at most `tolerance`, or after `max_steps` steps.
     pub fn spectral_radius(&self, start: &[Record], tolerance: f64, max_steps: usize) -> [Spectral; 3] {
         self.power_iteration(|i| self.patches[i].reflectance, start, tolerance, max_steps)
     }
 
-    /// The same for `diag(w) F`: w = ρ²/s tells whether walks with survival s have a finite variance.
+    /// The spectral radius of `diag(w) F` by the same iteration. With w = ρ²/s it tells whether random walks with survival
+    /// probability s have a finite variance.
     pub fn power_iteration(
         &self,
         w: impl Fn(usize) -> DVec3 + Sync + Send,
@@ -55,7 +57,7 @@ impl Light<'_> {
         })
     }
 
-    /// Σ Aᵢ xᵢ yᵢ / wᵢ per channel, over the patches that count in it.
+    /// Σ Aᵢ xᵢ yᵢ / wᵢ per channel, over the patches with wᵢ > 0.
     fn inner(&self, w: impl Fn(usize) -> DVec3, x: impl Fn(usize) -> DVec3, y: impl Fn(usize) -> DVec3) -> DVec3 {
         let one = |(i, a): (usize, &f64)| DVec3::select(w(i).cmpgt(DVec3::ZERO), *a * x(i) * y(i) / w(i), DVec3::ZERO);
         self.rays.area.iter().enumerate().map(one).sum()

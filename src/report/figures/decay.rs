@@ -1,14 +1,14 @@
-//! The decay of the series: how fast `T^k E` gets small, in the norm where a bound holds and in the one we look at.
+//! The decay of the series: how fast `T^k E` decreases, in the surface norm, where a bound holds, and in the image norm.
 //!
 //! ```text
 //! ‖T^k E‖₁ ≤ ‖T‖₁^k ‖E‖₁,   ‖T‖₁ ≤ max albedo          (guaranteed, surface norm)
-//! ‖L − S_n‖₁ ≤ g/(1−g) ‖T^n E‖₁,  g = max albedo < 1     (a posteriori)
+//! ‖L − S_n‖₁ ≤ g/(1−g) ‖T^n E‖₁,  g = max albedo < 1     (a posteriori: needs the last term)
 //! ‖T^{k+1} E‖₁ / ‖T^k E‖₁ → r(T)                         (observed; only asymptotic)
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | ‖·‖₁ | mean over the surface sensor: area-uniform, cosine directions | [`Decay::surface`], large panel |
+//! | ‖·‖₁ | mean over the surface sensor: points uniform in area, cosine-distributed directions | [`Decay::surface`], large panel |
 //! | ‖·‖₂ | root mean square over the image, from products of replicates | [`Decay::image`], no bound is claimed |
 //! | ratio | ‖T^k E‖₁ / ‖T^{k−1} E‖₁ | [`Decay::ratios`] |
 //!
@@ -23,22 +23,22 @@ use crate::stats::{self, TermMeans};
 
 pub use super::rate::{RateKind, RateLine};
 
-/// What the figure shows.
+/// Contents of the figure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decay {
-    /// Heading of the figure.
+    /// Title of the figure.
     pub title: String,
-    /// Surface L1 norms against k.
+    /// Surface norms ‖T^k E‖₁ against k.
     pub surface: Vec<Curve>,
-    /// Geometric lines in the surface panel; those that are rates of the terms stand in the ratio panel, too.
+    /// Geometric lines in the surface panel. Lines that are rates of the terms are also drawn in the panel of ratios.
     pub lines: Vec<RateLine>,
-    /// Image L2 norms against k; empty: no such panel.
+    /// Image norms ‖T^k E‖₂ against k. If empty, this panel is left out.
     pub image: Vec<Curve>,
-    /// Ratios at k = 1, 2, …; empty: no such panel. See [`independent_ratios`].
+    /// Ratios at k = 1, 2, …; if empty, this panel is left out. See [`independent_ratios`].
     pub ratios: Vec<Curve>,
 }
 
-/// The norms of terms as points.
+/// The norms of the terms as points of a curve.
 ///
 /// ```
 /// use fredholm::{report::{figures::decay::norms, plot::Point}, stats::TermMeans};
@@ -52,7 +52,8 @@ pub fn norms(terms: &TermMeans) -> Vec<Point> {
     terms.mean.iter().enumerate().map(point).collect()
 }
 
-/// Ratios of terms measured together, with their covariance: that of term k to term k − 1 stands at k, as in the tables.
+/// Ratios of terms that were measured together; the errors use their covariance. The ratio of term k to term k − 1 is drawn
+/// at k, as in the tables.
 pub fn ratios(terms: &TermMeans) -> Vec<Point> {
     let point = |k: usize| {
         let (value, std_error) = stats::ratio(terms, k - 1)?;
@@ -62,9 +63,9 @@ pub fn ratios(terms: &TermMeans) -> Vec<Point> {
     (1..terms.mean.len()).filter_map(point).collect()
 }
 
-/// Ratios of consecutive points whose errors are independent (one estimator per term, or exact values):
-/// `r = b/a`, `(se_r/r)² = (se_a/a)² + (se_b/b)²`, the delta method. Terms of one path are correlated; for them the
-/// covariance is needed: [`ratios`].
+/// Ratios of consecutive points whose errors are independent (one estimator per term, or exact values): `r = b/a`,
+/// `(se_r/r)² = (se_a/a)² + (se_b/b)²`, the delta method. Terms of one path are correlated, so that their ratios need the
+/// covariance: use [`ratios`].
 ///
 /// ```
 /// use fredholm::report::{figures::decay::independent_ratios, plot::Point};
@@ -76,7 +77,7 @@ pub fn independent_ratios(points: &[Point]) -> Vec<Point> {
         let (a, b) = (pair[0], pair[1]);
         let value = b.value / a.value;
         let std_error = ((b.std_error / a.value).powi(2) + (value * a.std_error / a.value).powi(2)).sqrt();
-        // The fewer replicates decide how well the error is known.
+        // The error is known only as well as the point with fewer replicates.
         let known = [a, b].map(|p| p.replicates).into_iter().filter(|&n| n > 0).min().unwrap_or(0);
         Point { x: b.x, value, std_error, replicates: known }
     };
@@ -88,7 +89,7 @@ const WIDTH: u32 = 960;
 /// Draws the figure.
 ///
 /// # Errors
-/// If the plot crate fails, which is a defect.
+/// If the plot crate fails, which is a defect of the program.
 pub fn draw(decay: &Decay, caption: &Caption) -> Result<Figure, ReportError> {
     let below = !(decay.image.is_empty() && decay.ratios.is_empty());
     figure("decay", WIDTH, if below { 780 } else { 490 }, caption, |page| panels(page, decay))
@@ -99,7 +100,7 @@ fn panels(page: &Canvas, decay: &Decay) -> Drawn {
     let last = last.filter(|x| x.is_finite()).fold(1.0, f64::max) as usize;
     page.text(&decay.title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
 
-    // The surface panel: data, and the lines that hold there.
+    // The surface panel: data, and the lines that hold for this norm.
     let starts = decay.lines.iter().map(|l| l.value);
     let y = Axis::log("‖TᵏE‖₁   (mean radiance, W sr⁻¹ m⁻²)", extent(&decay.surface).chain(starts));
     let frame = [84.0, 72.0, 540.0, 350.0];
@@ -111,7 +112,7 @@ fn panels(page: &Canvas, decay: &Decay) -> Drawn {
     }
     curves(&panel, &decay.surface)?;
 
-    // The legend has a column of its own, so it covers no data.
+    // The legend is next to the panel, so that it covers no data.
     let mut entries = vec![Entry::new(Sample::Heading, "Surface norm, 95 % intervals")];
     entries.extend(decay.surface.iter().map(|c| Entry::new(Sample::Mark(c.look), &c.label)));
     if !decay.lines.is_empty() {
@@ -131,7 +132,7 @@ fn panels(page: &Canvas, decay: &Decay) -> Drawn {
     }
     page.legend((646.0, 68.0), 300.0, &entries)?;
 
-    // Below: what the picture shows, and the ratios.
+    // Lower panels: the image norm, and the ratios.
     let mut left = 84.0;
     if !decay.image.is_empty() {
         let y = Axis::log("‖TᵏE‖₂   (rms radiance)", extent(&decay.image));
@@ -154,9 +155,9 @@ fn panels(page: &Canvas, decay: &Decay) -> Drawn {
     Ok(())
 }
 
-/// Curves side by side, a few pixels apart.
+/// Draws several curves, shifted horizontally by a few pixels so that they do not hide each other.
 fn curves(panel: &Panel, curves: &[Curve]) -> Drawn {
-    // Exact rings first, so that estimates lie on top of them.
+    // Exact values first, so that estimates are drawn on top of them.
     let dodge = |i: usize| 6.0 * (i as f64 - (curves.len() as f64 - 1.0) / 2.0);
     let noisy = |c: &Curve| c.points.iter().any(|p| p.half_width() > 0.0);
     for wanted in [false, true] {
@@ -167,12 +168,12 @@ fn curves(panel: &Panel, curves: &[Curve]) -> Drawn {
     Ok(())
 }
 
-/// What a logarithmic axis has to hold: the values, and the tops of the intervals.
+/// Values that a logarithmic axis must contain: the points, and the upper ends of their intervals.
 fn extent(curves: &[Curve]) -> impl Iterator<Item = f64> {
     curves.iter().flat_map(|c| &c.points).flat_map(|p| [p.value, p.value + p.half_width()])
 }
 
-/// From just below the smallest to just above the largest ratio; bars that are very long do not decide.
+/// An axis from just below the smallest to just above the largest ratio. Very long error bars are ignored.
 fn ratio_axis<'a>(points: impl Iterator<Item = &'a Point> + Clone, rates: impl Iterator<Item = f64>) -> Axis {
     let certain = points.clone().filter(|p| p.half_width() < 0.5 * p.value.abs());
     let values =

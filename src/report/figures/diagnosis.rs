@@ -1,9 +1,10 @@
-//! The figure of a diagnosis: the ratios r_k with the curves that the suspects predict, and where the ratio holds.
+//! The figure of a diagnosis: the ratios r_k with the curves that the possible causes predict, and the ratio in each region
+//! of the image.
 //!
 //! | panel | shows |
 //! |---|---|
-//! | left | r_k with 95 % bars; a line per suspect; 1 is right |
-//! | right | the ratio in the regions of the image, of direct light where there are terms, else of the whole |
+//! | left | r_k with 95 % error bars, and one line per possible cause; 1 is correct |
+//! | right | the ratio in the regions of the image: of direct light if terms are given, else of the whole image |
 
 use crate::diagnosis::evidence::Ratio;
 use crate::diagnosis::regions::SIDE;
@@ -16,15 +17,15 @@ use crate::report::{
 };
 use plotters::{prelude::RGBColor, style::text_anchor::HPos};
 
-/// Suspects drawn; more would hide each other.
+/// Largest number of causes drawn; more curves would hide each other.
 const MOST: usize = 4;
 const RIGHT: Stroke = Stroke { color: GREY, width: 1.6, dash: Some((7.0, 5.0)) };
 const MAP: f64 = 300.0;
 
-/// Draws a diagnosis.
+/// Draws the figure of a diagnosis.
 ///
 /// # Errors
-/// If the plot crate fails, which is a defect.
+/// If the plot crate fails, which is a defect of the program.
 pub fn draw(d: &Diagnosis, title: &str, caption: &Caption) -> Result<Figure, ReportError> {
     let terms = d.evidence.ratios.iter().any(|r| matches!(r.slot, Slot::Term(_)));
     let width = if terms { 1120 } else { 620 };
@@ -41,7 +42,7 @@ pub fn draw(d: &Diagnosis, title: &str, caption: &Caption) -> Result<Figure, Rep
 fn ratios(page: &Canvas, d: &Diagnosis) -> Drawn {
     let point = |r: &Ratio| {
         let Slot::Term(k) = r.slot else { return None };
-        // a 95 % interval of a normal deviate, as every bar of the figure
+        // scaled so that this bar, like all others in the figure, is a 95 % interval of a normal distribution
         let std_error = r.half_width / 1.96;
         Some(Point { x: k as f64, value: r.value, std_error, replicates: 1_000_000 }).filter(|p| p.value.is_finite())
     };
@@ -55,10 +56,10 @@ fn ratios(page: &Canvas, d: &Diagnosis) -> Drawn {
     let positive = values().filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
     let log = hi > 8.0 * positive && (hi > 4.0 || lo > 0.0);
     let y = if log {
-        Axis::log("r_k, suspect over right", values().filter(|v| *v > 0.0))
+        Axis::log("r_k, suspect/correct", values().filter(|v| *v > 0.0))
     } else {
         let air = 0.1 * (hi - lo).max(0.1);
-        Axis::linear("r_k, suspect over right", (lo - air).max(0.0), hi + air, 6)
+        Axis::linear("r_k, suspect/correct", (lo - air).max(0.0), hi + air, 6)
     };
     let last = seen.iter().map(|p| p.x).fold(1.0, f64::max);
     let panel = Panel::draw(
@@ -69,7 +70,7 @@ fn ratios(page: &Canvas, d: &Diagnosis) -> Drawn {
         y,
     )?;
     panel.line((-0.5, 1.0), (last + 0.5, 1.0), RIGHT)?;
-    let mut entries = vec![Entry::new(Sample::Line(RIGHT), "right")];
+    let mut entries = vec![Entry::new(Sample::Line(RIGHT), "correct")];
     for (i, s) in suspects.iter().enumerate() {
         let points = s.curve.iter().map(|p| Point::exact(p[0], p[1])).collect();
         let curve = Curve { label: s.name.clone(), points, look: Look::nth(i) };
@@ -96,7 +97,7 @@ fn map(page: &Canvas, d: &Diagnosis, left: f64) -> Drawn {
         let name = format!("region {row},{column}");
         let value = e.regions.iter().position(|n| *n == name).and_then(|i| r.regions.get(i)).copied();
         let value = value.unwrap_or(f64::NAN);
-        // a factor of 2 is the end of the scale
+        // the colour scale ends at a factor of 2
         let [red, green, blue] = if value.is_nan() { [220; 3] } else { zmap::color(4.0 * value.max(1e-6).log2()) };
         let corners = [(x, y), (x + cell, y), (x + cell, y + cell), (x, y + cell)];
         page.polygon(&corners, RGBColor(red, green, blue))?;
@@ -115,7 +116,7 @@ fn map(page: &Canvas, d: &Diagnosis, left: f64) -> Drawn {
         page.line((left + at, top), (left + at, top + MAP), thin)?;
         page.line((left, top + at), (left + MAP, top + at), thin)?;
     }
-    let note = "blue: half or less, white: right, red: twice or more";
+    let note = "blue: half or less, white: correct, red: twice or more";
     page.text(note, (left, top + MAP + 18.0), Words { size: 12.0, color: GREY, ..Words::default() })?;
     Ok(())
 }

@@ -1,12 +1,13 @@
-//! Eigenvalues on finer and finer meshes: which belong to the scene, and which to the mesh.
+//! Eigenvalues on finer and finer meshes: which of them belong to the scene, and which only to the mesh.
 //!
-//! | shown | meaning |
+//! | quantity | meaning |
 //! |---|---|
-//! | λ | the largest and the most negative eigenvalues of T_h, by the number of patches |
-//! | band | ±0.42361 √(ρ₁ρ₂), the essential spectrum of right-angled edges: filled ever more densely, by whatever mesh |
-//! | step | change from the mesh before: it falls where there is a limit |
+//! | λ | the largest and the most negative eigenvalues of T_h, for each number of patches |
+//! | band | ±0.42361 √(ρ₁ρ₂), the essential spectrum of right-angled edges; on finer meshes more and more eigenvalues lie in it |
+//! | step | change from the previous mesh; it decreases if the eigenvalue has a limit |
 //!
-//! Corners where three faces meet widen the band further (not computed): an eigenvalue just outside the band may drift too.
+//! Corners where three faces meet widen the band further (this is not computed). An eigenvalue just outside the band may
+//! therefore drift, too.
 
 use crate::report::{
     ReportError,
@@ -20,17 +21,17 @@ use crate::report::{
 use crate::study::refinement::{Ends, Mesh, Refinement};
 use plotters::style::RGBColor;
 
-/// The meshes whose spectrum is known.
+/// The meshes for which eigenvalues were computed.
 fn known(r: &Refinement) -> Vec<(&Mesh, &Ends)> {
     r.meshes.iter().filter_map(|m| Some((m, m.spectrum.as_ref()?))).collect()
 }
 
-/// One eigenvalue from mesh to mesh.
+/// One eigenvalue on all meshes.
 struct Track {
     name: String,
-    /// Patches and λ; meshes that have fewer of them are left out.
+    /// Number of patches and λ; meshes without this eigenvalue are left out.
     values: Vec<(usize, f64)>,
-    /// The band of the finest mesh.
+    /// Half width of the band on the finest mesh.
     band: f64,
 }
 
@@ -56,12 +57,12 @@ fn tracks(r: &Refinement) -> Vec<Track> {
     [0, 1].into_iter().flat_map(|side| (0..count(side)).map(move |i| (side, i))).map(|(s, i)| track(s, i)).collect()
 }
 
-/// A line per eigenvalue, a column per mesh.
+/// A table with a row per eigenvalue and a column per mesh.
 pub fn table(r: &Refinement, channel: &str) -> String {
     let known = known(r);
     let mut header = vec!["λ".to_string()];
     header.extend(known.iter().map(|(m, _)| m.patches.to_string()));
-    header.extend(["last step", "over the one before", ""].map(String::from));
+    header.extend(["last step", "ratio to the step before", ""].map(String::from));
     let mut rows = vec![header];
     let all = tracks(r);
     for t in &all {
@@ -80,14 +81,14 @@ pub fn table(r: &Refinement, channel: &str) -> String {
     let sides = [vec![Side::Left], vec![Side::Right; known.len() + 2], vec![Side::Left]].concat();
     let band = all.first().map_or(0.0, |t| t.band);
     format!(
-        "{channel}: leading eigenvalues by patches; band of the edges ±{band:.5}\n{}\n\
-         Well outside, where h halves, a step is less than half of the one before: a limit, the scene's.\n\
-         Inside, and just outside (corners widen the band), eigenvalues drift on: they are the mesh's.",
+        "{channel}: leading eigenvalues by number of patches; the band of the edges is ±{band:.5}\n{}\n\
+         Well outside the band, each step is less than half of the previous one if h halves: λ has a limit.\n\
+         Inside, and just outside (corners widen the band), eigenvalues keep changing with the mesh.",
         aligned(&rows, &sides)
     )
 }
 
-/// A line per eigenvalue and mesh.
+/// A CSV file with a line per eigenvalue and mesh.
 pub fn csv(r: &Refinement) -> String {
     let mut csv = Csv::new("patches,h,channel,eigenvalue,value,residual,band");
     for (m, e) in known(r) {
@@ -102,13 +103,13 @@ pub fn csv(r: &Refinement) -> String {
 }
 
 const BAND: Stroke = Stroke { color: GREY, width: 1.6, dash: Some((7.0, 5.0)) };
-/// What stands inside the band.
+/// Appearance of eigenvalues inside the band.
 const INSIDE: Look = Look { color: RGBColor(165, 165, 165), mark: Mark::Ring };
 
-/// Eigenvalues, and their steps from mesh to mesh, against the number of patches.
+/// Draws the eigenvalues, and their steps from mesh to mesh, against the number of patches.
 ///
 /// # Errors
-/// If the plot crate fails, which is a defect.
+/// If the plot crate fails, which is a defect of the program.
 pub fn draw(r: &Refinement, title: &str, caption: &Caption) -> Result<Figure, ReportError> {
     figure("eigenvalues", 1240, 620, caption, |page| panels(page, r, title))
 }
@@ -145,7 +146,7 @@ fn panels(page: &Canvas, r: &Refinement, title: &str) -> Drawn {
     }
     values.iter().try_for_each(|c| panel.curve(c, 0.0, true))?;
 
-    let y = Axis::log("|change from the mesh before|", of(&steps).iter().map(|p| p.value));
+    let y = Axis::log("|change from the previous mesh|", of(&steps).iter().map(|p| p.value));
     let panel = Panel::draw(page, "Steps", [580.0, 72.0, 380.0, 470.0], patches(), y)?;
     steps.iter().try_for_each(|c| panel.curve(c, 0.0, true))?;
 
@@ -153,7 +154,7 @@ fn panels(page: &Canvas, r: &Refinement, title: &str) -> Drawn {
     entries.extend(outside.iter().enumerate().map(|(i, t)| Entry::new(Sample::Mark(Look::nth(i)), label(t))));
     if !inside.is_empty() {
         entries.push(Entry::new(Sample::Heading, "Inside"));
-        entries.push(Entry::new(Sample::Mark(INSIDE), "the mesh's: they drift"));
+        entries.push(Entry::new(Sample::Mark(INSIDE), "they change with the mesh"));
     }
     entries.push(Entry::new(Sample::Line(BAND), format!("±0.42361 √(ρ₁ρ₂) = ±{band:.4}")));
     page.legend((984.0, 68.0), 240.0, &entries)?;

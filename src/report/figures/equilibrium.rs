@@ -1,7 +1,7 @@
-//! The equation at points: L against E + T L on the diagonal, and the p-values against the uniform law.
+//! The rendering equation at points: L against E + T L, and the distribution of the p-values.
 //!
 //! ```text
-//! L(x) = E(x) + (T L)(x)      every point on the diagonal, every p-value as likely as any other
+//! L(x) = E(x) + (T L)(x)      every point lies on the diagonal up to noise, and the p-values are uniform
 //! ```
 
 use crate::report::{
@@ -14,27 +14,27 @@ use crate::report::{
 };
 use crate::stats::uniformity::band;
 
-/// A point: both sides, the standard error of their difference with its replicates, the p-value.
+/// One point of the figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dot {
-    /// L, mean over channels.
+    /// L, mean over the channels.
     pub left: f64,
-    /// E + T L.
+    /// E + T L, mean over the channels.
     pub right: f64,
     /// Standard error of the difference.
     pub std_error: f64,
-    /// Replicates behind it.
+    /// Number of replicates from which the error is computed.
     pub replicates: u64,
-    /// p-value of no difference; NaN if not judged.
+    /// p-value of no difference; NaN if the point was not tested.
     pub p: f64,
-    /// Whether a test over all points rejects this one.
+    /// True if the test of all points rejects this one.
     pub rejected: bool,
 }
 
-/// Draws groups of points, each with its words in the legend.
+/// Draws groups of points. The text of each group is shown in the legend.
 ///
 /// # Errors
-/// If the plot crate fails, which is a defect.
+/// If the plot crate fails, which is a defect of the program.
 pub fn draw(groups: &[(String, Vec<Dot>)], caption: &Caption) -> Result<Figure, ReportError> {
     figure("equilibrium", 1120, 500, caption, |page| {
         let title = "L = E + T L at random points: two estimates from independent paths";
@@ -98,7 +98,7 @@ fn p_values(page: &Canvas, groups: &[(String, Vec<Dot>)]) -> Drawn {
         (x, share) = (next, up);
     }
     page.text(
-        "dashed: where uniform p-values stay with 95 %",
+        "dashed: uniform p-values stay inside with 95 % probability",
         (730.0, 474.0),
         Words { size: 12.0, color: GREY, ..Words::default() },
     )

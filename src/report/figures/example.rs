@@ -1,10 +1,10 @@
-//! The worked example of `CONTRIBUTING.md`: terms as bars over k; compiled and tested, drawn by no command.
+//! The worked example of `CONTRIBUTING.md`: draws the terms against k. It is compiled and tested, but no command uses it.
 
 use crate::report::ReportError;
 use crate::report::image::typeset::Caption;
 use crate::report::plot::{Axis, BLUE, Canvas, Curve, Drawn, Figure, Look, Panel, Point, Stroke, Words, figure};
 
-/// A curve of terms with its bound γ^k.
+/// Draws a curve of terms with its bound γ^k.
 fn draw(terms: &Curve, gamma: f64, caption: &Caption) -> Result<Figure, ReportError> {
     figure("terms", 640, 460, caption, |page| panel(page, terms, gamma))
 }

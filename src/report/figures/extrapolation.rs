@@ -1,4 +1,4 @@
-//! The whole from its first terms as they were measured: what extrapolation gains, and what it does to the noise.
+//! Extrapolation of the whole from its first terms as they were measured: its accuracy, and its effect on the noise.
 //!
 //! ```text
 //! A(t₁, …, tₙ) ± √(∇Aᵀ C ∇A)        gain = √(∇Aᵀ C ∇A / 1ᵀ C 1)        off = A − Σ t ± √(dᵀ C d),  d = ∇A − 1
@@ -6,12 +6,12 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | t | what T^k E is for k = 1, 2, …, and last the tail, in one channel, as an estimator found them | [`Measured::mean`] |
-//! | C | their covariance from replicates: diagonal for terms of paths of their own, far from it for prefixes of one path | [`Measured::covariance`] |
-//! | A | an extrapolation from the first n; see [`accelerate`] | |
+//! | t | estimates of T^k E for k = 1, 2, …, and last of the tail, in one channel | [`Measured::mean`] |
+//! | C | their covariance from replicates. It is diagonal if each term has its own paths, but not for prefixes of one path | [`Measured::covariance`] |
+//! | A | an extrapolation from the first n terms; see [`accelerate`] | |
 //!
-//! E is left out: it is no part of the decay. All errors are to first order in the noise. The whole is measured by the same
-//! paths, so that the noise of what both share leaves `off`.
+//! E is left out because it does not take part in the decay. All errors are to first order in the noise. The whole Σ t is
+//! measured by the same paths, so that noise that A and Σ t share cancels in `off`.
 
 use crate::report::text::{
     number::{plus_minus, significant},
@@ -23,29 +23,29 @@ use nalgebra::{DMatrix, DVector};
 /// The terms of one estimator.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    /// Who measured.
+    /// Name of the estimator.
     pub label: String,
-    /// t.
+    /// The terms t.
     pub mean: Vec<f64>,
-    /// C.
+    /// Their covariance C.
     pub covariance: DMatrix<f64>,
-    /// n.
+    /// Number n of terms that the extrapolation uses.
     pub used: usize,
 }
 
-/// What an extrapolation has come to, in units of the whole.
+/// Result of an extrapolation, relative to the whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extrapolated {
     /// Standard error of A.
     pub noise: f64,
-    /// How much noisier than the sum of the same terms.
+    /// Standard error of A divided by that of the sum of the same terms.
     pub gain: f64,
     /// A − Σ t, and its standard error.
     pub off: [f64; 2],
 }
 
 impl Measured {
-    /// The outcome of every method of [`METHODS`]; `rate` is held to be known. None where a method has nothing to work with.
+    /// The result of every method of [`METHODS`]. `rate` is treated as known exactly. None if a method cannot be applied.
     pub fn outcomes(&self, rate: f64) -> [Option<Extrapolated>; 5] {
         let whole: f64 = self.mean.iter().sum();
         let c = self.covariance.view((0, 0), (self.used, self.used)).into_owned();
@@ -53,7 +53,7 @@ impl Measured {
             let a = a.filter(|a| a.value.is_finite())?;
             let d = |i: usize| a.gradient.get(i).copied().unwrap_or(0.0) - 1.0;
             let d = DVector::from_iterator(self.mean.len(), (0..self.mean.len()).map(d));
-            // rounding of a sum that cancels may be below 0
+            // rounding in a sum that cancels may make it negative
             let error = (&self.covariance * &d).dot(&d).max(0.0).sqrt();
             Some(Extrapolated {
                 noise: a.std_error(&c) / whole,
@@ -64,7 +64,7 @@ impl Measured {
     }
 }
 
-/// A row per method, three columns per estimator.
+/// A table with one row per method and three columns per estimator.
 ///
 /// ```
 /// use fredholm::report::figures::extrapolation::{Measured, table};

@@ -1,4 +1,4 @@
-//! One file for each study: its figure, its table, its CSV.
+//! Figures, tables and CSV files: one module per study.
 
 pub mod bounces;
 pub mod decay;

@@ -1,16 +1,26 @@
-//! The matrix world as files for other programs: patches, terms per patch, norms per bounce, F.
+//! Results of the matrix as files for other programs: patches, terms per patch, norms per bounce, form factors F.
 //!
-//! | file | holds |
+//! | file | contents |
 //! |---|---|
-//! | `mesh.csv` | a line per patch, in the order of rows and columns of F, in the coordinates of the scene file; lengths in m, areas in m², radiance in W sr⁻¹ m⁻² |
+//! | `mesh.csv` | a line per patch, in the order of the rows and columns of F, in the coordinates of the scene file; lengths in m, areas in m², radiance in W sr⁻¹ m⁻² |
 //! | `mesh-terms.csv` | (T_h^k E)ᵢ per patch and k, three channels, W sr⁻¹ m⁻² |
 //! | `norms.csv` | ‖T_h^k E‖ over the patches: Σ A\|x\|, √Σ A x², √Σ A x²/ρ (patches with ρ > 0), three channels each |
-//! | `F.npy` | Fᵢⱼ, n × n, little-endian float32, rows first (NumPy's format 1.0) |
+//! | `F.npy` | Fᵢⱼ, n × n, little-endian float32, row by row (NumPy's format 1.0) |
 //!
-//! Columns of `mesh.csv`: `patch` from 0; `primitive` as `fredholm info` counts them; `front`: 1 for the side of the primitive's
-//! normal, 0 for its back; `x,y,z` centre of mass; `area` true and uncovered; `nx,ny,nz` unit normal of that side; `rho_r,…`
-//! albedo; `E_r,…` emitted radiance; `L_r,…` the solution of L = E + T_h L (radiosity B = π L, W m⁻²); `corners`: "x y z" of each
-//! corner, counter-clockwise seen from that side, with semicolons between.
+//! Columns of `mesh.csv`:
+//!
+//! | column | meaning |
+//! |---|---|
+//! | `patch` | number of the patch, from 0 |
+//! | `primitive` | number of the primitive, as counted by `fredholm info` |
+//! | `front` | 1 for the side of the primitive's normal, 0 for the back |
+//! | `x,y,z` | centre of mass |
+//! | `area` | exact area of the part that is not covered |
+//! | `nx,ny,nz` | unit normal of that side |
+//! | `rho_r,…` | albedo |
+//! | `E_r,…` | emitted radiance |
+//! | `L_r,…` | solution of L = E + T_h L (radiosity B = π L, W m⁻²) |
+//! | `corners` | "x y z" of each corner, separated by semicolons, counter-clockwise seen from that side |
 
 use crate::operator::form_factor::FormFactors;
 use crate::operator::patches::Patches;
@@ -25,7 +35,7 @@ fn put(csv: &mut Csv, v: DVec3) {
     csv.put(v.x).put(v.y).put(v.z);
 }
 
-/// `mesh.csv`: `radiance` is L per patch.
+/// The contents of `mesh.csv`; `radiance` is L per patch.
 pub fn mesh(patches: &Patches, radiance: &[DVec3]) -> String {
     let mut csv =
         Csv::new("patch,primitive,front,x,y,z,area,nx,ny,nz,rho_r,rho_g,rho_b,E_r,E_g,E_b,L_r,L_g,L_b,corners");
@@ -42,7 +52,7 @@ pub fn mesh(patches: &Patches, radiance: &[DVec3]) -> String {
     csv.text()
 }
 
-/// `mesh-terms.csv`: a column per k and channel, `T0_r,T0_g,T0_b,T1_r,…`.
+/// The contents of `mesh-terms.csv`: a column per k and channel, `T0_r,T0_g,T0_b,T1_r,…`.
 pub fn terms(terms: &[Vec<DVec3>]) -> String {
     let names = (0..terms.len()).flat_map(|k| LETTERS.map(|c| format!("T{k}_{c}")));
     let mut csv = Csv::new(&iter::once("patch".to_string()).chain(names).collect::<Vec<_>>().join(","));
@@ -54,7 +64,7 @@ pub fn terms(terms: &[Vec<DVec3>]) -> String {
     csv.text()
 }
 
-/// `norms.csv`: a line per k.
+/// The contents of `norms.csv`: a line per k.
 pub fn norms(norms: &[BounceNorms]) -> String {
     let names = ["norm_1", "norm_2", "norm_w"].iter().flat_map(|n| LETTERS.map(|c| format!("{n}_{c}")));
     let mut csv = Csv::new(&iter::once("k".to_string()).chain(names).collect::<Vec<_>>().join(","));
@@ -66,11 +76,11 @@ pub fn norms(norms: &[BounceNorms]) -> String {
     csv.text()
 }
 
-/// `F.npy`.
+/// The contents of `F.npy`.
 pub fn npy(factors: &FormFactors) -> Vec<u8> {
     const MAGIC: &[u8] = b"\x93NUMPY\x01\x00";
     let mut header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({0}, {0}), }}", factors.n);
-    // magic, two bytes of length, header and a final newline fill whole blocks of 64 bytes
+    // magic bytes, two bytes of length, header and a final newline together fill whole blocks of 64 bytes
     let filled = (MAGIC.len() + 2 + header.len() + 1).next_multiple_of(64);
     header += &" ".repeat(filled - MAGIC.len() - 2 - header.len() - 1);
     header.push('\n');

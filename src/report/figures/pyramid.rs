@@ -1,7 +1,8 @@
-//! The pyramid of strategies: a row for every term, a column for every number s of vertices walked from the light.
+//! The pyramid of strategies: one row for every term, one column for every number s of vertices sampled from the light.
 //!
-//! Weighted, the images of a row add up to the term and stand at one exposure, so that light can be added up by eye; alone, each
-//! has its own, because they show the same light with different noise. The layout is that of Veach (1997), fig. 10.3.
+//! With MIS weights, the images of a row add up to the term. They have the same exposure, so that they can be compared by
+//! eye. Without weights, each image has its own exposure, because all show the same light with different noise. The layout
+//! is that of Veach (1997), fig. 10.3.
 
 use crate::report::{
     ReportError,
@@ -25,17 +26,17 @@ const NARROWEST: usize = 96;
 /// One image of the pyramid.
 #[derive(Clone, Debug)]
 pub struct Stone<'a> {
-    /// The term.
+    /// The term k.
     pub k: usize,
-    /// Vertices walked from the light.
+    /// Number s of vertices sampled from the light.
     pub s: usize,
     /// Linear RGB.
     pub pixels: &'a [[f32; 3]],
-    /// Words below it.
+    /// Text below the image.
     pub note: String,
 }
 
-/// What strategy s of term k is called.
+/// Name of strategy s of term k.
 pub fn name(k: usize, s: usize) -> String {
     match s {
         0 => "s = 0: hit".into(),
@@ -45,7 +46,7 @@ pub fn name(k: usize, s: usize) -> String {
     }
 }
 
-/// The pyramid; `common` gives every row one exposure.
+/// Draws the pyramid. If `common` is true, all images of a row have the same exposure.
 ///
 /// # Errors
 /// If there is no image, the pixels do not match the size, or the text cannot be drawn.
@@ -78,7 +79,7 @@ pub fn draw(
         Tile { image, label: name(s.k, s.s), notes: vec![note] }
     };
     let tiles: Vec<Tile> = stones.iter().map(tile).collect();
-    // the rows of a pyramid are centred
+    // centre each row of the pyramid
     let place = |s: &Stone| (0.5 * (columns - (s.k + 2)) as f64 + s.s as f64, s.k);
     let places: Vec<_> = stones.iter().map(place).collect();
     let exposure = |gain: f64| if common { gain_label(gain) } else { String::new() };
@@ -87,7 +88,7 @@ pub fn draw(
     Layout { title, tiles: &tiles, places: &places, heads: &heads, foot: None }.draw(caption)
 }
 
-/// A row for every strategy: what it adds, what it would give alone, and the noise of both.
+/// A table with a row per strategy: its contribution, its estimate without weight, and the variance of both.
 pub fn table(all: &[Strategy]) -> String {
     let head = ["k", "strategy", "weighted", "± 95 %", "alone", "± 95 %", "variance weighted", "alone"];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
@@ -101,5 +102,5 @@ pub fn table(all: &[Strategy]) -> String {
     }));
     let mut sides = vec![Side::Right; head.len()];
     sides[1] = Side::Left;
-    format!("strategies: s vertices walked from the light, k + 1 − s from the eye\n{}", aligned(&rows, &sides))
+    format!("strategies: s vertices sampled from the light, k + 1 − s from the eye\n{}", aligned(&rows, &sides))
 }

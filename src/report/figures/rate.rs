@@ -1,4 +1,4 @@
-//! Geometric lines beside the terms: what was observed, what is the spectral radius, what is guaranteed.
+//! Geometric lines in the plot of the terms: the observed rate, the spectral radius, and the guaranteed bounds.
 //!
 //! ```text
 //! value · ratio^(k − k0),   k ≥ k0
@@ -6,9 +6,9 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | γ | fitted to the terms; claims nothing beyond them | [`RateLine::observed`] |
-//! | r(T_h) | spectral radius of the matrix | [`RateLine::spectral`] |
-//! | g | ‖T‖₁ ≤ g = max albedo | [`RateLine::guaranteed`], [`RateLine::tail_bound`] |
+//! | γ | rate fitted to the terms; valid only for the fitted terms | [`RateLine::observed`] |
+//! | r(T_h) | spectral radius of the matrix: the asymptotic rate | [`RateLine::spectral`] |
+//! | g | bound of ‖T‖₁: max albedo | [`RateLine::guaranteed`], [`RateLine::tail_bound`] |
 
 use crate::report::{
     plot::{GREEN, ORANGE, PURPLE, SKY, Stroke},
@@ -19,28 +19,28 @@ use crate::stats;
 /// The line `value · ratio^(k − k0)` for k ≥ k0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RateLine {
-    /// Its words in the legend.
+    /// Text in the legend.
     pub label: String,
-    /// Where it starts.
+    /// Value of k at which the line starts.
     pub k0: f64,
-    /// Its value there.
+    /// Value at `k0`.
     pub value: f64,
-    /// Its factor per bounce.
+    /// Factor per bounce.
     pub ratio: f64,
-    /// What it claims.
+    /// Meaning of the line.
     pub kind: RateKind,
 }
 
-/// What a geometric line claims.
+/// Meaning of a geometric line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RateKind {
-    /// Fitted to the data; claims nothing beyond them.
+    /// Fitted to the data; no statement about other terms.
     Observed,
-    /// The spectral radius of the matrix: the asymptotic rate there.
+    /// The spectral radius of the matrix: the asymptotic rate of its terms.
     Spectral,
-    /// From ‖T‖₁ ≤ max albedo: no term lies above it.
+    /// From ‖T‖₁ ≤ max albedo: no term lies above this line.
     Guaranteed,
-    /// On everything that follows after k bounces, not on single terms.
+    /// Bound of the sum of all terms after k bounces, not of single terms.
     TailBound,
 }
 
@@ -56,7 +56,7 @@ impl RateKind {
 }
 
 impl RateLine {
-    /// A fit, from the first term it used.
+    /// The line of a fitted rate, starting at the first term of the fit.
     pub fn observed(fit: &stats::Rate) -> Self {
         let start = fit.window.start;
         Self {
@@ -80,13 +80,13 @@ impl RateLine {
         })
     }
 
-    /// `‖T^k E‖₁ ≤ g^k ‖E‖₁`.
+    /// The bound of every term: `‖T^k E‖₁ ≤ g^k ‖E‖₁`.
     pub fn guaranteed(g: f64, emission: f64) -> Self {
         let label = format!("guaranteed: ‖T‖₁ ≤ max albedo = {g:.3}");
         Self { label, k0: 0.0, value: emission, ratio: g, kind: RateKind::Guaranteed }
     }
 
-    /// `‖Σ_{n>k} T^n E‖₁ ≤ g/(1−g) ‖T^k E‖₁`, if g < 1 and the term was seen at all.
+    /// The bound of the tail: `‖Σ_{n>k} T^n E‖₁ ≤ g/(1−g) ‖T^k E‖₁`. None if g ≥ 1 or the norm of term k is zero.
     pub fn tail_bound(g: f64, k: usize, norm: f64) -> Option<Self> {
         let bound = g / (1.0 - g) * norm;
         (g < 1.0 && norm > 0.0).then(|| Self {

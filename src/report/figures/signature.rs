@@ -1,13 +1,13 @@
-//! The signature of a mistake: r_k against k, predicted beside measured.
+//! The signature of a mistake: r_k against k, predicted and measured.
 //!
 //! ```text
-//! r_k = T_k^suspect / T_k^right      flat: the connection      straight on a logarithmic axis: the bounce
+//! r_k = T_k^suspect / T_k^right      constant: the connection      a straight line on a logarithmic axis: the bounce
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | r_k | ratio of the image means | [`Signature::measured`] |
-//! | – | what theory says, where it says anything | [`Signature::predicted`] |
+//! | – | the prediction, if there is one in closed form | [`Signature::predicted`] |
 
 use crate::report::{
     ReportError,
@@ -15,21 +15,21 @@ use crate::report::{
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, Words, figure},
 };
 
-/// What the figure shows.
+/// Contents of the figure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Signature {
-    /// Heading of the figure.
+    /// Title of the figure.
     pub title: String,
-    /// r_k with errors.
+    /// Measured r_k with errors.
     pub measured: Vec<Point>,
-    /// r_k of theory; empty where it depends on the scene.
+    /// Predicted r_k; empty if the prediction depends on the scene.
     pub predicted: Vec<Point>,
 }
 
 /// Draws the figure.
 ///
 /// # Errors
-/// If the plot crate fails, which is a defect.
+/// If the plot crate fails, which is a defect of the program.
 pub fn draw(signature: &Signature, caption: &Caption) -> Result<Figure, ReportError> {
     figure("signature", 960, 490, caption, |page| panel(page, signature))
 }
@@ -39,7 +39,7 @@ fn panel(page: &Canvas, signature: &Signature) -> Drawn {
     let all = || signature.measured.iter().chain(&signature.predicted).filter(|p| p.value.is_finite());
     let last = all().map(|p| p.x).fold(1.0, f64::max) as usize;
     let highest = all().map(|p| p.value).fold(1.0, f64::max);
-    let words = "rₖ = Tₖ suspect / Tₖ right";
+    let words = "rₖ = Tₖ suspect / Tₖ correct";
     let y = if highest > 6.0 {
         Axis::log(words, all().map(|p| p.value).chain([1.0]))
     } else {
@@ -62,7 +62,7 @@ fn panel(page: &Canvas, signature: &Signature) -> Drawn {
     if !signature.predicted.is_empty() {
         entries.push(Entry::new(Sample::Mark(theory), "predicted"));
     }
-    entries.push(Entry::new(Sample::Line(one), "1: nothing is wrong"));
+    entries.push(Entry::new(Sample::Line(one), "1: correct"));
     page.legend((646.0, 68.0), 300.0, &entries)?;
     Ok(())
 }

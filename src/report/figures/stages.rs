@@ -1,6 +1,8 @@
-//! One image as it grows: contact sheet, table and CSV, with the mean that the samples have and the mean that the screen shows.
+//! One image after more and more paths: contact sheet, table and CSV. They give the mean of the samples, and the mean of
+//! what a screen shows.
 //!
-//! Symbols: [`study::stages`](crate::study::stages). One gain for all images, that of the reference where no lamp is seen.
+//! Symbols: [`study::stages`](crate::study::stages). All images have the same gain: the one that suits the reference outside
+//! the visible lamps.
 
 use crate::report::{
     ReportError, half_width_95,
@@ -17,24 +19,24 @@ use crate::report::{
 };
 use crate::study::stages::Grown;
 
-/// The numbers of one image.
+/// The values of one image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// `4`, `8`, …, or `reference`.
+    /// Number of paths: `4`, `8`, …, or `reference`.
     pub name: String,
-    /// Mean over pixels and channels, and half of its 95 % interval.
+    /// Mean over pixels and channels, and half width of its 95 % interval.
     pub mean: [f64; 2],
-    /// The same with everything above white cut off.
+    /// The mean with all values above white cut off.
     pub shown: f64,
-    /// Fraction of pixels with something cut off.
+    /// Fraction of pixels with a value above white.
     pub clipped: f64,
-    /// MSE against the reference and half of its 95 % interval; NaN for the reference.
+    /// MSE against the reference, and half width of its 95 % interval; NaN for the reference.
     pub mse: [f64; 2],
-    /// Standard deviation by the replicates alone, averaged as a variance.
+    /// Standard deviation estimated from the replicates: root of the variance averaged over pixels.
     pub deviation: f64,
 }
 
-/// A row per stage, then the reference.
+/// One row per stage, then one for the reference.
 pub fn rows(grown: &Grown, gain: f64) -> Vec<Row> {
     let clipped = |pixels: &[[f32; 3]]| develop(pixels.len(), 1, pixels, gain).clipped as f64 / pixels.len() as f64;
     let mut rows: Vec<Row> = grown
@@ -71,7 +73,7 @@ pub fn rows(grown: &Grown, gain: f64) -> Vec<Row> {
     rows
 }
 
-/// The gain of all images: the reference's, exposed for what is not a lamp.
+/// The gain of all images: chosen for the reference outside the visible lamps.
 pub fn gain(grown: &Grown) -> f64 {
     let whole = &grown.reference.total.mean;
     grown.reference.terms.first().map_or_else(|| auto_gain(whole), |lamps| auto_gain_beside_lamps(whole, &lamps.mean))
@@ -81,7 +83,7 @@ fn number(x: f64, digits: usize) -> String {
     if x.is_nan() { "–".into() } else { significant(x, digits) }
 }
 
-/// √MSE in words: an unbiased estimate of a square may be negative.
+/// √MSE as text. The estimate of MSE is unbiased, so that it may be negative.
 fn rmse(mse: f64) -> String {
     if mse < 0.0 { "≤ noise".into() } else { number(mse.sqrt(), 3) }
 }
@@ -101,7 +103,7 @@ pub fn table(grown: &Grown) -> String {
     aligned(&lines, &[[Side::Left].as_slice(), &[Side::Right; 7]].concat())
 }
 
-/// The same for programs; what is not known is left empty.
+/// The same values as CSV. Values that are not known are left empty.
 pub fn csv(grown: &Grown) -> String {
     let mut csv = Csv::new("paths,mean,mean_half_width_95,mean_shown,clipped,mse,mse_half_width_95,noise");
     for r in rows(grown, gain(grown)) {
@@ -110,7 +112,7 @@ pub fn csv(grown: &Grown) -> String {
     csv.text()
 }
 
-/// The contact sheet: every stage and the reference, at one gain.
+/// The contact sheet of every stage and the reference, all with the same gain.
 ///
 /// # Errors
 /// As for [`contact_sheet::grid`](crate::report::image::contact_sheet::grid).

@@ -1,16 +1,16 @@
-//! Variance of the image mean of a pixel against samples per pixel, on doubly logarithmic axes.
+//! Variance of a pixel's mean against samples per pixel, on logarithmic axes.
 //!
 //! ```text
 //! Var(mean of n samples) = σ²/n      slope −1
 //! ```
 //!
-//! Independent samples give slope −1 whatever the scene, as long as σ² is finite; a flatter slope betrays correlated
-//! samples or an infinite variance, a steeper one comes from stratified or quasi-random points.
+//! Independent samples give slope −1 for every scene, as long as σ² is finite. A flatter slope indicates correlated samples
+//! or infinite variance. A steeper slope comes from stratified or quasi-random points.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | n | samples per pixel | `Point::x` |
-//! | slope | of log variance against log n, fitted by the caller | [`Falling::slope`] |
+//! | slope | slope of log variance against log n, fitted by the caller | [`Falling::slope`] |
 
 use crate::report::{
     ReportError,
@@ -19,19 +19,19 @@ use crate::report::{
     text::number::plus_minus,
 };
 
-/// One curve and the slope fitted to it.
+/// One curve and its fitted slope.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Falling {
     /// Variance against samples per pixel.
     pub curve: Curve,
-    /// Fitted slope and its standard error, if it was fitted.
+    /// The slope and its standard error; none if it was not fitted.
     pub slope: Option<(f64, f64)>,
 }
 
-/// What the figure shows.
+/// Contents of the figure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Variance {
-    /// Heading of the figure.
+    /// Title of the figure.
     pub title: String,
     /// The curves.
     pub curves: Vec<Falling>,
@@ -40,7 +40,7 @@ pub struct Variance {
 /// Draws the figure.
 ///
 /// # Errors
-/// If the plot crate fails, which is a defect.
+/// If the plot crate fails, which is a defect of the program.
 pub fn draw(variance: &Variance, caption: &Caption) -> Result<Figure, ReportError> {
     figure("variance", 960, 490, caption, |page| panel(page, variance))
 }
@@ -52,7 +52,7 @@ fn panel(page: &Canvas, variance: &Variance) -> Drawn {
     let y = Axis::log("variance   (W² sr⁻² m⁻⁴)", points().flat_map(|p| [p.value, p.value + p.half_width()]));
     let panel = Panel::draw(page, "Variance of the mean of n samples", [84.0, 72.0, 540.0, 350.0], x, y)?;
 
-    // The guide passes a little above the first point, so that it hides no curve.
+    // Draw the guide line slightly above the first point, so that it hides no curve.
     let guide = Stroke { color: GREY, width: 1.6, dash: Some((7.0, 5.0)) };
     let first = points().filter(|p| p.value > 0.0).max_by(|a, b| (a.value * a.x).total_cmp(&(b.value * b.x)));
     if let Some(top) = first {

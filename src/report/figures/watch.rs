@@ -1,10 +1,11 @@
-//! A difference that is watched while it accumulates: the interval narrowing around 0, and where every term stands at the end.
+//! A test of a bias that is repeated while samples accumulate: the interval of the bias against the number of paths, and the
+//! final interval of every term.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | x̄ ± r_n | confidence sequence of the bias, relative to the value | [`Glimpse`] |
-//! | ±δ | margin: a bias inside is too small to matter | `delta` |
-//! | E_n | e-value: evidence against "no bias" | [`e_value`] |
+//! | x̄ ± r_n | confidence sequence of the bias, relative to the value; it holds at all n simultaneously | [`Glimpse`] |
+//! | ±δ | margin: a bias inside it is too small to matter | `delta` |
+//! | E_n | e-value: evidence against "no bias"; large values are evidence of a bias | [`e_value`] |
 
 use crate::math::CHANNELS;
 use crate::report::{
@@ -20,16 +21,16 @@ use crate::report::{
 };
 use crate::stats::{Finding, Outcome};
 
-/// How far a watch had come at one moment.
+/// The state of the test at one moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Glimpse {
-    /// Batches so far.
+    /// Number of batches so far.
     pub batches: u64,
-    /// The mean of the whole image, channel by channel.
+    /// Findings for the mean of the whole image, one per channel.
     pub image: Vec<Finding>,
 }
 
-/// An e-value from its logarithm; beyond what a number holds, as a power of ten.
+/// An e-value as text, from its natural logarithm. Values too large for a float are written as powers of ten.
 ///
 /// ```
 /// use fredholm::report::figures::watch::e_value;
@@ -47,13 +48,13 @@ pub fn e_value(log_e: f64) -> String {
     }
 }
 
-/// A part of the value in percent; a dash where the value is 0.
+/// `x` as a percentage of `of`; a dash if `of` is 0.
 fn percent(x: f64, of: f64) -> String {
     let p = 100.0 * x / of.abs();
     if p.is_finite() { format!("{}{} %", if p > 0.0 { "+" } else { "" }, significant(p, 2)) } else { "–".into() }
 }
 
-/// One row per quantity.
+/// A table with one row per quantity.
 pub fn table(findings: &[Finding]) -> String {
     let header = ["what", "value", "bias", "interval", "e-value", "p", "detectable", "verdict"];
     let mut rows = vec![header.map(String::from).to_vec()];
@@ -75,21 +76,21 @@ pub fn table(findings: &[Finding]) -> String {
     aligned(&rows, &[Side::Left, right, right, right, right, right, right, Side::Left])
 }
 
-/// The verdict in words, and the smallest bias that could have been missed.
+/// The verdict as text, with the smallest bias that the test could have missed.
 pub fn judgement(verdict: Outcome, findings: &[Finding], alpha: f64, beta: f64) -> String {
     let mut text = match verdict {
         Outcome::Differs => {
             let named: Vec<&str> =
                 findings.iter().filter(|f| f.outcome == Outcome::Differs).map(|f| f.name.as_str()).collect();
             format!(
-                "Biased: {} differ; without a bias this happens with probability {alpha} at most.",
+                "Biased: {} differ. Without a bias, the probability of this verdict is at most {alpha}.",
                 named.join(", ")
             )
         }
-        Outcome::Agrees => "No bias: every image mean is bounded within its margin δ.".to_owned(),
+        Outcome::Agrees => "No bias: the interval of every image mean lies within its margin δ.".to_owned(),
         Outcome::Inconclusive => match findings.iter().find_map(|f| f.reason.as_deref()) {
-            Some(reason) => format!("No bias found, and not yet excluded: {reason}."),
-            None => "No bias found, and not yet excluded.".to_owned(),
+            Some(reason) => format!("No bias found, but a bias is not yet excluded: {reason}."),
+            None => "No bias found, but a bias is not yet excluded.".to_owned(),
         },
     };
     if verdict != Outcome::Differs
@@ -97,19 +98,20 @@ pub fn judgement(verdict: Outcome, findings: &[Finding], alpha: f64, beta: f64) 
     {
         let missed = percent(whole.min_detectable, whole.scale).replace('+', "");
         text += &format!(
-            "\nThe smallest bias it could have missed: {missed} of the {} (a larger one is found by now with probability {}),",
+            "\nThe smallest bias it could have missed: {missed} of the {} (a larger one would have been found with probability {}).",
             whole.name,
             1.0 - beta
         );
-        text += "\nand term by term what stands under \"detectable\". Intervals hold all at once and at every moment.";
+        text +=
+            "\nFor single terms see the column \"detectable\". All intervals hold simultaneously and at every moment.";
     }
     text
 }
 
-/// Draws the figure; a batch has `paths` paths on each side.
+/// Draws the figure. A batch has `paths` paths on each side.
 ///
 /// # Errors
-/// If the plot crate fails, which is a defect.
+/// If the plot crate fails, which is a defect of the program.
 pub fn draw(
     title: &str,
     curve: &[Glimpse],
@@ -127,7 +129,7 @@ pub fn draw(
 
 const COLOURS: [plotters::prelude::RGBColor; 3] = [VERMILION, GREEN, BLUE];
 
-/// Relative bounds in percent, where the value is not 0.
+/// Lower bound, estimate and upper bound of the bias in percent of the value. None if the value is 0.
 fn relative(f: &Finding) -> Option<[f64; 3]> {
     let bounds = [f.interval.0, f.effect, f.interval.1].map(|x| 100.0 * x / f.scale.abs());
     bounds.iter().all(|b| b.is_finite()).then_some(bounds)
@@ -156,7 +158,7 @@ fn narrowing(page: &Canvas, curve: &[Glimpse], paths: u64, delta: f64) -> Drawn 
         g.image.iter().filter_map(relative).flat_map(|b| [b[0].abs(), b[2].abs()]).fold(0.0, f64::max)
     });
     let reach = (300.0 * delta).max(1.5 * last);
-    let axis_x = Axis::log("paths of each side", known().map(x));
+    let axis_x = Axis::log("paths on each side", known().map(x));
     let panel = Panel::draw(
         page,
         "Bias of the whole image",
@@ -212,7 +214,7 @@ fn terms(page: &Canvas, findings: &[Finding], delta: f64) -> Drawn {
     Ok(())
 }
 
-/// `T³` for `T3`; a word as it is.
+/// Formats `T3` as `T³`; other names are unchanged.
 fn short(name: &str) -> String {
     name.strip_prefix('T')
         .and_then(|k| k.parse().ok())

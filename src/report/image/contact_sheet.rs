@@ -1,8 +1,8 @@
-//! Pictures with words: one term above its strip, and grids of labelled cells.
+//! Pictures with labels: single terms with a strip of text below, and grids of labelled cells.
 //!
-//! No word covers a pixel: text stands on strips beside the images. Images narrower than 128 pixels are enlarged by
-//! repeating pixels, images wider than 512 are averaged down (in linear radiance) in the grids, never in single
-//! pictures. The 99th percentile and the mean are those of the full image.
+//! Text never covers a pixel; it is written next to the images. Images narrower than 128 pixels are enlarged by repeating
+//! pixels. In grids, images wider than 512 pixels are averaged down in linear radiance; single pictures are not. Gain and
+//! mean always come from the full image.
 
 use super::{
     picture::{Developed, Picture, auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shrink},
@@ -22,20 +22,20 @@ pub struct Cell<'a> {
     pub label: String,
     /// Linear RGB; every cell of a sheet has the same size.
     pub pixels: &'a [[f32; 3]],
-    /// Gain to show it with; absent: [`auto_gain`].
+    /// Gain with which it is shown; if none, [`auto_gain`] chooses it.
     pub gain: Option<f64>,
 }
 
-/// A sheet ready to be written, and what is clipped on it.
+/// A finished sheet, with the number of clipped pixels.
 #[derive(Clone, Debug)]
 pub struct Sheet {
     /// The picture.
     pub picture: Picture,
-    /// Clipped pixels per cell, of the image as given.
+    /// Number of clipped pixels per cell, counted in the image before it is resized.
     pub clipped: Vec<usize>,
 }
 
-/// One image with a strip below that says what it is and with which gain: `T3  ×16`. Returns the gain used, too.
+/// One image with a strip below that states its label and gain: `T3  ×16`. Also returns the gain used.
 ///
 /// # Errors
 /// If the pixels do not match the size or the text cannot be drawn.
@@ -50,7 +50,7 @@ pub fn single(
     let gain = gain.unwrap_or_else(|| auto_gain(pixels));
     let mut developed = develop(width, height, pixels, gain);
     let text = format!("{label}  {}", gain_label(gain));
-    // Shrink the letters rather than cut them on a narrow image, but keep them readable.
+    // On a narrow image, shrink the letters instead of cutting the text, but keep them readable.
     let natural = text_width(&text, SANS, LABEL) + 8.0;
     let factor = (48usize).div_ceil(width);
     let image = developed.picture.enlarged(factor);
@@ -66,8 +66,8 @@ pub fn single(
 
 /// A grid of labelled images with a title above and the caption below.
 ///
-/// Under each image stand its gain and its mean over pixels and channels. For images side by side at a common exposure
-/// give every cell the same gain.
+/// The gain and the mean over pixels and channels are printed under each image. To compare images at a common exposure, give
+/// every cell the same gain.
 ///
 /// # Errors
 /// If there is no cell, the pixels do not match the size, or the text cannot be drawn.
@@ -75,7 +75,7 @@ pub fn grid(title: &str, width: usize, height: usize, cells: &[Cell], caption: &
     laid_out(None, title, width, height, cells, &gains(cells), caption)
 }
 
-/// The same with so many cells in a row.
+/// A [`grid`] with a given number of columns.
 ///
 /// # Errors
 /// As for [`grid`].
@@ -90,7 +90,7 @@ pub fn grid_of(
     laid_out(Some(columns), title, width, height, cells, &gains(cells), caption)
 }
 
-/// A [`grid`] with lines of one's own under each image; `notes` has an entry per cell.
+/// A [`grid`] with other lines of text under each image. `notes` has one entry per cell.
 ///
 /// # Errors
 /// As for [`grid`].
@@ -105,7 +105,7 @@ pub fn annotated(
     laid_out(None, title, width, height, cells, notes, caption)
 }
 
-/// Gain and mean of every cell.
+/// Gain and mean of every cell, as text.
 fn gains(cells: &[Cell]) -> Vec<Vec<String>> {
     let note = |cell: &Cell| {
         let gain = cell.gain.unwrap_or_else(|| auto_gain(cell.pixels));
@@ -140,7 +140,7 @@ fn laid_out(
     Ok(Sheet { picture, clipped })
 }
 
-/// As many columns as fit, then as few as the same number of rows allows.
+/// Number of columns: as many as fit, then reduced as far as the number of rows stays the same.
 fn balanced(tiles: &[Tile]) -> usize {
     let (count, mut fit) = (tiles.len(), columns_in(SHEET, tiles));
     if count > 4 {
@@ -149,7 +149,7 @@ fn balanced(tiles: &[Tile]) -> usize {
     count.div_ceil(count.div_ceil(fit))
 }
 
-/// An image at the size it is shown with.
+/// An image, resized and developed for display.
 pub(crate) fn shown(
     width: usize,
     height: usize,
@@ -162,7 +162,7 @@ pub(crate) fn shown(
     develop(w, h, &small, gain).picture.enlarged(narrowest.div_ceil(w))
 }
 
-/// The terms k = 0, 1, … each at its own exposure, and the whole if it is known.
+/// A sheet of the terms k = 0, 1, …, each at its own exposure, and of the whole image if it is known.
 ///
 /// # Errors
 /// As for [`grid`].
@@ -185,8 +185,8 @@ pub fn terms(
     grid(&format!("The terms of L = Σ TᵏE, {note}"), width, height, &cells, caption)
 }
 
-/// Direct light (k ≤ 1) beside direct plus indirect light, at one common exposure: that of the right image where no
-/// lamp is seen. `emitted` is the term k = 0.
+/// Direct light (k ≤ 1) next to direct plus indirect light. Both have the same exposure: the one that suits the right image
+/// outside the visible lamps. `emitted` is the term k = 0.
 ///
 /// # Errors
 /// As for [`grid`].

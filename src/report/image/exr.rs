@@ -1,8 +1,9 @@
-//! Many images in one OpenEXR file: one part, float32, one layer per dotted prefix (`T03.R`, `T03.G`, `T03.B`).
+//! Several images in one OpenEXR file: one part, float32, one layer per prefix of the channel names (`T03.R`, `T03.G`,
+//! `T03.B`).
 //!
-//! The unnamed layer `R G B` is what a viewer shows first. Compression is lossless (ZIP, 16 lines), and equal input
-//! gives equal bytes: blocks stand in scan-line order and header attributes in the order of their names (the crate
-//! keeps custom attributes in a hash map, whose order differs from run to run; `sort_attributes` mends that).
+//! The unnamed layer `R G B` is the one that a viewer shows first. Compression is lossless (ZIP, 16 lines). Equal input
+//! gives equal bytes: blocks are written in scan-line order, and header attributes in the order of their names. The crate
+//! keeps custom attributes in a hash map, whose order differs from run to run; `sort_attributes` corrects this.
 //!
 //! Reference: Kainz, Bogart, Stanczyk, Hillman, *Technical Introduction to OpenEXR* (2013), and the file layout page of
 //! the OpenEXR documentation.
@@ -23,33 +24,33 @@ use crate::report::{ReportError, files, write_atomically};
 /// One image to be written.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a> {
-    /// Prefix of its channels; empty for the unnamed layer, the one viewers open with.
+    /// Prefix of its channels. Empty for the unnamed layer, which viewers show first.
     pub name: &'a str,
     /// Linear RGB, row by row from the top.
     pub pixels: &'a [[f32; 3]],
 }
 
-/// What was found in a file.
+/// Contents of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     /// Pixels per row.
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// Name (empty: the unnamed layer) and pixels, sorted by name.
+    /// Name and pixels of each layer, sorted by name; the unnamed layer has an empty name.
     pub layers: Vec<(String, Vec<[f32; 3]>)>,
-    /// Custom attributes that are texts or numbers, sorted by name.
+    /// Names and values of custom attributes that are texts or numbers, sorted by name.
     pub attributes: Vec<(String, String)>,
 }
 
 impl Image {
-    /// The pixels of one layer.
+    /// The pixels of one layer, if it exists.
     pub fn layer(&self, name: &str) -> Option<&[[f32; 3]]> {
         self.layers.iter().find(|(n, _)| n == name).map(|(_, pixels)| pixels.as_slice())
     }
 }
 
-/// Writes all layers into one file. Values are kept bit by bit, also NaN and infinity.
+/// Writes all layers into one file. Values are stored bit by bit, including NaN and infinity.
 ///
 /// # Errors
 /// If a layer has the wrong number of pixels, a name occurs twice, the size is zero, or the file cannot be written.
@@ -75,7 +76,7 @@ pub fn write(
         }
     }
 
-    // One channel per layer and component, sorted as the format demands.
+    // One channel per layer and colour component, sorted as the format requires.
     let channel = |layer: &Layer, component: usize| {
         let letter = ["R", "G", "B"][component];
         let name = if layer.name.is_empty() { letter.to_owned() } else { format!("{}.{letter}", layer.name) };
@@ -97,9 +98,9 @@ pub fn write(
     write_atomically(path, &bytes)
 }
 
-/// Reads every RGB layer of a file, ours or another program's: one or many parts, half or float or integer samples,
-/// grey (`Y`) counted as RGB. Channels that are no colour (alpha, depth, normals) are left out; a missing one of
-/// `R G B` is zero. In files of several parts the part's name stands in for a missing prefix.
+/// Reads every RGB layer of a file, written by this or another program. The file may have one or several parts, with half,
+/// float or integer samples. A grey layer (`Y`) is read as RGB. Channels that are not colours (alpha, depth, normals) are
+/// left out. A missing channel of `R G B` is zero. If a file has several parts, the part's name replaces a missing prefix.
 ///
 /// # Errors
 /// If the file cannot be read, its parts differ in size, two layers share a name, or no colour is found.
@@ -150,7 +151,7 @@ pub fn read(path: &Path) -> Result<Image, ReportError> {
     let layers = planes
         .into_iter()
         .map(|(name, plane)| {
-            // Grey stands for all three components only where none of them is present.
+            // A grey channel is used for all three components only if none of them is present.
             let grey = if plane.keys().all(|&c| c == 'Y') { plane.get(&'Y') } else { None };
             let value = |c: char, i: usize| grey.or(plane.get(&c)).map_or(0.0, |samples| samples[i]);
             (name, (0..width * height).map(|i| ['R', 'G', 'B'].map(|c| value(c, i))).collect())
@@ -165,7 +166,7 @@ pub fn read(path: &Path) -> Result<Image, ReportError> {
     Ok(Image { width, height, layers, attributes })
 }
 
-/// UTF-8 bytes as they are; the crate's own conversion accepts Latin-1 only.
+/// UTF-8 bytes unchanged; the crate's own conversion accepts only Latin-1.
 fn text(s: &str) -> Text {
     Text::from_slice_unchecked(s.as_bytes())
 }
@@ -197,8 +198,8 @@ fn readable(value: &AttributeValue) -> Option<String> {
     }
 }
 
-/// The same single-part file with its header attributes in the order of their names. An attribute is
-/// `name 0 type 0 size data`; the header ends with an empty name; offsets in the file do not change.
+/// Sorts the header attributes of a single-part file by name. An attribute is stored as `name 0 type 0 size data`, and the
+/// header ends with an empty name. Offsets in the file do not change.
 fn sort_attributes(file: &[u8]) -> Option<Vec<u8>> {
     const MAGIC_AND_VERSION: usize = 8;
     let mut attributes = Vec::new();

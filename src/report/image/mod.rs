@@ -1,4 +1,4 @@
-//! Pictures: linear radiance in files, developed to 8 bits, on sheets with words.
+//! Pictures: files with linear radiance, 8-bit pictures, and sheets of pictures with labels.
 
 pub mod contact_sheet;
 pub mod exr;

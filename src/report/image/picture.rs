@@ -1,4 +1,4 @@
-//! Linear radiance to an 8-bit picture: one gain, the exact sRGB curve, nothing else (no tone mapping).
+//! Converts linear radiance to an 8-bit picture, with one gain and the exact sRGB curve. No tone mapping is applied.
 //!
 //! ```text
 //! code = round(255 · s(gain · L)),   s(v) = 12.92 v                   v ≤ 0.0031308
@@ -9,7 +9,7 @@
 //! |---|---|---|
 //! | L | linear Rec. 709 component | `pixels` |
 //! | s | transfer curve of IEC 61966-2-1 (1999) | [`srgb`] |
-//! | gain | 1, 1.5, 2, 3, 4, 6, 8, … or one over it | [`auto_gain`] |
+//! | gain | …, 1/2, 1/1.5, 1, 1.5, 2, 3, 4, 6, 8, … | [`auto_gain`] |
 
 use std::{io::Cursor, path::Path};
 
@@ -28,16 +28,16 @@ pub struct Picture {
     pub pixels: Vec<[u8; 3]>,
 }
 
-/// A developed picture and what the screen cannot show of it.
+/// A picture in 8 bits, with the numbers of pixels that a screen cannot show correctly.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Developed {
     /// The picture.
     pub picture: Picture,
-    /// Pixels with a component above 1 after the gain: shown as 255.
+    /// Number of pixels with a component above 1 after the gain; such components are shown as 255.
     pub clipped: usize,
-    /// Pixels with a component below 0: shown as 0.
+    /// Number of pixels with a component below 0; such components are shown as 0.
     pub negative: usize,
-    /// Pixels with a component that is no number or infinite: shown in magenta.
+    /// Number of pixels with a component that is NaN or infinite; they are shown in magenta.
     pub non_finite: usize,
 }
 
@@ -54,10 +54,10 @@ pub fn srgb(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// Colour of pixels that are not finite: broken results must be seen.
+/// Colour of pixels that are not finite, chosen so that they are noticed.
 pub const NON_FINITE: [u8; 3] = [255, 0, 255];
 
-/// Applies gain and sRGB curve to linear pixels.
+/// Applies the gain and the sRGB curve to linear pixels.
 pub fn develop(width: usize, height: usize, pixels: &[[f32; 3]], gain: f64) -> Developed {
     let (mut clipped, mut negative, mut non_finite) = (0, 0, 0);
     let codes = pixels
@@ -79,8 +79,8 @@ pub fn develop(width: usize, height: usize, pixels: &[[f32; 3]], gain: f64) -> D
 /// The gain out of …, 1/3, 1/2, 1/1.5, 1, 1.5, 2, 3, 4, 6, 8, 12, 16, … that brings the 99th percentile of luminance
 /// nearest to 0.8.
 ///
-/// Where more than 99 % of the pixels are black (a small lamp), the percentile is that of the others; an image that is
-/// black altogether gets 1.
+/// If more than 99 % of the pixels are black (for example with a small lamp), the percentile of the other pixels is used. A
+/// completely black image gets the gain 1.
 ///
 /// ```
 /// use fredholm::report::image::picture::auto_gain;
@@ -92,8 +92,8 @@ pub fn auto_gain(pixels: &[[f32; 3]]) -> f64 {
     gain_for(pixels.iter().map(|&p| luminance(p)))
 }
 
-/// The gain for what is not a lamp: [`auto_gain`] of the pixels where `emitted` (the term k = 0) is black. A lamp in
-/// view may be hundreds of times brighter than the walls; exposed for it, they would be black.
+/// The gain that suits everything but the lamps: [`auto_gain`] of the pixels where `emitted` (the term k = 0) is black. A
+/// visible lamp may be hundreds of times brighter than the walls. With an exposure for the lamp, the walls would be black.
 ///
 /// ```
 /// use fredholm::report::image::picture::{auto_gain, auto_gain_beside_lamps};
@@ -121,7 +121,7 @@ fn gain_for(luminance: impl Iterator<Item = f64>) -> f64 {
     if bright > 0.0 { nearest_gain(0.8 / bright) } else { 1.0 }
 }
 
-/// The nice number nearest to `gain` on a logarithmic scale.
+/// The gain of the form 2ⁿ or 1.5 · 2ⁿ that is nearest to `gain` on a logarithmic scale.
 fn nearest_gain(gain: f64) -> f64 {
     let up = gain.max(1.0 / gain);
     let power = up.log2().floor().exp2();
@@ -131,7 +131,7 @@ fn nearest_gain(gain: f64) -> f64 {
     if gain >= 1.0 { best } else { 1.0 / best }
 }
 
-/// A gain as people read it: `×16`, `÷1.5`.
+/// A gain as text: `×16`, `÷1.5`.
 ///
 /// ```
 /// use fredholm::report::image::picture::gain_label;
@@ -152,8 +152,8 @@ pub fn mean(pixels: &[[f32; 3]]) -> f64 {
     pixels.iter().flatten().map(|&v| f64::from(v)).sum::<f64>() / (3 * pixels.len()) as f64
 }
 
-/// Mean over all pixels and the three channels of what a screen shows, in the unit of the radiance: what is below 0 or, after
-/// the gain, above 1 is cut off. NaN where a pixel is no number.
+/// Mean over all pixels and the three channels of the image that a screen shows, in the unit of radiance. Values below 0,
+/// and values above 1 after the gain, are cut off. NaN if a pixel is NaN.
 ///
 /// ```
 /// use fredholm::report::image::picture::{mean, shown_mean};

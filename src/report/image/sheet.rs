@@ -1,4 +1,4 @@
-//! A sheet: a title, rows of pictures with words above and below each, and the caption.
+//! A sheet: a title, rows of pictures with text above and below each, and the caption.
 
 use super::{
     picture::Picture,
@@ -6,7 +6,7 @@ use super::{
 };
 use crate::report::ReportError;
 
-/// Size of the line above a picture.
+/// Font size of the line above a picture.
 pub(super) const LABEL: f64 = 14.0;
 const NOTE: f64 = 12.0;
 const SMALL: f64 = 10.5;
@@ -16,47 +16,47 @@ const NARROWEST: f64 = 400.0;
 const DIM: &str = "fill=\"#333333\"";
 const BOLD: &str = "font-weight=\"bold\"";
 
-/// A picture with its words; all pictures of a sheet have one size.
+/// A picture with its text. All pictures of a sheet have the same size.
 pub(crate) struct Tile {
     pub(crate) image: Picture,
-    /// Above it.
+    /// Text above the picture.
     pub(crate) label: String,
-    /// Below it.
+    /// Lines of text below the picture.
     pub(crate) notes: Vec<String>,
 }
 
 /// A sheet before it is drawn.
 pub(crate) struct Layout<'a> {
     pub(crate) title: &'a str,
-    /// Row by row; the first column of each tile.
+    /// The pictures with their text.
     pub(crate) tiles: &'a [Tile],
-    /// Column (a half is possible) and row of every tile.
+    /// Column (half columns are allowed) and row of every tile.
     pub(crate) places: &'a [(f64, usize)],
-    /// Words to the left of each row: a large line and a small one. Empty: none.
+    /// Text to the left of each row: a large line and a small one. If empty, there is none.
     pub(crate) heads: &'a [[String; 2]],
-    /// A line below all.
+    /// A line of text below all tiles.
     pub(crate) foot: Option<&'a str>,
 }
 
-/// Room for one tile without the gap beside it: its picture, or its widest words.
+/// Width of a tile without the gap: the width of its picture or of its widest text.
 fn room(tiles: &[Tile]) -> f64 {
     let notes = tiles.iter().flat_map(|t| &t.notes).map(|note| text_width(note, SANS, NOTE));
     let words = notes.chain(tiles.iter().map(|t| text_width(&t.label, SANS, LABEL)));
     words.fold(tiles.first().map_or(0.0, |t| t.image.width as f64), f64::max).ceil()
 }
 
-/// How many columns fit in `width` pixels; at least one, at most as many as there are tiles.
+/// Number of columns that fit in `width` pixels: at least one, and at most the number of tiles.
 pub(crate) fn columns_in(width: f64, tiles: &[Tile]) -> usize {
     (((width - GAP) / (room(tiles) + GAP)).floor() as usize).clamp(1, tiles.len().max(1))
 }
 
-/// Places row by row.
+/// Places tiles row by row: column and row of each.
 pub(crate) fn in_rows(tiles: usize, columns: usize) -> Vec<(f64, usize)> {
     (0..tiles).map(|i| ((i % columns) as f64, i / columns)).collect()
 }
 
 impl Layout<'_> {
-    /// Words first, then the pictures between them.
+    /// Draws the text first, then copies the pictures to their places.
     ///
     /// # Errors
     /// If the text cannot be drawn.

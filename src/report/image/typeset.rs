@@ -1,6 +1,6 @@
-//! Text in pictures and plots: the DejaVu fonts built into the program, so that every machine draws the same letters.
+//! Text in pictures and plots. The DejaVu fonts are built into the program, so that every machine draws the same letters.
 //!
-//! Layout is done in SVG and rasterised by `resvg`; no system font is ever consulted. Lengths are CSS pixels.
+//! The layout is written as SVG and rasterised by `resvg`. System fonts are never used. Lengths are CSS pixels.
 
 use std::{
     fmt::Write,
@@ -12,12 +12,12 @@ use resvg::{tiny_skia, usvg};
 
 use crate::report::{ReportError, image::picture::Picture};
 
-/// Family of labels and titles.
+/// Font family of labels and titles.
 pub const SANS: &str = "DejaVu Sans";
-/// Family of command lines.
+/// Font family of command lines.
 pub const MONO: &str = "DejaVu Sans Mono";
 
-/// Where a picture comes from; printed small beneath every sheet and figure.
+/// Origin of a picture; printed in small letters below every sheet and figure.
 ///
 /// ```
 /// use fredholm::report::image::typeset::Caption;
@@ -27,7 +27,7 @@ pub const MONO: &str = "DejaVu Sans Mono";
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Caption {
-    /// The command that makes the picture again.
+    /// The command that reproduces the picture.
     pub command: String,
     /// Seed of its random numbers.
     pub seed: u64,
@@ -45,7 +45,7 @@ impl Caption {
     }
 }
 
-/// A number raised, as in TᵏE.
+/// A number in superscript, as in TᵏE.
 ///
 /// ```
 /// assert_eq!(fredholm::report::image::typeset::superscript(12), "¹²");
@@ -55,7 +55,7 @@ pub fn superscript(k: usize) -> String {
     k.to_string().bytes().map(|b| DIGITS[usize::from(b - b'0')]).collect()
 }
 
-/// Breaks at blanks (not at no-break spaces) so that every line `fits`; a word that does not fit by itself is cut.
+/// Breaks text at spaces (not at no-break spaces), so that every line `fits`. A word that is too long for a line is cut.
 pub(crate) fn wrap(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split([' ', '\t', '\n']).filter(|word| !word.is_empty()) {
@@ -66,7 +66,7 @@ pub(crate) fn wrap(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
             lines.push(longer);
             continue;
         }
-        // A new line, unless the last one is still empty; then letter by letter if the word alone is too long.
+        // Start a new line, unless the current one is empty. If the word alone is too long, break it between letters.
         let mut piece = String::new();
         if line.is_empty() {
             lines.pop();
@@ -87,7 +87,7 @@ pub(crate) fn wrap(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
 pub fn text_width(text: &str, family: &str, font_size: f64) -> f64 {
     register_fonts();
     const MEASURED_AT: f64 = 1000.0;
-    // The font is registered above, so measuring cannot fail; an em per letter is the safe width if it ever does.
+    // The font is registered above, so that measuring cannot fail. If it did, one em per letter would be a safe width.
     let em = (family, MEASURED_AT)
         .into_font()
         .box_size(text)
@@ -98,7 +98,7 @@ pub fn text_width(text: &str, family: &str, font_size: f64) -> f64 {
 
 const DEJAVU_HEIGHT: f64 = 1.164;
 
-/// Makes the fonts known to the plot crate. The one place where that happens.
+/// Registers the fonts with the plot crate. This happens only here.
 pub(crate) fn register_fonts() {
     static ONCE: OnceLock<()> = OnceLock::new();
     ONCE.get_or_init(|| {
@@ -107,13 +107,13 @@ pub(crate) fn register_fonts() {
             (SANS, FontStyle::Bold, dejavu::sans::bold()),
             (MONO, FontStyle::Normal, dejavu::sans_mono::regular()),
         ] {
-            // The bytes are compiled in and parse: a test draws with all three.
+            // The bytes are compiled in and are valid fonts: a test draws with all three.
             let _ = register_font(family, style, bytes);
         }
     });
 }
 
-/// Letters that mean something to SVG and HTML, written so that they mean themselves.
+/// Escapes characters that have a special meaning in SVG and HTML.
 ///
 /// ```
 /// assert_eq!(fredholm::report::image::typeset::escape("a < b & \"c\""), "a &lt; b &amp; &quot;c&quot;");
@@ -154,10 +154,10 @@ pub(crate) fn caption_elements(lines: &[String], x: f64, mut y: f64, font_size: 
     out
 }
 
-/// Distance of two baselines in font sizes.
+/// Distance between two baselines, in font sizes.
 pub(crate) const LINE: f64 = 1.4;
 
-/// Draws an SVG document at `scale` on white.
+/// Rasterises an SVG document at `scale` on a white background.
 pub(crate) fn rasterise(svg: &str, scale: f32) -> Result<Picture, ReportError> {
     static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
     let fonts = FONTS.get_or_init(|| {
@@ -185,7 +185,7 @@ pub(crate) fn rasterise(svg: &str, scale: f32) -> Result<Picture, ReportError> {
     })
 }
 
-/// An empty page with the given elements on it, rasterised at scale 1.
+/// A white page with the given SVG elements, rasterised at scale 1.
 pub(crate) fn page(width: usize, height: usize, elements: &str) -> Result<Picture, ReportError> {
     let svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \

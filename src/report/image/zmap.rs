@@ -1,10 +1,10 @@
-//! The z map of two images: where they differ by more than their noise.
+//! The z map of two images: shows where they differ by more than their noise.
 //!
-//! `z = (a − b) / √(se_a² + se_b²)` per pixel, drawn from blue (−4) over white (0) to red (+4); black where it is not
-//! defined. Without a difference and with many replicates 4.6 % of the pixels lie beyond ±2 and 0.27 % beyond ±3
-//! (a normal law); few replicates give heavier tails.
+//! For each pixel `z = (a − b) / √(se_a² + se_b²)`. It is drawn from blue (−4) over white (0) to red (+4), and in black
+//! where z is not defined. If the images do not differ and there are many replicates, 4.6 % of the pixels lie beyond ±2 and
+//! 0.27 % beyond ±3 (normal distribution). With few replicates the tails are heavier.
 //!
-//! Reference: Welch (1947), for unequal variances.
+//! Reference: Welch (1947), for samples with unequal variances.
 
 use crate::report::{
     ReportError,
@@ -18,12 +18,12 @@ const RANGE: f64 = 4.0;
 const BLUE: [f64; 3] = [33.0, 82.0, 171.0];
 const RED: [f64; 3] = [186.0, 26.0, 42.0];
 
-/// A drawn z map with its counts.
+/// A z map with its statistics.
 #[derive(Clone, Debug)]
 pub struct ZMap {
     /// The picture with legend and caption.
     pub picture: Picture,
-    /// Pixels where z is defined.
+    /// Number of pixels where z is defined.
     pub defined: usize,
     /// Fraction of the defined pixels with |z| > 2.
     pub beyond_2: f64,
@@ -31,7 +31,7 @@ pub struct ZMap {
     pub beyond_3: f64,
 }
 
-/// Colour of one z value.
+/// Colour of a z value.
 ///
 /// ```
 /// use fredholm::report::image::zmap::color;
@@ -77,11 +77,11 @@ pub fn draw(title: &str, width: usize, height: usize, z: &[f64], caption: &Capti
         format!("|z| > 3: {} of the pixels (0.27 % if equal)", percent(beyond_3)),
     ];
     if undefined > 0 {
-        facts.push(format!("black: {undefined} pixels without a z value (no noise known, or none)"));
+        facts.push(format!("black: {undefined} pixels without a z value (their noise is zero or not known)"));
     }
     let lines = caption.lines(inner, SMALL);
 
-    // Title, map, legend bar with its numbers, facts, caption: from top to bottom.
+    // From top to bottom: title, map, legend bar with its numbers, statistics, caption.
     let map_y = GAP + TITLE * LINE;
     let bar_y = map_y + image.height as f64 + GAP;
     let facts_y = bar_y + BAR + 2.0 * TEXT * LINE;

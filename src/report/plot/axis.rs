@@ -1,7 +1,7 @@
-//! An axis: a map from values to [0, 1], and the ticks people expect on it.
+//! An axis: maps values to [0, 1], and chooses its ticks.
 //!
-//! The plot crate's own logarithmic axes leave ranges of less than a decade without labels and draw values that lie
-//! outside on the frame, so ranges, ticks and clipping are decided here.
+//! The plot crate's logarithmic axes have no labels if the range is less than a decade, and draw values outside the range on
+//! the frame. Ranges, ticks and clipping are therefore handled here.
 
 /// One axis of a panel.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// Linear axis over `lo..hi` as given, with ticks at multiples of 1, 2 or 5 · 10ⁿ, at most `ticks` of them.
+    /// Linear axis from `lo` to `hi`, with at most `ticks` ticks at multiples of 1, 2 or 5 · 10ⁿ.
     pub(crate) fn linear(title: &str, lo: f64, hi: f64, ticks: usize) -> Self {
         let step = nice_step((hi - lo) / ticks as f64);
         let decimals = (-step.log10().floor()).max(0.0) as usize;
@@ -27,15 +27,15 @@ impl Axis {
         Self { title: title.into(), lo, hi, log: false, ticks, minor: Vec::new() }
     }
 
-    /// Axis over whole numbers `0..=last` with room on both sides.
+    /// Axis over the whole numbers `0..=last`, extended by one half at both ends.
     pub(crate) fn counts(title: &str, last: usize, ticks: usize) -> Self {
         let step = nice_step(last as f64 / ticks as f64).max(1.0) as usize;
         let ticks = (0..=last).step_by(step).map(|k| (k as f64, k.to_string())).collect();
         Self { title: title.into(), lo: -0.5, hi: last as f64 + 0.5, log: false, ticks, minor: Vec::new() }
     }
 
-    /// Logarithmic axis that holds the positive `values`: ticks at the decades, or in steps 1-2-5
-    /// where they span less than two and a half.
+    /// Logarithmic axis that contains all positive `values`. Ticks are at the decades, or in steps 1-2-5 if the axis spans
+    /// less than two and a half decades.
     pub(crate) fn log(title: &str, values: impl Iterator<Item = f64>) -> Self {
         let (mut lo, mut hi) = (f64::INFINITY, 0.0f64);
         for v in values.filter(|v| v.is_finite() && *v > 0.0) {
@@ -44,7 +44,7 @@ impl Axis {
         if lo > hi {
             (lo, hi) = (0.1, 1.0);
         }
-        // A little air, so that no mark touches the frame; more of it on a longer axis.
+        // Leave space at both ends, so that no mark touches the frame; a longer axis gets more.
         let air = (hi / lo).powf(0.06).max(1.25);
         (lo, hi) = (lo / air, hi * air);
         let (first, last) = (lo.log10().floor() as i32, hi.log10().ceil() as i32);
@@ -80,7 +80,7 @@ impl Axis {
         Self { title: title.into(), lo, hi, log: true, ticks, minor }
     }
 
-    /// Logarithmic axis over sample counts: ticks at powers of two, labelled so that at most `labels` are.
+    /// Logarithmic axis for numbers of samples. Ticks are at powers of two, with at most `labels` labels.
     pub(crate) fn powers_of_two(title: &str, values: impl Iterator<Item = f64>, labels: usize) -> Self {
         let (mut lo, mut hi) = (f64::INFINITY, 0.0f64);
         for v in values.filter(|v| v.is_finite() && *v > 0.0) {
@@ -96,7 +96,8 @@ impl Axis {
         Self { title: title.into(), lo: lo / 1.4, hi: hi * 1.4, log: true, ticks, minor }
     }
 
-    /// Where a value stands: 0 at the lower, 1 at the upper end; beyond them outside [0, 1]. NaN where it has no place.
+    /// Position of a value: 0 at the lower end, 1 at the upper end, and outside [0, 1] beyond them. NaN if the value has no
+    /// position.
     pub(crate) fn position(&self, value: f64) -> f64 {
         let scale = |v: f64| if self.log { v.ln() } else { v };
         (scale(value) - scale(self.lo)) / (scale(self.hi) - scale(self.lo))
@@ -107,13 +108,13 @@ impl Axis {
     }
 }
 
-/// 1, 2 or 5 · 10ⁿ, not below `least`.
+/// The smallest number of the form 1, 2 or 5 · 10ⁿ that is not below `least`.
 fn nice_step(least: f64) -> f64 {
     let power = 10f64.powf(least.max(f64::MIN_POSITIVE).log10().floor());
     [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|&s| s >= least * (1.0 - 1e-9)).unwrap_or(10.0 * power)
 }
 
-/// `10⁻³`, with the digits raised.
+/// A power of ten in superscript notation: `10⁻³`.
 pub(crate) fn power_of_ten(exponent: i32) -> String {
     let raised = |c| match c {
         '-' => '⁻',
@@ -126,7 +127,7 @@ pub(crate) fn power_of_ten(exponent: i32) -> String {
     format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
 }
 
-/// Label of a value on a logarithmic axis that spans little.
+/// Label of a value on a logarithmic axis with a short range.
 fn log_label(value: f64) -> String {
     if (1e-3..1e4).contains(&value) {
         return ((value * 1e6).round() / 1e6).to_string();

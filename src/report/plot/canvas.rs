@@ -1,4 +1,5 @@
-//! A page to draw on: lines, marks, text and legends in CSS pixels, handed to the plot crate in units ten times finer.
+//! A page to draw on: lines, marks, text and legends. Lengths are CSS pixels; the plot crate gets them in units ten times
+//! finer.
 
 use plotters::{
     coord::Shift,
@@ -15,16 +16,16 @@ use crate::report::image::typeset::{self, SANS};
 /// Drawing units per CSS pixel.
 pub(crate) const SCALE: f64 = 10.0;
 
-/// Anything the plot crate can complain about.
+/// Result of a drawing operation; the error is any error of the plot crate.
 pub(crate) type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// A place on the page in CSS pixels.
 pub(crate) type Place = (f64, f64);
 
-/// The sheet a figure is drawn on; all lengths are CSS pixels.
+/// The page of a figure. All lengths are CSS pixels.
 pub(crate) struct Canvas<'a>(pub(crate) DrawingArea<SVGBackend<'a>, Shift>);
 
-/// How a piece of text looks.
+/// Style of a text.
 #[derive(Clone, Copy)]
 pub(crate) struct Words {
     pub(crate) size: f64,
@@ -41,12 +42,12 @@ impl Default for Words {
     }
 }
 
-/// How a line looks.
+/// Style of a line.
 #[derive(Clone, Copy)]
 pub(crate) struct Stroke {
     pub(crate) color: RGBColor,
     pub(crate) width: f64,
-    /// Length of dashes and gaps.
+    /// Length of the dashes and of the gaps; none for a solid line.
     pub(crate) dash: Option<(f64, f64)>,
 }
 
@@ -76,7 +77,7 @@ impl Canvas<'_> {
         Ok(())
     }
 
-    /// A straight line, dashed if the stroke says so.
+    /// A straight line, dashed if the stroke has dashes.
     pub(crate) fn line(&self, from: Place, to: Place, stroke: Stroke) -> Drawn {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = dx.hypot(dy);
@@ -96,7 +97,7 @@ impl Canvas<'_> {
         Ok(())
     }
 
-    /// A polygon that lets what is behind it be seen.
+    /// A transparent polygon.
     pub(crate) fn tint(&self, corners: &[Place], color: RGBColor) -> Drawn {
         let corners: Vec<_> = corners.iter().copied().map(unit).collect();
         self.0.draw(&Polygon::new(corners, color.mix(0.18).filled()))?;
@@ -126,7 +127,7 @@ impl Canvas<'_> {
         Ok(())
     }
 
-    /// Legend entries from `at` downwards, words wrapped to `width`; returns the y below the last.
+    /// Draws legend entries from `at` downwards, with text wrapped to `width`. Returns the y below the last entry.
     pub(crate) fn legend(&self, at: Place, width: f64, entries: &[Entry]) -> Result<f64, Box<dyn std::error::Error>> {
         const SAMPLE: f64 = 34.0;
         const SIZE: f64 = 12.5;
@@ -178,7 +179,7 @@ impl Entry {
     }
 }
 
-/// What stands before the words of a legend entry.
+/// The symbol in front of the text of a legend entry.
 pub(crate) enum Sample {
     Heading,
     Plain,

@@ -1,8 +1,8 @@
-//! Figures: drawn once as SVG, rasterised from the very same SVG.
+//! Figures: drawn once as SVG; the PNG is rasterised from the same SVG.
 //!
-//! The plot crate rounds coordinates to whole pixels, so everything is drawn ten times too large and the size in the
-//! header is rewritten. A panel places values itself and draws nothing whose place
-//! is outside its frame: lines are clipped, points are left out, error bars end in an arrow head at the frame.
+//! The plot crate rounds coordinates to whole pixels. Everything is therefore drawn ten times too large, and the size in the
+//! SVG header is corrected afterwards. A panel computes positions itself and draws nothing outside its frame: lines are
+//! clipped, points are left out, and error bars end in an arrow head at the frame.
 
 use std::path::{Path, PathBuf};
 
@@ -42,7 +42,7 @@ impl Figure {
     }
 }
 
-/// Makes a figure: `draw` fills `width × height`, the caption follows below.
+/// Makes a figure: `draw` fills an area of `width × height`, and the caption is added below.
 pub(crate) fn figure(
     name: &str,
     width: u32,

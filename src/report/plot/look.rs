@@ -1,22 +1,22 @@
-//! What a figure draws: points with errors, curves, and how they look.
+//! The data of a figure: points with errors, curves, and their colours and marks.
 //!
-//! Colours are those of Okabe and Ito (2008), told apart also by readers with a colour-vision deficiency; marks differ
-//! in shape, too.
+//! The colours are those of Okabe and Ito (2008), which readers with a colour-vision deficiency can distinguish. The marks
+//! also differ in shape.
 
 use plotters::prelude::RGBColor;
 
 use crate::report::half_width_95;
 
-/// A value with its error at one place.
+/// A value with its error at one position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Bounce k, or samples per pixel.
     pub x: f64,
-    /// The value; NaN: no mark.
+    /// The value; if NaN, no mark is drawn.
     pub value: f64,
-    /// Standard error of `value`; NaN where it is not known (no bar).
+    /// Standard error of `value`; NaN if not known (no bar).
     pub std_error: f64,
-    /// Replicates behind it: 0 exact, 1 error unknown (no bar).
+    /// Number of replicates: 0 for an exact value, 1 if the error is unknown (no bar).
     pub replicates: u64,
 }
 
@@ -33,10 +33,10 @@ impl Point {
     }
 }
 
-/// Points that belong together.
+/// The points of one curve, with its label and appearance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Its words in the legend.
+    /// Text in the legend.
     pub label: String,
     /// Its points.
     pub points: Vec<Point>,
@@ -44,7 +44,7 @@ pub struct Curve {
     pub look: Look,
 }
 
-/// Colour and mark of a curve: the same thing looks the same in every figure.
+/// Colour and mark of a curve. The same estimator has the same appearance in every figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
     pub(crate) color: RGBColor,
@@ -83,7 +83,7 @@ impl Look {
     /// The mark of a second quantity on the same axes.
     pub(crate) const CROSS: Mark = Mark::Cross;
 
-    /// Looks for any number of curves, as in a sweep.
+    /// Appearance of the i-th curve, for any number of curves, as in a sweep.
     pub fn nth(i: usize) -> Self {
         let colors = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK];
         let marks = [Mark::Disk, Mark::Square, Mark::Diamond, Mark::Triangle, Mark::Ring, Mark::Cross];

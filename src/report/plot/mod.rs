@@ -1,16 +1,18 @@
-//! Figures with axes: an axis places values, a panel is a frame with two of them on a canvas, and `figure` makes the SVG,
-//! with the command, the seed and the scene below.
+//! Figures with axes. An axis maps values to positions, a panel is a frame with two axes on a canvas, and `figure` makes the
+//! SVG with command, seed and scene below.
 //!
-//! The crate `plotters` (0.3.7) writes the SVG, element by element. Its charts are not used, because
+//! The crate `plotters` (0.3.7) writes the SVG elements. Its charts are not used, for these reasons:
 //!
-//! - its coordinates are `i32`, also in charts: bars and marks would be off by up to half a pixel, so that everything is drawn
-//!   ten times too large anyway;
-//! - a logarithmic axis has ticks at powers of ten only: within a decade it has none, or none with a round label;
-//! - ends outside the axes are moved onto the frame one by one: a bound that leaves the frame is drawn with another slope;
-//! - error bars have no arrow where the frame cuts them, and no upper limits where they reach zero on a logarithmic axis;
-//! - legends stand inside the frame, over the data, in one line for each curve.
+//! - Its coordinates are `i32`, also in charts. Bars and marks would be off by up to half a pixel, so that everything would
+//!   have to be drawn ten times too large anyway.
+//! - Its logarithmic axes have ticks at powers of ten only. Within a decade there are none, or none with a round label.
+//! - End points outside the axes are moved onto the frame one by one. A line that leaves the frame is then drawn with a
+//!   wrong slope.
+//! - Its error bars have no arrow where the frame cuts them, and no upper limits where they reach zero on a logarithmic
+//!   axis.
+//! - Its legends are inside the frame, where they cover data, with one line per curve.
 //!
-//! What would be left to a chart is the frame and its grid, thirty lines of the panel, with ticks that are given to it.
+//! A chart would only draw the frame and its grid, which are thirty lines of the panel.
 
 mod axis;
 mod canvas;

@@ -1,5 +1,5 @@
-//! A frame with two axes. It places values itself, because the plot crate draws what lies outside an axis on its edge:
-//! here lines are clipped, points outside are left out, and error bars end in an arrow head where the frame cuts them.
+//! A frame with two axes. It computes positions itself, because the plot crate draws values outside an axis on its edge.
+//! Here lines are clipped, points outside are left out, and error bars end in an arrow head where the frame cuts them.
 
 use plotters::{prelude::RGBColor, style::text_anchor::HPos};
 
@@ -21,7 +21,7 @@ pub(crate) struct Panel<'a, 'b> {
 }
 
 impl<'a, 'b> Panel<'a, 'b> {
-    /// Draws grid, frame, labels and title. `frame` is left, top, width, height; labels stand outside it.
+    /// Draws grid, frame, labels and title. `frame` is left, top, width, height; the labels are outside it.
     pub(crate) fn draw(
         page: &'a Canvas<'b>,
         title: &str,
@@ -71,7 +71,7 @@ impl<'a, 'b> Panel<'a, 'b> {
         Ok(panel)
     }
 
-    /// The place of a value, if it is inside the frame.
+    /// The position of a value, if it is inside the frame.
     fn at(&self, x: f64, value: f64) -> Option<Place> {
         let (u, v) = (self.x.position(x), self.y.position(value));
         ((0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v)).then(|| self.place(u, v))
@@ -81,7 +81,7 @@ impl<'a, 'b> Panel<'a, 'b> {
         (self.left + u * self.width, self.top + (1.0 - v) * self.height)
     }
 
-    /// The part of a straight line (straight on these axes) that lies in the frame.
+    /// Draws the part of a line inside the frame. The line is straight on these axes.
     pub(crate) fn line(&self, from: (f64, f64), to: (f64, f64), stroke: Stroke) -> Drawn {
         let unit_square = |(x, y)| (self.x.position(x), self.y.position(y));
         match clip(unit_square(from), unit_square(to)) {
@@ -90,19 +90,20 @@ impl<'a, 'b> Panel<'a, 'b> {
         }
     }
 
-    /// A mark, if its place is inside the frame.
+    /// Draws a mark, if its position is inside the frame.
     pub(crate) fn mark(&self, x: f64, value: f64, look: Look) -> Drawn {
         self.at(x, value).map_or(Ok(()), |place| self.page.mark(place, look))
     }
 
-    /// A pale area in the colour of a curve; its corners must lie inside the axes.
+    /// Draws a pale area in the colour of a curve. Corners outside the axes are left out.
     pub(crate) fn band(&self, corners: &[(f64, f64)], look: Look) -> Drawn {
         let places: Vec<Place> = corners.iter().filter_map(|&(x, v)| self.at(x, v)).collect();
         if places.len() < 3 { Ok(()) } else { self.page.tint(&places, look.color) }
     }
 
-    /// Marks with 95 % bars, moved sideways by `shift` pixels so that curves do not hide each other, joined by a thin
-    /// line if `joined`. On a logarithmic axis an interval that reaches zero is drawn as an upper limit.
+    /// Draws marks with 95 % error bars, and a thin line between them if `joined`. The marks are shifted sideways by `shift`
+    /// pixels so that curves do not hide each other. On a logarithmic axis, an interval that reaches zero is drawn as an
+    /// upper limit.
     pub(crate) fn curve(&self, curve: &Curve, shift: f64, joined: bool) -> Drawn {
         let color = curve.look.color;
         if joined {
@@ -128,12 +129,12 @@ impl<'a, 'b> Panel<'a, 'b> {
         Ok(())
     }
 
-    /// Whether a point can only be shown as an upper limit.
+    /// Returns true if a point can only be shown as an upper limit.
     pub(crate) fn is_limit(&self, point: &Point) -> bool {
         self.y.is_log() && point.value - point.half_width() <= 0.0
     }
 
-    /// The error bar of a mark at `(x, y)`: a cap at each end, or an arrow head where the frame cuts it.
+    /// Draws the error bar of a mark at `(x, y)`: a cap at each end, or an arrow head where the frame cuts the bar.
     fn bar(&self, x: f64, y: f64, value: f64, half: f64, color: RGBColor) -> Drawn {
         let stroke = Stroke::solid(color, 1.4);
         for (end, outward) in [(value + half, -1.0), (value - half, 1.0)] {

@@ -1,10 +1,10 @@
-//! CSV: a header, then lines. Fields are quoted where they must be.
+//! Writes CSV: a header, then one line per record. Fields are quoted where necessary.
 
 use std::fmt::Display;
 
 use csv::{QuoteStyle, Writer, WriterBuilder};
 
-/// A file in memory, filled field by field.
+/// A CSV file in memory, filled field by field.
 ///
 /// ```
 /// use fredholm::report::text::csv::Csv;
@@ -15,12 +15,12 @@ use csv::{QuoteStyle, Writer, WriterBuilder};
 pub struct Csv(Writer<Vec<u8>>);
 
 impl Csv {
-    /// With these columns, separated by commas.
+    /// Starts a file with the given column names, separated by commas.
     pub fn new(header: &str) -> Self {
         Self::quoting(QuoteStyle::Necessary, header)
     }
 
-    /// Fields are written as they are.
+    /// Starts a file whose fields are never quoted.
     pub(crate) fn bare(header: &str) -> Self {
         Self::quoting(QuoteStyle::Never, header)
     }
@@ -32,16 +32,16 @@ impl Csv {
         out
     }
 
-    /// One field.
+    /// Adds one field.
     ///
     /// # Panics
-    /// Never: memory can always be written to.
+    /// Never, because writing to memory cannot fail.
     pub fn put(&mut self, field: impl Display) -> &mut Self {
         self.0.write_field(field.to_string()).expect("memory can be written to");
         self
     }
 
-    /// Some numbers; one that is not known is left empty.
+    /// Adds numbers. A number that is not known (NaN) becomes an empty field.
     pub fn numbers(&mut self, values: impl IntoIterator<Item = f64>) -> &mut Self {
         for v in values {
             if v.is_nan() {
@@ -53,24 +53,24 @@ impl Csv {
         self
     }
 
-    /// Some empty fields.
+    /// Adds empty fields.
     pub fn blank(&mut self, fields: usize) -> &mut Self {
         (0..fields).for_each(|_| _ = self.put(""));
         self
     }
 
-    /// The line ends.
+    /// Ends the line.
     ///
     /// # Panics
-    /// If it is not as long as the header, which is a defect.
+    /// If the line does not have as many fields as the header, which is a defect of the program.
     pub fn end(&mut self) {
         self.0.write_record(None::<&[u8]>).expect("every line has as many fields as the header");
     }
 
-    /// The file.
+    /// The finished file.
     ///
     /// # Panics
-    /// Never: fields are text.
+    /// Never, because all fields are text.
     pub fn text(self) -> String {
         let bytes = self.0.into_inner().expect("memory can be written to");
         String::from_utf8(bytes).expect("fields are text")

@@ -1,4 +1,4 @@
-//! Tables for the pages of the book: what a chapter found, as Markdown that its text includes.
+//! Markdown tables for the book: each chapter writes its results into files that its text includes.
 
 use super::{
     number::{average, count, dash, mark, outcome, plus_minus, significant},
@@ -7,18 +7,18 @@ use super::{
 use crate::stats::Comparison;
 use crate::terms::Functional;
 
-/// A sentence of a text, what a run found, and whether the sentence holds.
+/// A statement of the book, the result of a run, and whether the result confirms it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
-    /// The sentence.
+    /// The statement.
     pub says: &'static str,
-    /// What was found, in a few words.
+    /// The result, in a few words.
     pub found: String,
-    /// Whether it holds.
+    /// True if the result confirms the statement.
     pub holds: bool,
 }
 
-/// A table with its first column to the left and all others to the right.
+/// A table; the first column is aligned to the left, all others to the right.
 ///
 /// ```
 /// let rows = [["0".to_string(), "1.5".into()], ["1".to_string(), "0.7".into()]];
@@ -32,14 +32,14 @@ pub fn table<S: AsRef<str>, R: AsRef<[String]>>(header: &[S], rows: &[R]) -> Str
     format!("{}|{sides}\n{}", line(header.iter().map(AsRef::as_ref).collect()), rows.collect::<String>())
 }
 
-/// Claims with what was found.
+/// A table of claims with their results.
 pub fn claims(claims: &[Claim]) -> String {
     let row = |c: &Claim| [c.says.to_string(), c.found.clone(), if c.holds { "✓" } else { "✗" }.to_string()];
     table(&["claim", "found", ""], &claims.iter().map(row).collect::<Vec<_>>())
 }
 
-/// Series side by side: a row per term, then the tail and the whole. The second column is the share of each term in the
-/// whole of the first series; a path tracer has a whole only.
+/// Several series in one table: a row per term, then the tail and the whole. The second column is the share of each term in
+/// the whole of the first series. A path tracer has only the row of the whole.
 pub fn terms(columns: &[(&str, &Functional)]) -> String {
     let (names, worlds): (Vec<_>, Vec<_>) = columns.iter().copied().unzip();
     let whole = worlds.iter().map(|f| average(&f.total).0).fold(0.0, f64::max);
@@ -53,14 +53,15 @@ pub fn terms(columns: &[(&str, &Functional)]) -> String {
     format!("{}\n{note}\n", table(&header, &rows))
 }
 
-/// The verdicts of a comparison: where each difference may lie, the margin, and what would decide what is undecided.
+/// The verdicts of a comparison: the difference, its interval, the margin, the verdict, and what is needed to decide an
+/// inconclusive row.
 pub fn verdicts(name: &str, comparison: &Comparison) -> String {
     let columns = [Column::Difference, Column::Interval, Column::Margin, Column::Outcome, Column::Cure];
     let rows = lines(&Rows::comparison(comparison), &columns, 1.0);
-    table(&[name, "difference", "it lies in", "δ", "verdict", "would decide"], &rows)
+    table(&[name, "difference", "interval", "δ", "verdict", "needed to decide"], &rows)
 }
 
-/// The rows in words, radiance in multiples of 1/`unit`.
+/// The rows as text, with radiance in multiples of 1/`unit`.
 fn lines(rows: &Rows, columns: &[Column], unit: f64) -> Vec<Vec<String>> {
     let name = |name: &Name| match name {
         Name::Tail(last) => format!("&gt; {last}"),
@@ -73,7 +74,7 @@ fn lines(rows: &Rows, columns: &[Column], unit: f64) -> Vec<Vec<String>> {
     rows.pick(columns).map(row).collect()
 }
 
-/// A mean and half its 95 % interval are written to the first digit of the latter.
+/// Formats a cell. An estimate is rounded to the first digit of the half width of its 95 % interval.
 fn words(cell: &Cell, unit: f64) -> String {
     match cell {
         Cell::Blank => String::new(),

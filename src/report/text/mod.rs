@@ -1,4 +1,4 @@
-//! What is made of text only: tables, Markdown, CSV, `summary.json`.
+//! Output that consists of text: tables, Markdown, CSV, `summary.json`.
 
 pub mod csv;
 pub mod grid;

@@ -1,7 +1,8 @@
-//! JSON has no NaN: it is written as `null`, and this reader turns a `null` where a number belongs back into NaN.
+//! Reads JSON in which `null` stands for NaN. JSON has no NaN, so that NaN is written as `null`; where a number is expected,
+//! this reader turns `null` back into NaN.
 //!
-//! Only the place decides: a `null` read as `Option` is still `None`. That keeps the result types free of attributes
-//! about one file format.
+//! The expected type decides: a `null` that is read as `Option` becomes `None`. The result types therefore need no
+//! attributes for this file format.
 
 use serde::{
     Deserializer,
@@ -13,7 +14,7 @@ use serde::{
 };
 use serde_json::{Error, Value};
 
-/// A JSON value in which `null` may stand for NaN.
+/// A JSON value in which `null` may mean NaN.
 pub(crate) struct NullAsNan(pub(crate) Value);
 
 impl<'de> IntoDeserializer<'de, Error> for NullAsNan {

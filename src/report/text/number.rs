@@ -1,14 +1,15 @@
-//! Numbers and outcomes as words.
+//! Formats numbers and verdicts as text.
 //!
-//! One number per term stands for the colour: the mean of the three channels. Its error is the mean of the three
-//! errors, which bounds the true one whatever the correlation of the channels (triangle inequality of the L2 norm).
-//! A dash means "not known", never zero; where the [evidence](crate::stats::evidence) is too thin for an error, there stands
-//! what there is: `3 events`, `no event`, `k̂ 0.9`.
+//! Each term is shown as one number: the mean of its three colour channels. Its error is the mean of the three errors. This
+//! bounds the true error for any correlation of the channels (triangle inequality of the L2 norm).
+//!
+//! A dash means "not known", never zero. If the [evidence](crate::stats::evidence) is too weak for an error, the reason is
+//! shown in its place: `3 events`, `no event`, `k̂ 0.9`.
 
 use crate::stats::{Evidence, Outcome, half_width_95};
 use crate::terms::Estimate;
 
-/// The word of an outcome.
+/// The word for a verdict.
 pub fn outcome(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Agrees => "agrees",
@@ -17,7 +18,7 @@ pub fn outcome(outcome: Outcome) -> &'static str {
     }
 }
 
-/// The sign of an outcome.
+/// The symbol for a verdict.
 pub fn mark(outcome: Outcome) -> char {
     match outcome {
         Outcome::Agrees => '✓',
@@ -26,7 +27,7 @@ pub fn mark(outcome: Outcome) -> char {
     }
 }
 
-/// Mean over the channels and half width of its 95 % interval (NaN: not known).
+/// Mean over the channels, and half width of its 95 % interval (NaN if not known).
 pub fn average(estimate: &Estimate) -> (f64, f64) {
     let mean = estimate.mean.element_sum() / 3.0;
     let std_error = estimate.std_error.element_sum() / 3.0;
@@ -34,12 +35,12 @@ pub fn average(estimate: &Estimate) -> (f64, f64) {
     (mean, if known { half_width_95(std_error, estimate.replicates) } else { f64::NAN })
 }
 
-/// What stands in the column of errors: half the 95 % interval, or what there is instead.
+/// Text for the column of errors: the half width of the 95 % interval, or the reason why there is none.
 pub fn error(estimate: &Estimate) -> String {
     Evidence::of(estimate).no_error.map_or_else(|| known(average(estimate).1), |why| why.short())
 }
 
-/// A number with `digits` significant digits; powers of ten outside 10⁻³ … 10⁵.
+/// A number with `digits` significant digits. Outside 10⁻³ … 10⁵ it is written with a power of ten.
 ///
 /// ```
 /// use fredholm::report::text::number::significant;
@@ -59,7 +60,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     if value.is_infinite() {
         return if value > 0.0 { "∞".into() } else { "−∞".into() };
     }
-    // Let the formatter round first, so that 9.9996 counts as 10.00.
+    // Let the formatter round first, so that 9.9996 becomes 10.00.
     let scientific = format!("{value:.*e}", digits - 1);
     let exponent: i32 = scientific.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
     if !(-3..5).contains(&exponent) {
@@ -69,8 +70,8 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}")
 }
 
-/// `value ± error`, the error with `digits` significant digits and the value with as many decimals; a value that is exact,
-/// or whose error is not known, alone.
+/// `value ± error`: the error has `digits` significant digits, and the value as many decimals as the error. If the value is
+/// exact or its error is not known, only the value is written.
 ///
 /// ```
 /// use fredholm::report::text::number::plus_minus;
@@ -88,7 +89,7 @@ pub fn plus_minus(value: f64, error: f64, digits: i32) -> String {
     text.replace('-', "−").replace("e−", "e-")
 }
 
-/// A count in thousands, millions or billions.
+/// A count in units, thousands (k), millions (M) or billions (G).
 ///
 /// ```
 /// assert_eq!(fredholm::report::text::number::count(16_777_216), "16.8 M");
@@ -105,18 +106,18 @@ pub fn count(n: u64) -> String {
     format!("{scaled:.1} {unit}")
 }
 
-/// A share of the whole with one decimal.
+/// A fraction of the whole, in percent with one decimal.
 pub fn percent(share: f64) -> String {
     let share = 100.0 * share;
     if share.is_finite() { format!("{share:.1} %") } else { dash() }
 }
 
-/// A p value: small ones as powers of ten.
+/// A p-value with two digits; small ones with a power of ten.
 pub(crate) fn p_value(p: f64) -> String {
     if p.is_nan() { dash() } else { significant(p, 2) }
 }
 
-/// Three digits and a sign; a dash where nothing is known.
+/// A number with three digits and a sign; a dash if it is not known.
 pub(crate) fn signed(value: f64) -> String {
     if value.is_nan() {
         return dash();
@@ -128,7 +129,7 @@ pub(crate) fn signed(value: f64) -> String {
     format!("{sign}{}", significant(value, 3))
 }
 
-/// Two digits; a dash where nothing is known, ∞ for an error whose variance is infinite.
+/// A number with two digits. A dash if it is not known, ∞ for an error whose variance is infinite.
 pub(crate) fn known(value: f64) -> String {
     match value {
         v if v.is_nan() => dash(),

@@ -1,37 +1,38 @@
-//! Which of the `_se` layers of a run can be trusted, pixel by pixel.
+//! States which of the `_se` layers of a run can be trusted for single pixels.
 //!
-//! The rule is that of [`Evidence::of_pixels`]: half the pixels must rest on 12 events, also of those that are met only by chance
-//! ([`Doubt`](crate::terms::Doubt)), and the largest contributions must have no heavy tail. Image means are another matter: their errors
-//! come from replicates of the whole image.
+//! The rule is [`Evidence::of_pixels`]. It requires two things: half the pixels have at least 12 events, counting rare
+//! events that are expected but have not occurred ([`Doubt`](crate::terms::Doubt)), and the largest contributions have no
+//! heavy tail. The rule does not concern image means, because their errors come from replicates of the whole image.
 
 use crate::stats::Evidence;
 use crate::terms::Estimate;
 use serde::{Deserialize, Serialize};
 
-/// Names in a line.
+/// Largest number of layer names in one line.
 const AT_ONCE: usize = 8;
 
-/// What is said of one layer.
+/// The assessment of one layer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PixelErrors {
-    /// `T03`: the errors are in `T03_se`.
+    /// Name of the layer, such as `T03`; its errors are in `T03_se`.
     pub layer: String,
-    /// Whether they can be trusted.
+    /// True if the errors can be trusted.
     pub trusted: bool,
-    /// Half the pixels rest on fewer events.
+    /// Median over the pixels of the number of events.
     pub events: f64,
-    /// In words: `trusted`, or why not.
+    /// `trusted`, or the reason why not.
     pub why: String,
 }
 
-/// Of one layer whose image mean is `image`, half of whose pixels rest on fewer than `events`, made from so many replicates.
+/// Assesses one layer. `image` is its image mean, half of its pixels have fewer than `events` events, and it was made from
+/// `replicates` replicates.
 pub fn of(layer: &str, image: &Estimate, events: f64, replicates: u64) -> PixelErrors {
     let reason = Evidence::of_pixels(events, image, replicates).no_error;
-    let why = reason.map_or("trusted".into(), |why| format!("not trusted: of a pixel, {why}"));
+    let why = reason.map_or("trusted".into(), |why| format!("not trusted, because for single pixels: {why}"));
     PixelErrors { layer: layer.to_owned(), trusted: reason.is_none(), events, why }
 }
 
-/// One line for those that are trusted, one for those that are not; black layers have no errors to be trusted.
+/// Lists the layers that can be trusted, then those that cannot. Black layers are left out, because they have no errors.
 pub fn words(all: &[PixelErrors]) -> String {
     let names = |trusted: bool| {
         let of = |e: &PixelErrors| if trusted { e.layer.clone() } else { format!("{} ({:.0})", e.layer, e.events) };
@@ -41,7 +42,7 @@ pub fn words(all: &[PixelErrors]) -> String {
         let lines: Vec<String> = names.chunks(AT_ONCE).map(|some| some.join(", ")).collect();
         if lines.is_empty() { String::new() } else { format!("{head}:\n  {}\n", lines.join(",\n  ")) }
     };
-    let good = line("errors of pixels (_se) to be trusted", names(true));
-    let bad = line("not to be trusted (events of a pixel)", names(false));
+    let good = line("pixel errors (_se) that can be trusted", names(true));
+    let bad = line("pixel errors that cannot be trusted (in brackets: events per pixel)", names(false));
     (good + &bad).trim_end().to_owned()
 }

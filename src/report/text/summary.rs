@@ -1,30 +1,32 @@
-//! `summary.json`: everything a run found out, in one versioned file that programs can read.
+//! `summary.json`: all results of a run in one versioned file for other programs.
 //!
-//! Radiances are RGB triples in W·sr⁻¹·m⁻² of the image mean, unless said otherwise. An *estimate* is
-//! `{mean: [r,g,b], std_error: [r,g,b], replicates, events}`; `replicates` 0 means exact, 1 means that the error is not known. `events`
-//! is what it was added up from: `mean`, `variance` (so many equal events would carry either) and `tail` (k̂), or `null`; where these are
-//! few, `std_error` means nothing ([`crate::stats::evidence`]).
-//! A number that is not finite is written as `null` and read back as NaN.
+//! Radiances are RGB triples in W·sr⁻¹·m⁻² of the image mean, unless stated otherwise. An *estimate* is
+//! `{mean: [r,g,b], std_error: [r,g,b], replicates, events}`. `replicates` is 0 for an exact value, and 1 if the error is
+//! not known.
+//!
+//! `events` is `null` or has three entries. `mean` and `variance` are the numbers of equal contributions that would carry
+//! the mean and the variance; `tail` is k̂. If the numbers are small, `std_error` is meaningless
+//! ([`crate::stats::evidence`]). A number that is not finite is written as `null` and read back as NaN.
 //!
 //! | key | meaning |
 //! |---|---|
 //! | `schema`, `version` | `"fredholm-summary"` and 1; a reader refuses any other |
-//! | `command` | the command that makes this result again |
+//! | `command` | the command that reproduces this result |
 //! | `scene`, `scene_hash` | name and hash of the scene as loaded |
 //! | `seed`, `spp`, `max_bounces` | seed, samples per pixel, K: the terms are k = 0..=K |
-//! | `threads`, `seconds` | worker threads and wall-clock seconds; no result depends on them |
+//! | `threads`, `seconds` | worker threads and wall-clock seconds; the results do not depend on them |
 //! | `width`, `height` | pixels |
-//! | `terms` | per k: `k`, `mean`, `std_error`, `variance` (of one sample, averaged over the pixels), `ratio` (`mean` over that of k − 1; `null` for k = 0), `rays` (traced for this k) |
+//! | `terms` | per k: `k`, `mean`, `std_error`, `variance` (of one sample, averaged over the pixels), `ratio` (`mean` divided by the mean of term k − 1; `null` for k = 0), `rays` (traced for this k) |
 //! | `tail` | estimate: everything longer than K; all `null` with `replicates` 0 where paths are cut at K (`--roulette none`) |
 //! | `sum` | estimate: Σ_{k≤K} of the terms |
-//! | `path` | estimate by the full path tracer, or `null` |
-//! | `radiosity` | the matrix world, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solve), `spectral_radius` per channel, `spectral_radius_limit` and its `…_error` (h → 0, from three meshes), `norms` (k, 1-, 2- and 1/ρ-weighted norm of T_h^k E over the patches), `unlit_sides` (never reached by light, left out of T), `discretisation` (abs. difference to half as many patches) |
+//! | `path` | estimate of the whole image by the path tracer, or `null` |
+//! | `radiosity` | results of the matrix, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solution of the linear system), `spectral_radius` per channel, `spectral_radius_limit` and its `…_error` (h → 0, from three meshes), `norms` (k, 1-, 2- and 1/ρ-weighted norm of T_h^k E over the patches), `unlit_sides` (never reached by light, left out of T), `discretisation` (absolute difference to a mesh of half as many patches) |
 //! | `bounds` | `max_albedo` per channel (the guarantee ‖T‖₁ ≤ max albedo), `observed_rate` and `observed_rate_error` (fitted, no guarantee), `tail_bound` (a-posteriori bound of the surface norm beyond K) |
 //! | `cross_moments` | of paths without roulette up to vertex K, or `null` where none were recorded: `max_bounces` (their own K), `paths`, `beyond` (q from vertex K on), `slots` (per slot `vertex`, `kind` `hit`, `connect` or `tail`, and `term`), `second` and `product` (per channel M_ab and m_ab, rows of numbers), `rays` (per path, by slot); see [`crate::stats::schedule`] for what they predict |
-//! | `pixel_errors` | per layer of `terms.exr` with a `_se`: `layer`, `trusted`, `events` (half the pixels rest on fewer), `why` |
+//! | `pixel_errors` | per layer of `terms.exr` with a `_se`: `layer`, `trusted`, `events` (half the pixels have fewer), `why` |
 //! | `verdicts` | list of `name`, `effect`, `interval`, `p`, `min_detectable`, `outcome` (`agrees`, `differs`, `inconclusive`) |
 //! | `files` | names of the files of this run, relative to this one |
-//! | `series` | per world: `world`, `label`, `functionals` (`name`, `terms`, `tail`, `sum`, `total` as estimates; the image mean first, then regions and projections), `cost` (`paths`, `rays`, `non_finite`, `seconds`), `unsampled`, `doubts` (`what`, `from`, `per_path`: events to be expected of a path), `variance` of tail and total (`finite`, `infinite`, `unknown`; unless it is finite their `std_error` is `null`) |
+//! | `series` | per world: `world`, `label`, `functionals` (`name`, `terms`, `tail`, `sum`, `total` as estimates; the image mean first, then regions and projections), `cost` (`paths`, `rays`, `non_finite`, `seconds`), `unsampled`, `doubts` (`what`, `from`, `per_path`: expected events per path), `variance` of tail and total (`finite`, `infinite`, `unknown`; unless it is finite their `std_error` is `null`) |
 
 use std::path::Path;
 
@@ -46,7 +48,7 @@ pub const SCHEMA: &str = "fredholm-summary";
 /// Version of the schema written and read.
 pub const VERSION: u32 = 1;
 
-/// The contents of `summary.json`; the keys are explained in the [module](self).
+/// The contents of `summary.json`. The keys are explained in the [module documentation](self).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub struct Summary {
@@ -111,21 +113,21 @@ impl Default for Summary {
 pub struct Term {
     /// Applications of T.
     pub k: usize,
-    /// Image mean.
+    /// Mean over the image.
     pub mean: DVec3,
-    /// Its standard error; NaN if not known.
+    /// Standard error of `mean`; NaN if not known.
     pub std_error: DVec3,
     /// Variance of one sample, averaged over the pixels; NaN if not known.
     pub variance: DVec3,
-    /// Mean over the mean of term k − 1; NaN for k = 0.
+    /// `mean` divided by the mean of term k − 1; NaN for k = 0.
     pub ratio: DVec3,
     /// Rays traced for this term.
     pub rays: u64,
 }
 
-/// Rows of a series: the ratios follow from the means.
+/// The rows of a series. The ratios are computed from the means.
 ///
-/// `variance` and `rays` hold one value per k; where they are shorter, NaN and 0 stand in.
+/// `variance` and `rays` have one value per k. Missing values become NaN and 0.
 pub fn terms(estimates: &[Estimate], variance: &[DVec3], rays: &[u64]) -> Vec<Term> {
     let row = |(k, e): (usize, &Estimate)| Term {
         k,
@@ -138,32 +140,32 @@ pub fn terms(estimates: &[Estimate], variance: &[DVec3], rays: &[u64]) -> Vec<Te
     estimates.iter().enumerate().map(row).collect()
 }
 
-/// What the matrix world adds.
+/// Results of the matrix.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Radiosity {
-    /// Patches.
+    /// Number of patches.
     pub patches: usize,
     /// Image means of the terms.
     pub terms: Vec<DVec3>,
-    /// Σ_{k≤K}.
+    /// Sum of the terms k = 0..=K.
     pub sum: DVec3,
-    /// The solve of L = E + T L.
+    /// Image mean of the solution of L = E + T_h L.
     pub full: DVec3,
     /// Spectral radius of T_h, per channel.
     pub spectral_radius: DVec3,
-    /// Extrapolated to h → 0 from three meshes; NaN if not known.
+    /// The spectral radius extrapolated to h → 0 from three meshes; NaN if not known.
     #[serde(default = "not_known")]
     pub spectral_radius_limit: DVec3,
-    /// Half width of what is allowed for there: an estimate, no bound.
+    /// Half width of the error of this extrapolation. It is an estimate, not a bound.
     #[serde(default = "not_known")]
     pub spectral_radius_limit_error: DVec3,
     /// Norms of T_h^k E over the patches, k = 0..=K.
     #[serde(default)]
     pub norms: Vec<BounceNorms>,
-    /// Sides that light never reaches: T and its spectral radius leave them out.
+    /// Number of surface sides that light never reaches. T and its spectral radius do not contain them.
     #[serde(default)]
     pub unlit_sides: usize,
-    /// |R_h − R_2h| of the image mean: how much the mesh may matter.
+    /// |R_h − R_2h| of the image mean R: an estimate of the mesh error.
     pub discretisation: DVec3,
 }
 
@@ -180,11 +182,11 @@ pub struct BounceNorms {
     pub norm_1: DVec3,
     /// ‖x‖₂ = √Σ Aᵢ xᵢ².
     pub norm_2: DVec3,
-    /// ‖x‖_w = √Σ Aᵢ xᵢ²/ρᵢ over the patches with ρ > 0: the norm in which ratios never fall.
+    /// ‖x‖_w = √Σ Aᵢ xᵢ²/ρᵢ over the patches with ρ > 0: in this norm the ratios of successive terms never decrease.
     pub norm_w: DVec3,
 }
 
-/// The norms of every term.
+/// The norms of every term, from the radiance of every patch.
 pub fn bounce_norms(patches: &Patches, terms: &[Vec<DVec3>]) -> Vec<BounceNorms> {
     let norms = |(k, term): (usize, &Vec<DVec3>)| {
         let sum = |f: &dyn Fn(&Patch, DVec3) -> DVec3| patches.iter().zip(term).map(|(p, x)| f(p, *x)).sum::<DVec3>();
@@ -201,16 +203,16 @@ pub fn bounce_norms(patches: &Patches, terms: &[Vec<DVec3>]) -> Vec<BounceNorms>
     terms.iter().enumerate().map(norms).collect()
 }
 
-/// What is known about the decay.
+/// Bounds and rates of the decay of the terms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
-    /// ‖T‖₁ ≤ this, per channel.
+    /// Bound of ‖T‖₁ per channel: the largest albedo.
     pub max_albedo: DVec3,
-    /// Fitted rate of the surface norm; NaN if not fitted.
+    /// Rate fitted to the surface norms; NaN if not fitted.
     pub observed_rate: f64,
-    /// Its standard error.
+    /// Standard error of `observed_rate`.
     pub observed_rate_error: f64,
-    /// g/(1−g) ‖T^K E‖₁ with g = max albedo; NaN where g = 1.
+    /// Bound of the tail: g/(1−g) ‖T^K E‖₁ with g = max albedo; NaN if g = 1.
     pub tail_bound: DVec3,
 }
 
@@ -221,7 +223,7 @@ impl Default for Bounds {
     }
 }
 
-/// Moments of [`Vertices`] as a value of the key `cross_moments`; `beyond` is q from vertex K on.
+/// The moments of [`Vertices`] as the value of the key `cross_moments`. `beyond` is q from vertex K on.
 pub fn cross_moments(recorded: &Recorded, beyond: f64) -> serde_json::Value {
     let m = &recorded.all;
     let last = m.slots.saturating_sub(1);
@@ -247,29 +249,30 @@ pub fn cross_moments(recorded: &Recorded, beyond: f64) -> serde_json::Value {
 /// One comparison and its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VerdictRecord {
-    /// What was compared: `T3: terms − radiosity`.
+    /// Name of the comparison, such as `T3: terms − radiosity`.
     pub name: String,
-    /// The difference found.
+    /// The difference that was measured.
     pub effect: f64,
-    /// Its interval at the declared level.
+    /// Interval of the difference at the declared level.
     pub interval: (f64, f64),
-    /// p value of no difference.
+    /// p-value of no difference.
     pub p: f64,
-    /// The smallest difference the comparison would have found.
+    /// The smallest difference that the comparison would have found.
     pub min_detectable: f64,
-    /// The result.
+    /// The verdict.
     pub outcome: Outcome,
 }
 
 impl VerdictRecord {
-    /// Of a verdict, under a name.
+    /// The record of a verdict, under a given name.
     pub fn of(name: String, v: &stats::Verdict) -> Self {
         let (effect, interval, p, outcome) = (v.effect, v.interval, v.p, v.outcome);
         Self { name, effect, interval, p, min_detectable: v.min_detectable, outcome }
     }
 }
 
-/// The rows of a comparison of that name; without a name, the rows say which functional they speak of.
+/// The records of a comparison with the given name. If the name is empty, each record names the functional that was
+/// compared.
 pub fn verdicts(name: &str, comparison: &stats::Comparison) -> Vec<VerdictRecord> {
     let words = |v: &stats::Verdict| match name {
         "" => format!("{} ({})", v.name, v.functional),

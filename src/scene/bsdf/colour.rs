@@ -1,26 +1,26 @@
-//! A colour of a surface: one number per channel, or an image.
+//! The colour of a surface: one colour everywhere, or an image.
 
 use crate::math::Rgb;
 use crate::scene::raster::Raster;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// A colour, the same everywhere or from an image.
+/// A colour that is the same everywhere or comes from an image.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Colour {
-    /// One colour.
+    /// The same colour everywhere.
     Uniform(DVec3),
-    /// Bilinear, repeating; the uv origin is at the bottom left.
+    /// An image, interpolated bilinearly and repeated; the uv origin is at the bottom left.
     Texture(Arc<Raster>),
 }
 
 impl Colour {
-    /// Whether an image says it.
+    /// Returns true if the colour comes from an image.
     pub fn is_texture(&self) -> bool {
         matches!(self, Self::Texture(_))
     }
 
-    /// The colour, or the mean of the image.
+    /// The colour, or the mean colour of the image.
     pub fn mean(&self) -> DVec3 {
         match self {
             Self::Uniform(c) => *c,
@@ -28,7 +28,7 @@ impl Colour {
         }
     }
 
-    /// White where an image will tell.
+    /// The colour; white for an image, whose colour at a point is set later.
     pub(super) fn uniform(&self) -> Rgb {
         match self {
             Self::Uniform(c) => c.as_vec3(),
@@ -36,7 +36,7 @@ impl Colour {
         }
     }
 
-    /// In words.
+    /// The colour as text for the user.
     pub(super) fn words(&self) -> String {
         match self {
             Self::Uniform(c) => rgb(*c),
@@ -45,7 +45,7 @@ impl Colour {
     }
 }
 
-/// Three numbers in words.
+/// Three numbers as text, with three decimals.
 pub(super) fn rgb(c: DVec3) -> String {
     format!("({:.3}, {:.3}, {:.3})", c.x, c.y, c.z)
 }

@@ -7,13 +7,13 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | F | Fresnel reflectance of η + ik, or one colour at every angle | [`Conductor::fresnel`] |
-//! | h | half-way between ω_o and ω_i | [`half`] |
-//! | D, G, D_ωo | microfacets | [`super::ggx`] |
+//! | F | Fresnel reflectance of index η + ik, or one colour at every angle | [`Conductor::fresnel`] |
+//! | h | micronormal, half-way between ω_o and ω_i | [`half`] |
+//! | D, G, D_ωo | microfacet distribution, masking and shadowing, density of the normals visible from ω_o | [`super::ggx`] |
 //! | 4 ω_o·h | dω_i/dh of a reflection | [`Conductor::pdf`] |
 //!
-//! Light that a microfacet reflects onto another is lost, so a rough metal with F = 1 has an albedo below 1. The weight
-//! f cos θ_i/p = F G/G₁(ω_o) is at most F.
+//! r(ω_o) is the mirror direction and n the normal. Light that one microfacet reflects onto another is lost, so a rough
+//! metal with F = 1 has an albedo below 1. The weight f cos θ_i/p = F G/G₁(ω_o) is at most F.
 //!
 //! References: Torrance and Sparrow, *Theory for Off-Specular Reflection From Roughened Surfaces* (JOSA 57(9), 1967);
 //! Cook and Torrance, *A Reflectance Model for Computer Graphics* (TOG 1(1), 1982); microfacets as in [`super::ggx`].
@@ -28,11 +28,11 @@ use crate::scene::SceneError;
 use crate::scene::load::{Cursor, keys};
 use glam::{DVec3, Vec3};
 
-/// A metal.
+/// One side of a metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conductor {
     metal: Reflects,
-    /// Microfacets; smooth without.
+    /// Microfacets; `None` for a smooth metal.
     pub rough: Option<Microfacets>,
 }
 
@@ -43,7 +43,7 @@ enum Reflects {
 }
 
 impl Conductor {
-    /// From a description.
+    /// Builds the BSDF from the description of a scene file.
     pub fn new(metal: Metal, rough: Option<Ggx>) -> Self {
         let metal = match metal {
             Metal::Fresnel { eta, k } => Reflects::Index { eta: eta.as_vec3(), k: k.as_vec3() },
@@ -52,7 +52,7 @@ impl Conductor {
         Self { metal, rough: rough.map(Microfacets::new) }
     }
 
-    /// F at cosine c.
+    /// F: Fresnel reflectance at cosine c.
     #[inline(always)]
     pub fn fresnel(&self, c: f32) -> Rgb {
         match self.metal {
@@ -63,7 +63,7 @@ impl Conductor {
 }
 
 impl Model for Conductor {
-    /// Zero of a smooth metal.
+    /// f(ω_o, ω_i); zero for a smooth metal.
     #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3, _: TransportMode) -> Rgb {
         match self.rough {
@@ -85,7 +85,8 @@ impl Model for Conductor {
         }
     }
 
-    /// The mirror direction, or the reflection by a normal seen from ω_o. None below the surface.
+    /// The mirror direction of a smooth metal, or the reflection at a micronormal visible from ω_o. `None` if it points
+    /// below the surface.
     #[inline(always)]
     fn sample(&self, wo: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
         let Some(facets) = self.rough else {
@@ -98,12 +99,12 @@ impl Model for Conductor {
         if wi.z <= 0.0 {
             return None;
         }
-        // from the pair of directions, as eval and pdf see it
+        // computed from the pair of directions, as in eval and pdf
         let weight = self.fresnel(half(wo, wi).1) * facets.lit(wo.z, wi.z);
         Some(BsdfSample { wi, weight, pdf: self.pdf(wo, wi, sampling), delta: false })
     }
 
-    /// Exact for a smooth metal; for a rough one the largest F, which G/G₁ ≤ 1 can only lower.
+    /// Exact for a smooth metal. For a rough one an upper bound: the largest F, because G/G₁ ≤ 1.
     #[inline(always)]
     fn albedo(&self, wo: Vec3) -> Rgb {
         match self.rough {
@@ -129,26 +130,26 @@ impl Model for Conductor {
     }
 }
 
-/// What a metal reflects.
+/// The reflectance of a metal, as a scene file gives it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Metal {
     /// Complex index of refraction η + ik per channel: exact Fresnel reflectance.
     Fresnel {
-        /// η.
+        /// η, the real part.
         eta: DVec3,
-        /// k.
+        /// k, the imaginary part.
         k: DVec3,
     },
-    /// F = this, at every angle.
+    /// This colour as F at every angle.
     Reflectance(DVec3),
 }
 
-/// A metal of a scene file.
+/// A metal as described in a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConductorSurface {
-    /// What it reflects.
+    /// Its reflectance.
     pub metal: Metal,
-    /// Microfacets; smooth without.
+    /// Microfacets; `None` for a smooth metal.
     pub rough: Option<Ggx>,
 }
 
@@ -160,7 +161,7 @@ impl Surface for ConductorSurface {
     fn read(c: &Cursor<'_>) -> Result<Self, SceneError> {
         let metal = match (c.get("eta").or(c.get("k")), c.get("reflectance")) {
             (Some(_), Some(r)) => {
-                let e = r.error("eta, k and reflectance are both given");
+                let e = r.error("eta and k are given together with reflectance");
                 return Err(
                     e.help("eta and k give the Fresnel reflectance; reflectance alone is the same at every angle")
                 );

@@ -6,14 +6,14 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | η | index on the side of ω_i beyond the surface over that on the side of ω_o | [`Interface`] |
+//! | η | index beyond the surface divided by the index on the side of ω_o | [`Interface`] |
 //! | F | Fresnel reflectance; 1 under total internal reflection | [`Interface::reflectance`] |
-//! | t(ω_o) | (−x/η, −y/η, −g/η), Snell's law | [`Dielectric::sample`] |
-//! | p | probability of reflection: F, or a constant | [`Odds::of_reflection`] |
+//! | t(ω_o) | refracted direction (−x/η, −y/η, −g/η), by Snell's law | [`Dielectric::sample`] |
+//! | p | probability of choosing reflection: F, or a constant | [`Odds::of_reflection`] |
 //!
-//! Refraction into the denser side squeezes a beam, so that radiance over η² is what stays along a ray; flux is not
-//! squeezed. References: Born and Wolf, *Principles of Optics* (7th ed. 1999), section 1.5; Veach, *Non-symmetric
-//! Scattering in Light Transport Algorithms* (EGWR 1996).
+//! r(ω_o) is the mirror direction. Refraction into the denser side narrows a beam: radiance grows by η². So radiance divided
+//! by the squared index of refraction is constant along a ray. Flux does not change. References: Born and Wolf, *Principles
+//! of Optics* (7th ed. 1999), section 1.5; Veach, *Non-symmetric Scattering in Light Transport Algorithms* (EGWR 1996).
 
 use super::fresnel::Interface;
 use super::ggx::{Ggx, Microfacets};
@@ -26,15 +26,15 @@ use crate::scene::SceneError;
 use crate::scene::load::{Cursor, MtlMaterial, keys, keys::IOR};
 use glam::Vec3;
 
-/// Index of glass where an MTL file has no `Ni`.
+/// Index of refraction of glass if an MTL file has no `Ni`.
 const GLASS: f64 = 1.5;
 
 /// A smooth boundary between two dielectrics, seen from one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmoothDielectric {
-    /// The indices.
+    /// The indices on both sides.
     pub interface: Interface,
-    /// How a side is chosen.
+    /// Rule that chooses between reflection and refraction.
     pub odds: Odds,
 }
 
@@ -75,9 +75,9 @@ impl SmoothDielectric {
 /// A boundary between two dielectrics, seen from one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Dielectric {
-    /// Without microfacets.
+    /// Smooth: without microfacets.
     Smooth(SmoothDielectric),
-    /// With microfacets.
+    /// Rough: with microfacets.
     Rough(RoughDielectric),
 }
 
@@ -117,16 +117,16 @@ impl Model for Dielectric {
     }
 }
 
-/// Glass and its like in a scene file. The inside is behind the normal.
+/// Glass or another dielectric as described in a scene file. The inside is the side behind the normal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DielectricSurface {
     /// Index of refraction inside.
     pub ior: f64,
     /// Index of refraction outside.
     pub ior_outside: f64,
-    /// How reflection or refraction is chosen.
+    /// Rule that chooses between reflection and refraction.
     pub choice: Choice,
-    /// Microfacets; smooth without.
+    /// Microfacets; `None` for a smooth boundary.
     pub rough: Option<Ggx>,
 }
 
@@ -146,22 +146,24 @@ impl Surface for DielectricSurface {
                 let p = at.number()?;
                 if !(p > 0.0 && p < 1.0) {
                     let e = at.error(format!("choice {p} is outside (0, 1)"));
-                    return Err(e.help("it is the probability of reflection; neither way may be impossible"));
+                    return Err(e.help(
+                        "it is the probability of reflection, and both reflection and refraction must be possible",
+                    ));
                 }
                 Choice::Constant(p)
             }
         };
         let rough = keys::rough(c)?;
         if let (Some(_), Some(at)) = (rough, c.get("alpha").filter(|_| (ior / ior_outside - 1.0).abs() < 1e-3)) {
-            let e = at.error(format!("alpha between indices {ior_outside} and {ior}, which hardly differ"));
+            let e = at.error(format!("alpha is given, but the indices {ior_outside} and {ior} hardly differ"));
             return Err(
-                e.help("without a step of the index nothing scatters: leave alpha out, or move them 0.1 % apart")
+                e.help("equal indices do not scatter: leave alpha out, or let the indices differ by at least 0.1 %")
             );
         }
         Ok(Self { ior, ior_outside, choice, rough })
     }
 
-    /// `d` < 1, or `illum` 4, 6, 7, 9 with `Ni` > 1.
+    /// An MTL material is glass if `d` < 1, or if `illum` is 4, 6, 7 or 9 and `Ni` > 1.
     fn from_mtl(m: &mut MtlMaterial<'_>) -> Result<Option<Self>, SceneError> {
         if !m.is_glass() {
             return Ok(None);
@@ -169,20 +171,20 @@ impl Surface for DielectricSurface {
         let ior = match m.entry.ior {
             Some(n) if (IOR[0]..=IOR[1]).contains(&n) => n,
             Some(n) => {
-                m.warn(format!("has Ni {n} outside [{}, {}], {GLASS} is used", IOR[0], IOR[1]));
+                m.warn(format!("has Ni {n} outside [{}, {}]; {GLASS} is used instead", IOR[0], IOR[1]));
                 GLASS
             }
             None => {
-                m.warn(format!("has no Ni, {GLASS} is used"));
+                m.warn(format!("has no Ni; {GLASS} is used"));
                 GLASS
             }
         };
         if ior == 1.0 {
-            m.warn("has Ni 1 and d below 1, it is invisible".into());
+            m.warn("has Ni 1 and d below 1, so it is invisible".into());
         }
         let lost = m.tints();
         if !lost.is_empty() {
-            m.warn(format!("is clear glass, without its {}", lost.join(", ")));
+            m.warn(format!("is rendered as clear glass, without its {}", lost.join(", ")));
         }
         Ok(Some(Self { ior, ior_outside: 1.0, choice: Choice::Fresnel, rough: None }))
     }
@@ -192,7 +194,7 @@ impl Surface for DielectricSurface {
         let (here, beyond) = if back { (ior, ior_outside) } else { (ior_outside, ior) };
         let (interface, odds) = (Interface::new(here, beyond), Odds::new(choice));
         match rough {
-            // between equal indices a rough boundary is as invisible as a smooth one
+            // between equal indices a rough boundary is invisible, as a smooth one is
             Some(ggx) if interface.eta != 1.0 => {
                 Dielectric::Rough(RoughDielectric { interface, odds, facets: Microfacets::new(ggx) })
             }
@@ -202,7 +204,7 @@ impl Surface for DielectricSurface {
 
     fn words(&self) -> String {
         let choice = match self.choice {
-            Choice::Fresnel => "chosen by Fresnel".to_owned(),
+            Choice::Fresnel => "reflection chosen by Fresnel".to_owned(),
             Choice::Constant(p) => format!("reflected with probability {p}"),
         };
         format!("index {} in {}, {choice}, {}", self.ior, self.ior_outside, Ggx::words(self.rough))

@@ -1,4 +1,4 @@
-//! The Lambertian surface: `f = ρ/π`, whatever the directions.
+//! The Lambertian surface: `f = ρ/π` for all directions.
 //!
 //! `∫ f cos θ dω = ρ`, the albedo. Reference: Lambert, *Photometria* (1760).
 //!
@@ -19,15 +19,15 @@ use crate::scene::load::{Cursor, MtlMaterial, keys};
 use glam::{DVec3, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
-/// f = ρ/π.
+/// One side of a Lambertian surface, f = ρ/π.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse {
-    /// ρ.
+    /// ρ: albedo per channel.
     pub reflectance: Rgb,
 }
 
 impl Diffuse {
-    /// f on the side of the normal, sr⁻¹.
+    /// f for directions on the side of the normal, sr⁻¹.
     #[inline(always)]
     pub fn f(&self) -> Rgb {
         self.reflectance * FRAC_1_PI
@@ -56,7 +56,7 @@ impl Model for Diffuse {
     }
 }
 
-/// A Lambertian surface of a scene file.
+/// A Lambertian surface as described in a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiffuseSurface {
     /// Albedo per channel, in [0, 1].
@@ -71,7 +71,7 @@ impl Surface for DiffuseSurface {
     fn read(c: &Cursor<'_>) -> Result<Self, SceneError> {
         Ok(Self { reflectance: keys::colour(c)? })
     }
-    /// What nothing else claims.
+    /// Takes every MTL material that no other kind accepts.
     fn from_mtl(m: &mut MtlMaterial<'_>) -> Result<Option<Self>, SceneError> {
         let reflectance = m.colour()?;
         if let Some(why) = m.lost_lobe() {
@@ -93,7 +93,7 @@ impl Surface for DiffuseSurface {
     }
 }
 
-/// A direction about the normal, its cosine and its density.
+/// A random direction about the normal, its cosine and its density (sr⁻¹).
 #[inline(always)]
 pub fn direction(n: Vec3, sampling: Sampling, u: [f32; 2]) -> (Vec3, f32, f32) {
     let (d, cosine) = match sampling {
@@ -103,7 +103,7 @@ pub fn direction(n: Vec3, sampling: Sampling, u: [f32; 2]) -> (Vec3, f32, f32) {
     (d, cosine, sampling.pdf(cosine))
 }
 
-/// A direction about the normal, with the weight `f cos θ / p` and the density.
+/// A random direction about the normal, its weight `f cos θ / p` and its density (sr⁻¹).
 #[inline(always)]
 pub fn sample(albedo: Rgb, n: Vec3, sampling: Sampling, u: [f32; 2]) -> (Vec3, Rgb, f32) {
     let (d, cosine, pdf) = direction(n, sampling, u);

@@ -1,4 +1,5 @@
-//! The worked example of `CONTRIBUTING.md`: a surface after Minnaert, compiled and tested, not registered.
+//! The worked example of `CONTRIBUTING.md`: Minnaert's model of a surface. It is compiled and tested, but scene files cannot
+//! use it because it is not in the register.
 //!
 //! ```text
 //! f = ρ (n + 2)/2π (cos θ_o cos θ_i)ⁿ        albedo ρ cosⁿ θ_o        p = cos θ_i/π
@@ -7,7 +8,7 @@
 //! | notation | meaning | place |
 //! |---|---|---|
 //! | ρ | albedo at normal incidence | [`MinnaertSurface::reflectance`] |
-//! | n | how fast it darkens towards the rim; 0 is Lambertian | [`MinnaertSurface::exponent`] |
+//! | n | rate at which the surface darkens towards the rim; 0 is Lambertian | [`MinnaertSurface::exponent`] |
 //!
 //! Reference: Minnaert, *The Reciprocity Principle in Lunar Photometry* (Astrophysical Journal 93, 1941).
 
@@ -20,7 +21,7 @@ use crate::scene::load::{Cursor, keys};
 use glam::{DVec3, Vec3};
 use std::f32::consts::TAU;
 
-/// One side of the surface, as rays meet it.
+/// The BSDF of one side of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Minnaert {
     reflectance: Rgb,
@@ -52,12 +53,12 @@ impl Model for Minnaert {
     }
 }
 
-/// The surface, as a scene file says it.
+/// The surface as described in a scene file.
 #[derive(Clone, Debug, PartialEq)]
 struct MinnaertSurface {
-    /// ρ, in [0, 1].
+    /// ρ, in [0, 1]: albedo at normal incidence.
     reflectance: Colour,
-    /// n, at least 0.
+    /// n, at least 0: rate of darkening.
     exponent: f64,
 }
 
@@ -67,7 +68,8 @@ impl Surface for MinnaertSurface {
     const KEYS: &'static [&'static str] = &["reflectance", "texture", "exponent"];
 
     fn read(c: &Cursor<'_>) -> Result<Self, SceneError> {
-        let exponent = c.require("exponent", "how fast it darkens: exponent = 0.5")?.within("exponent", 0.0, 100.0)?;
+        let exponent =
+            c.require("exponent", "the rate at which it darkens: exponent = 0.5")?.within("exponent", 0.0, 100.0)?;
         Ok(Self { reflectance: keys::colour(c)?, exponent })
     }
     fn side(&self, _: bool) -> Minnaert {
@@ -84,7 +86,7 @@ impl Surface for MinnaertSurface {
     }
 }
 
-/// The albedo, by the midpoint rule over cos θ_i.
+/// Compares the albedo with the midpoint rule over cos θ_i.
 #[test]
 fn the_albedo_is_that_of_the_formula() {
     for surface in MinnaertSurface::examples() {

@@ -1,4 +1,4 @@
-//! Fresnel's equations: the share of unpolarised light that a smooth interface reflects.
+//! Fresnel's equations: the fraction of unpolarised light that a smooth interface reflects.
 //!
 //! ```text
 //! dielectric   R_s = ((c − g)/(c + g))²        R_p = ((η²c − g)/(η²c + g))²        g² = η² − 1 + c²
@@ -8,17 +8,17 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | η | index on the far side over that on the side of the light | [`Interface::eta`] |
+//! | η | index on the far side divided by the index on the side of the light | [`Interface::eta`] |
 //! | c, s | cosine and sine of the angle of incidence | arguments |
 //! | g/η | cosine of the angle of refraction; g² ≤ 0 is total internal reflection | [`Interface::refracted`] |
-//! | R | ½ (R_s + R_p) | [`Interface::reflectance`], [`conductor`] |
+//! | R | reflectance ½ (R_s + R_p) | [`Interface::reflectance`], [`conductor`] |
 //! | η + ik | complex index of a metal | [`conductor`] |
-//! | a + ib | √((η + ik)² − s²), times the cosine inside the metal | [`conductor`] |
-//! | F_out, F_in | R averaged over cosine-weighted directions, from outside and from inside | [`hemispherical`] |
+//! | a + ib | √((η + ik)² − s²): η + ik times the cosine of the angle inside the metal | [`conductor`] |
+//! | F_out, F_in | R averaged over cosine-weighted directions, for light from outside and from inside | [`hemispherical`] |
 //!
-//! The differences c − g and η²c − g lose all digits where little is reflected; with e = η² − 1 they are −e/(c + g) and
-//! e((η² + 1)c² − 1)/(η²c + g), which lose none. For the same reason a² = ½(√(t² + 4η²k²) + t) with
-//! t = η² − k² − s² < 0 is taken as η²k²/b².
+//! The differences c − g and η²c − g lose all their digits when little is reflected. Written with e = η² − 1 they are −e/(c
+//! + g) and e((η² + 1)c² − 1)/(η²c + g), which lose none. a² = ½(√(t² + 4η²k²) + t) with t = η² − k² − s² has the same
+//! problem for t < 0, so it is then computed as η²k²/b².
 //!
 //! References: Born and Wolf, *Principles of Optics* (7th ed. 1999), sections 1.5 and 14.2; Walsh, *The reflection factor
 //! of a polished glass surface for diffused light* (Dept. of Scientific and Industrial Research, Illumination Research
@@ -30,15 +30,15 @@ use crate::math::Rgb;
 /// A smooth boundary between two dielectrics, seen from one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interface {
-    /// Index beyond over index on this side.
+    /// η: index beyond the surface divided by the index on this side.
     pub eta: f32,
     eta2: f32,
-    // η² − 1, subtracted before it was rounded
+    // η² − 1, computed in f64 and rounded only after the subtraction
     e: f32,
 }
 
 impl Interface {
-    /// The side with index `here`, of a boundary to index `beyond`.
+    /// The boundary to a medium of index `beyond`, seen from the side of index `here`.
     pub fn new(here: f64, beyond: f64) -> Self {
         let eta = beyond / here;
         Self { eta: eta as f32, eta2: (eta * eta) as f32, e: ((eta - 1.0) * (eta + 1.0)) as f32 }
@@ -50,20 +50,21 @@ impl Interface {
         self.eta2
     }
 
-    /// g: η times the cosine of the angle of refraction. None under total internal reflection.
+    /// g: η times the cosine of the angle of refraction. `None` under total internal reflection.
     #[inline(always)]
     pub fn refracted(&self, c: f32) -> Option<f32> {
         let g2 = self.e + c * c;
         (g2 > 0.0).then(|| g2.sqrt())
     }
 
-    /// R for incidence at cosine c > 0; 1 under total internal reflection.
+    /// R: reflectance for incidence at cosine c > 0; 1 under total internal reflection.
     #[inline(always)]
     pub fn reflectance(&self, c: f32) -> f32 {
         self.refracted(c).map_or(1.0, |g| self.between(c, g))
     }
 
-    /// R where g is known as well as c: near the critical angle g² has lost its digits.
+    /// R from both cosines c and g/η. Needed when g is known more exactly than c gives it: near the critical angle, g²
+    /// computed from c has lost its digits.
     #[inline(always)]
     pub fn between(&self, c: f32, g: f32) -> f32 {
         let (s, p) = (c + g, self.eta2 * c + g);
@@ -72,7 +73,7 @@ impl Interface {
     }
 }
 
-/// R of a metal with index η + ik for incidence at cosine c, per channel.
+/// R: reflectance per channel of a metal with index η + ik, for incidence at cosine c.
 #[inline(always)]
 pub fn conductor(c: f32, eta: Rgb, k: Rgb) -> Rgb {
     let (c2, s2) = (c * c, 1.0 - c * c);
@@ -90,15 +91,15 @@ pub fn conductor(c: f32, eta: Rgb, k: Rgb) -> Rgb {
     0.5 * s * (1.0 + p)
 }
 
-/// F_out of a boundary to relative index η: R averaged over the hemisphere with the cosine, in closed form (Walsh).
+/// F_out of a boundary to relative index η: R averaged over the cosine-weighted hemisphere, in closed form (Walsh).
 pub fn hemispherical(eta: f64) -> f64 {
     if eta < 1.0 {
-        // F_in of the reciprocal index
+        // this is F_in of the reciprocal index
         return 1.0 - (1.0 - hemispherical(1.0 / eta)) * eta * eta;
     }
     let d = eta - 1.0;
     if d < 1e-6 {
-        // the first term of the series, where the closed form cancels
+        // the first term of the series, because the closed form loses its digits here
         return d / 3.0;
     }
     let n2 = eta * eta;

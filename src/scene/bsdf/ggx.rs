@@ -1,4 +1,4 @@
-//! GGX: a surface of tiny mirrors whose normals are those of an ellipsoid.
+//! GGX microfacets: the surface consists of tiny mirrors, whose normals are distributed like those of an ellipsoid.
 //!
 //! ```text
 //! D(h) = 1/(π α² (h_x²/α² + h_y²/α² + h_z²)²)            ∫ D(h) cos θ_h dh = 1
@@ -8,14 +8,14 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | h | micronormal, on the side of the macroscopic normal | arguments |
-//! | α | width of the slopes | [`Microfacets::alpha`] |
-//! | c | cosine of a direction to the macroscopic normal, without sign | arguments |
-//! | s(c) | makes Λ rational; never below α | [`Microfacets::s`] |
-//! | G(ω_o, ω_i) | share seen from both directions | [`Microfacets::seen`], [`Microfacets::lit`] |
-//! | D_ω | density of the normals seen from ω | [`Microfacets::visible`], [`Microfacets::sample`] |
+//! | h | normal of a microfacet (micronormal), on the side of the macroscopic normal | arguments |
+//! | α | roughness: width of the distribution of slopes | [`Microfacets::alpha`] |
+//! | c | absolute cosine between a direction and the macroscopic normal | arguments |
+//! | s(c) | square root in Λ; at least α if α ≤ 1 | [`Microfacets::s`] |
+//! | G₁(ω), G(ω_o, ω_i) | fraction of the microfacets visible from ω, and from both directions | [`Microfacets::seen`], [`Microfacets::lit`] |
+//! | D_ω | density of the normals visible from ω | [`Microfacets::visible`], [`Microfacets::sample`] |
 //!
-//! With s, every quotient of G and the cosines is free of 0/0 at grazing angles:
+//! Written with s, the quotients of G and the cosines have no 0/0 at grazing angles:
 //!
 //! | | height-correlated, 1/(1 + Λ_o + Λ_i) | separable, G₁(ω_o) G₁(ω_i) |
 //! |---|---|---|
@@ -31,16 +31,16 @@ use crate::math::direction::cos_sin_turn;
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// GGX microfacets.
+/// GGX microfacets as described in a scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
-    /// Width α as it enters the distribution, not squared.
+    /// Roughness α as it enters the distribution; it is not squared first.
     pub alpha: f64,
-    /// Masking and shadowing.
+    /// Model of masking and shadowing.
     pub masking: Masking,
 }
 
-/// How masking and shadowing of microfacets go together.
+/// Model of masking and shadowing: the joint visibility of a microfacet from ω_o and ω_i.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Masking {
     /// G = 1/(1 + Λ(ω_o) + Λ(ω_i)).
@@ -50,7 +50,7 @@ pub enum Masking {
 }
 
 impl Ggx {
-    /// In words; smooth without.
+    /// The microfacets as text for the user; "smooth" for `None`.
     pub(super) fn words(rough: Option<Self>) -> String {
         match rough {
             None => "smooth".to_owned(),
@@ -59,29 +59,29 @@ impl Ggx {
         }
     }
 
-    /// Without, and two widths, for tests.
+    /// A smooth surface and two rough ones, for tests.
     pub(super) fn examples() -> [Option<Self>; 3] {
         let of = |alpha, masking| Some(Self { alpha, masking });
         [None, of(0.1, Masking::HeightCorrelated), of(0.5, Masking::Separable)]
     }
 }
 
-/// An isotropic GGX surface.
+/// Isotropic GGX microfacets, prepared for evaluation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Microfacets {
-    /// α.
+    /// Roughness α.
     pub alpha: f32,
-    /// How masking and shadowing go together.
+    /// Model of masking and shadowing.
     pub masking: Masking,
 }
 
 impl Microfacets {
-    /// From a description.
+    /// Prepares the microfacets of a description.
     pub fn new(ggx: Ggx) -> Self {
         Self { alpha: ggx.alpha as f32, masking: ggx.masking }
     }
 
-    /// D(h), sr⁻¹.
+    /// D(h): density of the normals, sr⁻¹.
     #[inline(always)]
     pub fn d(&self, h: Vec3) -> f32 {
         let (x, y) = (h.x / self.alpha, h.y / self.alpha);
@@ -89,13 +89,13 @@ impl Microfacets {
         1.0 / (PI * w * w)
     }
 
-    /// s(c).
+    /// s(c) = √(c² + α² (1 − c²)).
     #[inline(always)]
     pub fn s(&self, c: f32) -> f32 {
         (c * c + self.alpha * self.alpha * (1.0 - c * c)).sqrt()
     }
 
-    /// G/(4 c_o c_i).
+    /// G/(4 c_o c_i), the factor of D and F in a reflection.
     #[inline(always)]
     pub fn seen(&self, co: f32, ci: f32) -> f32 {
         let (so, si) = (self.s(co), self.s(ci));
@@ -105,7 +105,7 @@ impl Microfacets {
         }
     }
 
-    /// G/G₁(ω_o): the share of the normals seen from ω_o that is seen from ω_i too.
+    /// G/G₁(ω_o): the fraction of the microfacets visible from ω_o that are visible from ω_i too.
     #[inline(always)]
     pub fn lit(&self, co: f32, ci: f32) -> f32 {
         let (so, si) = (self.s(co), self.s(ci));
@@ -115,19 +115,19 @@ impl Microfacets {
         }
     }
 
-    /// D_ω(h)/(ω·h) for ω with cosine c, sr⁻¹.
+    /// D_ω(h)/(ω·h) for a direction ω with cosine c, sr⁻¹.
     #[inline(always)]
     pub fn visible(&self, c: f32, h: Vec3) -> f32 {
         2.0 * self.d(h) / (c + self.s(c))
     }
 
-    /// A normal with density D_ω. Where the ellipsoid is a sphere, the mirror directions of the normals seen from ω fill
-    /// a cap of the sphere evenly.
+    /// A random normal with density D_ω for ω = `omega`. If the ellipsoid is scaled to a sphere, the mirror directions of
+    /// the normals visible from ω fill a cap of the sphere uniformly.
     #[inline(always)]
     pub fn sample(&self, omega: Vec3, u: [f32; 2]) -> Vec3 {
         let w = Vec3::new(self.alpha * omega.x, self.alpha * omega.y, omega.z).normalize();
         let (cos, sin) = cos_sin_turn(u[1]);
-        // z of the sum of ω and a direction of the cap, and the sine of that direction, without cancellation
+        // z of the sum of ω and a direction of the cap, and the sine of that direction, without loss of digits
         let z = (1.0 - u[0]) * (1.0 + w.z);
         let below = (w.x * w.x + w.y * w.y) / (1.0 + w.z);
         let r = (u[0] * (1.0 + w.z) * (below + z)).sqrt();
@@ -135,7 +135,7 @@ impl Microfacets {
     }
 }
 
-/// The normal that reflects ω_o to ω_i, and its cosine to both.
+/// The normal that reflects ω_o to ω_i, and its cosine with both directions.
 #[inline(always)]
 pub fn half(wo: Vec3, wi: Vec3) -> (Vec3, f32) {
     let sum = wo + wi;
@@ -143,7 +143,7 @@ pub fn half(wo: Vec3, wi: Vec3) -> (Vec3, f32) {
     (sum / length, 0.5 * length)
 }
 
-/// ω_o reflected by a mirror with normal h.
+/// ω_o reflected by a mirror with normal h, normalised.
 #[inline(always)]
 pub fn reflect(wo: Vec3, h: Vec3) -> Vec3 {
     ((2.0 * wo.dot(h)) * h - wo).normalize()

@@ -1,11 +1,11 @@
-//! What holds for every kind of surface that is registered, on the examples that it gives of itself.
+//! Tests of properties that every registered kind of surface must have. They use the examples that each kind provides.
 
 use super::register::{BsdfDescription, KINDS};
 use super::{Bsdf, Sampling, TransportMode};
 use crate::math::{Key, Purpose, Rng};
 use glam::Vec3;
 
-/// Directions over the hemisphere, and numbers to draw with.
+/// Random directions over the hemisphere, and random numbers for sampling.
 fn draws() -> impl Iterator<Item = (Vec3, [f32; 3])> {
     (0..400u32).map(|i| {
         let u = Rng::at(Key::new(3, "laws"), i, 0, 0, Purpose::Scatter).four();
@@ -20,7 +20,7 @@ fn every_kind_gives_examples_of_itself() {
     assert!(KINDS.iter().all(|k| kinds.contains(&k.name)), "{kinds:?}");
 }
 
-/// The weight of a direction that is no delta is f |cos θ_i|/p.
+/// The weight of a sampled direction is f |cos θ_i|/p, except for delta directions.
 #[test]
 fn weights_are_f_cos_over_p() {
     for d in BsdfDescription::examples() {
@@ -39,7 +39,7 @@ fn weights_are_f_cos_over_p() {
     }
 }
 
-/// f(ω_o, ω_i) = f(ω_i, ω_o) on one side, and no direction returns more than it receives.
+/// f(ω_o, ω_i) = f(ω_i, ω_o) on one side, and the albedo is at most the largest albedo, which is at most 1.
 #[test]
 fn surfaces_are_reciprocal_and_bounded() {
     for d in BsdfDescription::examples() {

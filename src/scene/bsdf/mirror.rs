@@ -14,15 +14,15 @@ use crate::scene::SceneError;
 use crate::scene::load::{Cursor, MtlMaterial, keys};
 use glam::{DVec3, Vec3};
 
-/// Reflects a share ρ, whatever the angle.
+/// A mirror that reflects the fraction ρ at every angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirror {
-    /// ρ.
+    /// ρ: albedo per channel.
     pub reflectance: Rgb,
 }
 
 impl Model for Mirror {
-    /// The one direction there is.
+    /// The mirror direction, the only possible one.
     #[inline(always)]
     fn sample(&self, wo: Vec3, _: Sampling, _: TransportMode, _: [f32; 3]) -> Option<BsdfSample> {
         Some(BsdfSample { wi: reflection(wo), weight: self.reflectance, pdf: 1.0, delta: true })
@@ -38,7 +38,7 @@ impl Model for Mirror {
     }
 }
 
-/// A mirror of a scene file.
+/// A mirror as described in a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MirrorSurface {
     /// Albedo per channel, in [0, 1].
@@ -53,13 +53,13 @@ impl Surface for MirrorSurface {
     fn read(c: &Cursor<'_>) -> Result<Self, SceneError> {
         Ok(Self { reflectance: c.require("reflectance", keys::REFLECTANCE)?.reflectance()? })
     }
-    /// `illum` 3 … 9, and `Kd` at most a tenth of `Ks`.
+    /// An MTL material is a mirror if `illum` is 3 … 9 and `Kd` is at most a tenth of `Ks`.
     fn from_mtl(m: &mut MtlMaterial<'_>) -> Result<Option<Self>, SceneError> {
         if !m.is_mirror() {
             return Ok(None);
         }
         if let Some(lost) = m.base() {
-            m.warn(format!("is a mirror, without its {lost}"));
+            m.warn(format!("is rendered as a mirror, without its {lost}"));
         }
         let ks = m.specular();
         Ok(Some(Self { reflectance: ks / m.excess("Ks reaches", ks) }))
@@ -75,7 +75,7 @@ impl Surface for MirrorSurface {
     }
 }
 
-/// r(ω_o).
+/// r(ω_o): the mirror direction (−x, −y, z).
 #[inline(always)]
 pub fn reflection(wo: Vec3) -> Vec3 {
     Vec3::new(-wo.x, -wo.y, wo.z)

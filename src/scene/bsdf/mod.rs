@@ -1,16 +1,17 @@
-//! How a surface scatters: `f(ω_o, ω_i)`, in sr⁻¹, and ways to sample it.
+//! Scattering by surfaces: the BSDF `f(ω_o, ω_i)`, in sr⁻¹, and methods to sample it.
 //!
 //! `(K L)(ω_o) = ∫ f(ω_o, ω_i) L(ω_i) |cos θ_i| dω_i`
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | ω_o | where the walk came from: towards the eye, or towards the light when light is followed | first argument |
-//! | ω_i | where it goes on | second argument |
-//! | f | without its delta part | [`Bsdf::eval`] |
+//! | ω_o | direction back along the path: towards the eye, or towards the light if paths start at a light | first argument |
+//! | ω_i | direction in which the path goes on | second argument |
+//! | f | BSDF without its delta part | [`Bsdf::eval`] |
 //! | f·cos θ_i/p | weight of a sampled direction | [`BsdfSample::weight`] |
 //! | ∫ f cos θ_i dω_i | albedo | [`Bsdf::albedo`] |
 //!
-//! Directions are local: z along the normal of the side ω_o is on, so ω_o.z > 0; ω_i.z < 0 is transmission.
+//! Directions are local: z points along the normal of the side on which ω_o lies, so ω_o.z > 0. A direction with ω_i.z < 0
+//! is transmission.
 //!
 //! | kind | file |
 //! |---|---|
@@ -22,11 +23,11 @@
 //! | plastic: a Lambertian base under a [`coat`], smooth or rough | [`plastic`] |
 //! | Phong | [`phong`] |
 //!
-//! All answer the same questions ([`Model`]) and say of themselves what a scene file may say of them ([`Surface`]); the
-//! [`register`] lists them. What they share: Fresnel's equations in [`fresnel`], microfacets in [`ggx`].
+//! All kinds have the same interface ([`Model`]). Each kind declares its own properties for scene files ([`Surface`]), and
+//! the [`register`] lists all kinds. They share Fresnel's equations in [`fresnel`] and microfacets in [`ggx`].
 //!
-//! f(ω_o, ω_i)/η_i², with η_i the index on the side of ω_i, does not change when the two change places; so radiance and
-//! flux differ by the factor η_o²/η_i² where light crosses the surface, and by nothing else.
+//! f(ω_o, ω_i)/η_i² is symmetric, with η_i the index on the side of ω_i: it does not change if ω_o and ω_i change places. So
+//! the BSDFs for radiance and for flux differ only where light crosses the surface, by the factor η_o²/η_i².
 
 pub mod coat;
 pub mod colour;

@@ -1,53 +1,55 @@
-//! What a BSDF answers, whatever it is: the same questions as [`Bsdf`](super::Bsdf), in the same local directions.
+//! The interface of every BSDF: the same methods as [`Bsdf`](super::Bsdf), in the same local directions.
 
 use super::{BsdfSample, Sampling, TransportMode};
 use crate::math::Rgb;
 use glam::Vec3;
 
-/// One side of a surface at a point.
+/// The BSDF of one side of a surface at a point.
 pub trait Model: Copy {
-    /// f(ω_o, ω_i), sr⁻¹, without its delta part.
+    /// f(ω_o, ω_i) without its delta part, sr⁻¹.
     #[inline(always)]
     fn eval(&self, _wo: Vec3, _wi: Vec3, _mode: TransportMode) -> Rgb {
         Rgb::ZERO
     }
-    /// A direction; none where there is none to go to. `u[0]`, `u[1]` choose it, `u[2]` chooses between parts.
+    /// A sampled direction; `None` if light is absorbed or no direction is possible. `u[0]` and `u[1]` choose the direction,
+    /// `u[2]` chooses between parts of f.
     fn sample(&self, wo: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample>;
-    /// Density of [`Self::sample`], delta parts excepted, sr⁻¹.
+    /// Density of [`Self::sample`] without delta parts, sr⁻¹.
     #[inline(always)]
     fn pdf(&self, _wo: Vec3, _wi: Vec3, _sampling: Sampling) -> f32 {
         0.0
     }
-    /// ∫ f cos θ_i dω_i with its delta part, or an upper bound of it.
+    /// ∫ f cos θ_i dω_i including the delta part, or an upper bound of it.
     #[inline(always)]
     fn albedo(&self, _wo: Vec3) -> Rgb {
         self.max_albedo()
     }
-    /// The largest albedo of any direction.
+    /// The largest albedo over all directions.
     fn max_albedo(&self) -> Rgb;
-    /// Whether f has a part that connections can find.
+    /// Returns true if f has a part other than a delta, so that connections to lamps can be made.
     #[inline(always)]
     fn connects(&self) -> bool {
         true
     }
-    /// Whether f has a delta part.
+    /// Returns true if f has a delta part.
     #[inline(always)]
     fn has_delta(&self) -> bool {
         false
     }
-    /// Whether f reaches the other side without a delta.
+    /// Returns true if f transmits light to the other side by a part that is not a delta.
     #[inline(always)]
     fn transmits(&self) -> bool {
         false
     }
-    /// The same with another reflectance of the diffuse part, where a texture gives it.
+    /// The same BSDF with another reflectance of its diffuse part, which a texture gives.
     #[must_use]
     fn with_reflectance(self, _reflectance: Rgb) -> Self {
         self
     }
 }
 
-/// A draw that does not follow f: a direction of the hemisphere as `sampling` has it, or of the sphere where the surface transmits.
+/// A sample that does not follow f: a direction of the hemisphere with the density of `sampling`, or of the whole sphere if
+/// the surface transmits.
 #[inline(always)]
 pub(super) fn sample_blindly(
     f: &impl Model,
@@ -61,7 +63,7 @@ pub(super) fn sample_blindly(
     BsdfSample::of(wi, f.eval(wo, wi, mode), f.pdf(wo, wi, sampling))
 }
 
-/// Its density over the hemisphere.
+/// Density over the hemisphere of a direction sampled by [`sample_blindly`] on a surface that does not transmit.
 #[inline(always)]
 pub(super) fn blind_pdf(wi: Vec3, sampling: Sampling) -> f32 {
     if wi.z > 0.0 { sampling.pdf(wi.z) } else { 0.0 }

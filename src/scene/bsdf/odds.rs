@@ -1,25 +1,25 @@
-//! How a dielectric chooses between reflection and refraction, smooth or rough.
+//! The choice of a dielectric, smooth or rough, between reflection and refraction.
 
-/// How a dielectric chooses between reflection and refraction.
+/// Rule by which a dielectric chooses between reflection and refraction, as described in a scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Choice {
-    /// With the Fresnel reflectance as probability of reflection.
+    /// The probability of reflection is the Fresnel reflectance.
     Fresnel,
-    /// With this probability of reflection, in (0, 1); under total internal reflection always.
+    /// The probability of reflection is this constant in (0, 1). Under total internal reflection it is 1.
     Constant(f64),
 }
 
-/// How reflection or refraction is chosen.
+/// The same rule as [`Choice`], prepared for evaluation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Odds {
-    /// By F.
+    /// The probability of reflection is F.
     Fresnel,
-    /// By a constant, unless nothing is refracted.
+    /// The probability of reflection is a constant, or 1 under total internal reflection.
     Constant(f32),
 }
 
 impl Odds {
-    /// From a description.
+    /// Prepares the rule of a description.
     pub fn new(choice: Choice) -> Self {
         match choice {
             Choice::Fresnel => Self::Fresnel,
@@ -27,7 +27,7 @@ impl Odds {
         }
     }
 
-    /// p, where the reflectance is `f`.
+    /// p: the probability of reflection at Fresnel reflectance `f`.
     #[inline(always)]
     pub fn of_reflection(self, f: f32) -> f32 {
         match self {

@@ -6,15 +6,16 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | f_coat | reflection at the coat, a delta if it is smooth | [`Coat::eval`] |
-//! | T, T̄ | what enters through the coat: 1 − F and 1 − F_out if it is smooth | [`super::coat`] |
+//! | f_coat | BSDF of the coat alone: a delta if it is smooth | [`Coat::eval`] |
+//! | T, T̄ | fraction of the light that enters through the coat: 1 − F and 1 − F_out if it is smooth | [`super::coat`] |
 //! | ρ | albedo of the base | [`Plastic::new`] |
-//! | F_in | share of the light from the base that the coat sends back to it | [`Plastic::new`] |
-//! | β | T̄ρ/(η² (1 − ρ F_in)): share of what enters that comes out again; 1 if ρ is | `out` |
-//! | p | probability of the coat, E/(E + Tβ) of the largest channel | `p_coat` |
+//! | F_in | fraction of the light from the base that the coat reflects back to the base | [`Plastic::new`] |
+//! | β | T̄ρ/(η² (1 − ρ F_in)): fraction of the light that enters and comes out again; 1 if ρ = 1 | `out` |
+//! | p | probability of sampling the coat: E/(E + Tβ), with E its albedo and β of the largest channel | `p_coat` |
 //!
-//! The factor 1/(1 − ρ F_in) sums the reflections between base and coat; 1/η² is the solid angle gained outside. The
-//! albedo is E(ω_o) + T(ω_o) β: with a white base exactly 1, and f is reciprocal because it is a product.
+//! The factor 1/(1 − ρ F_in) sums the reflections between base and coat. The factor 1/η² comes from refraction: light from
+//! the base fills a larger solid angle outside. The albedo is E(ω_o) + T(ω_o) β, which is exactly 1 for a white base. f is
+//! reciprocal because it is a product of the same function of ω_o and ω_i.
 //!
 //! References: Wolff, *Diffuse-reflectance model for smooth dielectric surfaces* (JOSA A 11(11), 1994), with the sum of
 //! Saunderson, *Calculation of the Color of Pigmented Plastics* (JOSA 32, 1942); the rough coat enters as the albedo of
@@ -31,14 +32,14 @@ use crate::scene::load::{Cursor, keys, keys::IOR};
 use glam::{DVec3, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
-/// A coated base.
+/// One side of a Lambertian base under a dielectric coat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plastic {
-    /// The boundary.
+    /// The coat.
     pub coat: Coat,
-    /// β/(π T̄), sr⁻¹.
+    /// β/(π T̄), sr⁻¹: f of the base without the two factors T.
     base: Rgb,
-    /// β.
+    /// β: fraction of the entered light that comes out again.
     out: Rgb,
 }
 
@@ -49,7 +50,7 @@ impl Plastic {
             .with_reflectance(reflectance)
     }
 
-    /// p(ω_o): 1 if nothing else comes out.
+    /// p(ω_o): probability of sampling the coat; 1 if no light comes from the base.
     #[inline(always)]
     fn p_coat(&self, wo: Vec3) -> f32 {
         let t = self.coat.transmittance(wo.z);
@@ -81,7 +82,8 @@ impl Model for Plastic {
         }
     }
 
-    /// The coat if `u[2]` < p, the base otherwise; a rough coat only if `sampling` asks for it. None below the surface.
+    /// Samples the coat if `u[2]` < p, otherwise the base. A rough coat is sampled only if `sampling` is [`Sampling::Bsdf`].
+    /// `None` if the direction points below the surface.
     #[inline(always)]
     fn sample(&self, wo: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
         let p = self.p_coat(wo);
@@ -97,21 +99,21 @@ impl Model for Plastic {
         BsdfSample::of(wi, self.eval(wo, wi, mode), self.pdf(wo, wi, sampling))
     }
 
-    /// E + Tβ: exact under a smooth coat, an upper bound under a rough one.
+    /// E + Tβ: exact for a smooth coat, an upper bound for a rough one.
     #[inline(always)]
     fn albedo(&self, wo: Vec3) -> Rgb {
         let t = self.coat.transmittance(wo.z);
         Rgb::splat(1.0 - t) + t * self.out
     }
 
-    /// Its largest value: where the coat reflects most.
+    /// The largest albedo: at the angle where the coat reflects most.
     #[inline(always)]
     fn max_albedo(&self) -> Rgb {
         let e = self.coat.max_albedo();
         Rgb::splat(e) + (1.0 - e) * self.out
     }
 
-    /// The same with another ρ.
+    /// The same with another albedo ρ of the base.
     fn with_reflectance(self, reflectance: Rgb) -> Self {
         // η² (1 − ρ F_in)
         let kept = self.coat.interface.eta2() * (1.0 - reflectance) + reflectance * self.coat.mean;
@@ -124,14 +126,14 @@ impl Model for Plastic {
     }
 }
 
-/// A coated base of a scene file.
+/// A coated base as described in a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlasticSurface {
     /// Albedo of the base, in [0, 1].
     pub reflectance: Colour,
     /// Index of refraction of the coat.
     pub ior: f64,
-    /// Microfacets of the coat; smooth without.
+    /// Microfacets of the coat; `None` for a smooth coat.
     pub rough: Option<Ggx>,
 }
 

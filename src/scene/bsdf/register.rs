@@ -1,6 +1,7 @@
-//! The kinds of surface there are. A new one is a file with its formulas and a line here.
+//! The register: the list of all kinds of surface. A new kind is a file with its formulas and a line here.
 //!
-//! A line says: name, what a scene file says of it ([`Surface`]), what a side of it is ([`Model`]).
+//! Each line gives the name of the kind, its type in a scene file ([`Surface`]) and the type of one of its sides
+//! ([`Model`]).
 
 use super::surface::Surface;
 use super::{BsdfSample, Model, Sampling, TransportMode, conductor, dielectric, diffuse, mirror, phong, plastic};
@@ -12,7 +13,7 @@ use glam::Vec3;
 
 macro_rules! register {
     ($($(#[$about:meta])* $kind:ident: $surface:ty => $side:ty;)+) => {
-        /// How a surface scatters, as a scene file says it.
+        /// Scattering of a surface, as described in a scene file.
         #[derive(Clone, PartialEq)]
         pub enum BsdfDescription {
             $($(#[$about])* $kind($surface),)+
@@ -24,7 +25,7 @@ macro_rules! register {
             }
         })+
 
-        /// `Phong { … }`: the name here, and the parameters. Scenes are hashed by this text.
+        /// `Phong { … }`: the name in the register, and the parameters. The hash of a scene is computed from this text.
         impl std::fmt::Debug for BsdfDescription {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 let (name, surface) = match self { $(Self::$kind(s) => (stringify!($kind), format!("{s:?}")),)+ };
@@ -33,24 +34,24 @@ macro_rules! register {
         }
 
         impl BsdfDescription {
-            /// Its name in a scene file.
+            /// The name of the kind in a scene file.
             pub fn kind(&self) -> &'static str {
                 match self { $(Self::$kind(_) => <$surface>::KIND,)+ }
             }
-            /// Whether light passes.
+            /// Returns true if light passes through the surface.
             pub fn lets_through(&self) -> bool {
                 match self { $(Self::$kind(_) => <$surface>::LETS_THROUGH,)+ }
             }
-            /// The colour that an image may give.
+            /// The colour that an image may give; `None` for kinds that cannot have a texture.
             pub fn colour(&self) -> Option<&Colour> {
                 match self { $(Self::$kind(s) => s.colour(),)+ }
             }
-            /// Its kind and its parameters in words.
+            /// The kind and its parameters as text for the user.
             pub fn words(&self) -> String {
                 let words = match self { $(Self::$kind(s) => s.words(),)+ };
                 format!("{}, {words}", self.kind())
             }
-            /// A few of every kind.
+            /// A few examples of every kind, for tests.
             pub fn examples() -> Vec<Self> {
                 let mut all = vec![];
                 $(all.extend(<$surface>::examples().into_iter().map(Self::$kind));)+
@@ -58,7 +59,7 @@ macro_rules! register {
             }
         }
 
-        /// The kinds with their keys, and how they are read.
+        /// All kinds, with their keys and the functions that read them.
         pub(in crate::scene) const KINDS: &[Kind] = &[
             $(Kind {
                 name: <$surface>::KIND,
@@ -69,65 +70,66 @@ macro_rules! register {
             },)+
         ];
 
-        /// How one side of a surface scatters at a point.
+        /// The BSDF of one side of a surface at a point.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Bsdf {
-            /// Nothing leaves.
+            /// No light is scattered.
             Black,
             $($(#[$about])* $kind($side),)+
         }
 
         impl Bsdf {
-            /// The side of a surface: `back` is the side the normal points away from. A textured reflectance is white until
-            /// [`Self::with_reflectance`] says more. Tables are made here: once per material, not per hit.
+            /// The BSDF of one side; `back` is the side from which the normal points away. A textured reflectance is white
+            /// until [`Self::with_reflectance`] sets it. Tables are computed here: once per material, not per hit.
             pub fn new(description: &BsdfDescription, back: bool) -> Self {
                 match description { $(BsdfDescription::$kind(s) => Self::$kind(s.side(back)),)+ }
             }
 
-            /// The same with another reflectance where a texture gives it: that of the diffuse part.
+            /// The same BSDF with another reflectance of its diffuse part, which a texture gives.
             #[must_use]
             pub fn with_reflectance(self, reflectance: Rgb) -> Self {
                 match self { Self::Black => self, $(Self::$kind(f) => Self::$kind(f.with_reflectance(reflectance)),)+ }
             }
 
-            /// f(ω_o, ω_i), sr⁻¹, without its delta part.
+            /// f(ω_o, ω_i) without its delta part, sr⁻¹.
             pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
                 match self { Self::Black => Rgb::ZERO, $(Self::$kind(f) => f.eval(wo, wi, mode),)+ }
             }
 
-            /// A direction; none where there is none to go to. `u[0]`, `u[1]` choose it, `u[2]` chooses between parts. The weight
-            /// may be zero where `sampling` does not follow f.
+            /// A sampled direction; `None` if light is absorbed or no direction is possible. `u[0]` and `u[1]` choose the
+            /// direction, `u[2]` chooses between parts of f. The weight may be zero if `sampling` does not follow f.
             pub fn sample(&self, wo: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
                 match self { Self::Black => None, $(Self::$kind(f) => f.sample(wo, sampling, mode, u),)+ }
             }
 
-            /// Density with which [`Self::sample`] draws ω_i, delta parts excepted.
+            /// Density of ω_i under [`Self::sample`] without delta parts, sr⁻¹.
             pub fn pdf(&self, wo: Vec3, wi: Vec3, sampling: Sampling) -> f32 {
                 match self { Self::Black => 0.0, $(Self::$kind(f) => f.pdf(wo, wi, sampling),)+ }
             }
 
-            /// The share of the energy that is scattered, per channel: ∫ f(ω_o → ω_i) cos θ_i dω_i with its delta part. Exact of
-            /// what is smooth or Lambertian; an upper bound of microfacets and Phong's lobe, which their files give.
+            /// The fraction of the light that is scattered, per channel: ∫ f(ω_o → ω_i) cos θ_i dω_i including the delta
+            /// part. It is exact for smooth and Lambertian surfaces. For microfacets and Phong's lobe it is an upper bound,
+            /// which their modules state.
             pub fn albedo(&self, wo: Vec3) -> Rgb {
                 match self { Self::Black => Rgb::ZERO, $(Self::$kind(f) => f.albedo(wo),)+ }
             }
 
-            /// The largest albedo of any direction: the local bound on ‖K‖₁.
+            /// The largest albedo over all directions: the local bound on ‖K‖₁.
             pub fn max_albedo(&self) -> Rgb {
                 match self { Self::Black => Rgb::ZERO, $(Self::$kind(f) => f.max_albedo(),)+ }
             }
 
-            /// Whether f has a part that connections can find.
+            /// Returns true if f has a part other than a delta, so that connections to lamps can be made.
             pub fn connects(&self) -> bool {
                 match self { Self::Black => false, $(Self::$kind(f) => f.connects(),)+ }
             }
 
-            /// Whether f has a delta part.
+            /// Returns true if f has a delta part.
             pub fn has_delta(&self) -> bool {
                 match self { Self::Black => false, $(Self::$kind(f) => f.has_delta(),)+ }
             }
 
-            /// Whether f reaches the other side without a delta.
+            /// Returns true if f transmits light to the other side by a part that is not a delta.
             pub(crate) fn transmits(&self) -> bool {
                 match self { Self::Black => false, $(Self::$kind(f) => f.transmits(),)+ }
             }
@@ -136,13 +138,13 @@ macro_rules! register {
 }
 
 register! {
-    /// Lambertian.
+    /// A Lambertian surface.
     Diffuse: diffuse::DiffuseSurface => diffuse::Diffuse;
     /// A perfect mirror, the same at every angle.
     Mirror: mirror::MirrorSurface => mirror::Mirror;
     /// A metal, smooth or rough.
     Conductor: conductor::ConductorSurface => conductor::Conductor;
-    /// Glass and its like, smooth or rough.
+    /// Glass or another dielectric, smooth or rough.
     Dielectric: dielectric::DielectricSurface => dielectric::Dielectric;
     /// A diffuse base under a dielectric coat, smooth or rough.
     Plastic: plastic::PlasticSurface => plastic::Plastic;
@@ -150,13 +152,14 @@ register! {
     Phong: phong::PhongSurface => phong::Phong;
 }
 
-/// A kind as the loader sees it.
+/// A kind of surface as the loader uses it.
 pub(in crate::scene) struct Kind {
     pub(in crate::scene) name: &'static str,
-    /// Beside `type` and `sides`.
+    /// Keys in a scene file, in addition to `type` and `sides`.
     pub(in crate::scene) keys: &'static [&'static str],
     pub(in crate::scene) lets_through: bool,
     pub(in crate::scene) read: fn(&Cursor<'_>) -> Result<BsdfDescription, SceneError>,
-    /// The kinds are asked from the last to the first; a Lambertian surface is what is left.
+    /// Tries to read an MTL material as this kind. The loader tries the kinds from the last to the first; Lambertian is the
+    /// first and accepts every material.
     pub(in crate::scene) from_mtl: fn(&mut MtlMaterial<'_>) -> Result<Option<BsdfDescription>, SceneError>,
 }

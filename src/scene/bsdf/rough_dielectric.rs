@@ -8,13 +8,14 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | η, F, p, e | as for smooth glass, at the micronormal | [`super::dielectric`] |
-//! | h | micronormal, on the side of ω_o | `facet` |
-//! | D, G, D_ωo | microfacets | [`super::ggx`] |
+//! | η, F, p, e | as for smooth glass, with the micronormal in place of the normal | [`super::dielectric`] |
+//! | h | normal of a microfacet (micronormal), on the side of ω_o | `facet` |
+//! | D, G, D_ωo | microfacet distribution, masking and shadowing, density of the normals visible from ω_o | [`super::ggx`] |
 //! | η² abs(ω_i·h)/abs(ω_o + η ω_i)² | dh/dω_i of a refraction | `jacobian` |
 //!
 //! Reference: Walter, Marschner, Li and Torrance, *Microfacet Models for Refraction through Rough Surfaces* (EGSR 2007),
-//! with the visible normals of [`super::ggx`]. Both quotients f |cos θ_i|/p are those of smooth glass times G/G₁(ω_o).
+//! with the visible normals of [`super::ggx`]. The weights f |cos θ_i|/p of reflection and of transmission are those of
+//! smooth glass times G/G₁(ω_o).
 
 use super::fresnel::Interface;
 use super::ggx::{Microfacets, half, reflect};
@@ -27,15 +28,15 @@ use glam::Vec3;
 /// A rough boundary between two dielectrics, seen from one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughDielectric {
-    /// The indices.
+    /// The indices on both sides.
     pub interface: Interface,
-    /// How a side is chosen at each micronormal.
+    /// Rule that chooses between reflection and refraction at each microfacet.
     pub odds: Odds,
     /// The microfacets.
     pub facets: Microfacets,
 }
 
-/// The micronormal that takes ω_o to ω_i.
+/// The microfacet that reflects or refracts ω_o to ω_i.
 #[derive(Clone, Copy, Debug)]
 struct Facet {
     h: Vec3,
@@ -43,14 +44,14 @@ struct Facet {
     cosine: f32,
     /// dh/dω_i.
     jacobian: f32,
-    /// F, or 1 − F.
+    /// F for a reflection, 1 − F for a refraction.
     share: f32,
-    /// p, or 1 − p.
+    /// p for a reflection, 1 − p for a refraction.
     probability: f32,
 }
 
 impl RoughDielectric {
-    /// The only h that takes ω_o to ω_i, if there is one.
+    /// The only microfacet that takes ω_o to ω_i; `None` if there is none.
     #[inline(always)]
     fn facet(&self, wo: Vec3, wi: Vec3) -> Option<Facet> {
         if wi.z > 0.0 {
@@ -74,7 +75,7 @@ impl RoughDielectric {
         Some(Facet { h, cosine: co, jacobian, share: 1.0 - f, probability: 1.0 - self.odds.of_reflection(f) })
     }
 
-    /// e for this pair.
+    /// e for a sample in direction ω_i: 1 for a reflection.
     #[inline(always)]
     fn squeezed(&self, wi: Vec3, mode: TransportMode) -> f32 {
         if wi.z > 0.0 { 1.0 } else { mode.squeezed(self.interface.eta2()) }
@@ -102,7 +103,8 @@ impl Model for RoughDielectric {
         self.facet(wo, wi).map_or(0.0, |m| self.density(wo, &m))
     }
 
-    /// A normal seen from ω_o; reflects there if `u[2]` < p, refracts otherwise. None where that leads to the wrong side.
+    /// Samples a normal visible from ω_o, then reflects there if `u[2]` < p and refracts otherwise. `None` if the result is
+    /// on the wrong side of the surface.
     #[inline(always)]
     fn sample(&self, wo: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<BsdfSample> {
         if sampling != Sampling::Bsdf {
@@ -122,7 +124,7 @@ impl Model for RoughDielectric {
         if (wi.z > 0.0) != reflected {
             return None;
         }
-        // from the pair of directions, as eval and pdf see it
+        // computed from the pair of directions, as in eval and pdf
         let m = self.facet(wo, wi)?;
         let pdf = self.density(wo, &m);
         let weight = m.share / m.probability * self.facets.lit(wo.z, wi.z.abs()) * self.squeezed(wi, mode);

@@ -1,15 +1,15 @@
-//! What is drawn, how, and what for.
+//! Types for sampling a BSDF: the density of directions, the transported quantity, and a sampled direction.
 //!
-//! `⟨f cos θ_i L/p⟩ = ∫ f cos θ_i L dω_i` over the directions ω_i drawn with density p.
+//! `E[f cos θ_i L/p] = ∫ f cos θ_i L dω_i` for directions ω_i sampled with density p.
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | p | density that was asked for | [`Sampling`] |
-//! | f(ω_i → ω_o), f(ω_o → ω_i) | the way light takes | [`TransportMode`] |
-//! | ω_i, f·cos θ_i/p, p | a draw | [`BsdfSample`] |
+//! | p | density of the sampled directions | [`Sampling`] |
+//! | f(ω_i → ω_o), f(ω_o → ω_i) | direction in which light travels | [`TransportMode`] |
+//! | ω_i, f·cos θ_i/p, p | a sampled direction, its weight and its density | [`BsdfSample`] |
 //!
-//! Reference: Veach, *Robust Monte Carlo Methods for Light Transport Simulation* (PhD thesis, Stanford, 1997), chapter 5
-//! for the two ways.
+//! Reference: Veach, *Robust Monte Carlo Methods for Light Transport Simulation* (PhD thesis, Stanford, 1997), chapter 5 for
+//! the two directions of transport.
 
 use crate::math::{
     Rgb,
@@ -18,14 +18,14 @@ use crate::math::{
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, TAU};
 
-/// How directions are drawn.
+/// Density with which directions are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Sampling {
-    /// Uniform over the hemisphere, or over the sphere where the surface transmits.
+    /// Uniform over the hemisphere, or over the sphere if the surface transmits.
     Uniform,
     /// Proportional to the cosine.
     Cosine,
-    /// Whatever suits the surface; the cosine for a Lambertian one.
+    /// The density that suits each surface best; the cosine for a Lambertian one.
     #[default]
     Bsdf,
 }
@@ -40,7 +40,7 @@ impl Sampling {
         }
     }
 
-    /// A direction of the upper hemisphere with this density.
+    /// A random direction of the upper hemisphere with this density.
     #[inline(always)]
     pub(super) fn direction(self, u: [f32; 2]) -> Vec3 {
         match self {
@@ -50,17 +50,18 @@ impl Sampling {
     }
 }
 
-/// What is carried along the walk. Differs where refraction squeezes a beam: radiance grows by η², flux does not.
+/// The quantity that a path transports. The two differ where refraction narrows a beam: radiance grows by η², flux does not
+/// change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TransportMode {
-    /// Radiance, from the eye: f(ω_i → ω_o).
+    /// Radiance, on paths from the eye: f(ω_i → ω_o).
     Radiance,
-    /// Flux, from the light: f(ω_o → ω_i).
+    /// Flux, on paths from the light: f(ω_o → ω_i).
     Flux,
 }
 
 impl TransportMode {
-    /// Factor on what crosses to the side with η² times the squared index.
+    /// Factor on light that crosses to a side whose squared index is `eta2` times that of the side of ω_o.
     #[inline(always)]
     pub(super) fn squeezed(self, eta2: f32) -> f32 {
         match self {
@@ -70,21 +71,22 @@ impl TransportMode {
     }
 }
 
-/// A sampled direction.
+/// A sampled direction with its weight and density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfSample {
-    /// ω_i.
+    /// ω_i: the sampled direction, local.
     pub wi: Vec3,
-    /// f·|cos θ_i|/p.
+    /// Weight f·|cos θ_i|/p.
     pub weight: Rgb,
-    /// Density in solid angle, summed over all ways to draw ω_i but delta ones; of a delta direction, the probability of its choice.
+    /// Density in solid angle, summed over all non-delta ways to sample ω_i. For a delta direction: the probability of
+    /// choosing it.
     pub pdf: f32,
-    /// Whether the direction came from a delta part: it cannot be found in any other way.
+    /// True if the direction came from a delta part, so that no other technique can find it.
     pub delta: bool,
 }
 
 impl BsdfSample {
-    /// A direction that can be found in other ways too; none on or below the surface, or where nothing is sampled.
+    /// A sample of the non-delta part. `None` for a direction in the surface, or where the density is 0.
     #[inline(always)]
     pub(super) fn of(wi: Vec3, f: Rgb, pdf: f32) -> Option<Self> {
         (wi.z != 0.0 && pdf > 0.0).then(|| Self { wi, weight: f * (wi.z.abs() / pdf), pdf, delta: false })

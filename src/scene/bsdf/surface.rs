@@ -1,41 +1,42 @@
-//! A surface as a scene file says it: its keys, how it is read, what it becomes.
+//! The description of a surface in a scene file: its keys, the function that reads it, and the BSDF that it becomes.
 //!
-//! Everything that the program has to know of a kind of surface it says of itself, in the file that holds its formulas; the
+//! Each kind of surface declares all its properties itself, in the file that holds its formulas. The
 //! [register](super::register) lists the kinds.
 //!
-//! | question | asked by | place |
+//! | property | used by | place |
 //! |---|---|---|
-//! | which keys, how are they read? | the loader | [`Surface::KEYS`], [`Surface::read`] |
-//! | which MTL materials are it? | the loader of OBJ | [`Surface::from_mtl`] |
-//! | how does a side scatter? | the scene | [`Surface::side`] |
-//! | may an image give its colour? | textures | [`Surface::colour`] |
-//! | does light pass? | sides, stand-in, coplanar surfaces | [`Surface::LETS_THROUGH`] |
-//! | in words | `info` | [`Surface::words`] |
-//! | what is it like? | tests of what holds for every BSDF | [`Surface::examples`] |
+//! | keys in a scene file, and the function that reads them | the loader | [`Surface::KEYS`], [`Surface::read`] |
+//! | MTL materials that become this kind | the loader of OBJ | [`Surface::from_mtl`] |
+//! | BSDF of one side | the scene | [`Surface::side`] |
+//! | colour that an image may give | textures | [`Surface::colour`] |
+//! | transparency: light passes through | sides, stand-in, coplanar surfaces | [`Surface::LETS_THROUGH`] |
+//! | text for the user | `info` | [`Surface::words`] |
+//! | examples | tests of properties of every BSDF | [`Surface::examples`] |
 
 use super::Model;
 use super::colour::Colour;
 use crate::scene::SceneError;
 use crate::scene::load::{Cursor, MtlMaterial};
 
-/// A kind of surface.
+/// A kind of surface, as described in a scene file.
 pub trait Surface: Clone + PartialEq + std::fmt::Debug {
-    /// One side of it.
+    /// The BSDF of one side.
     type Side: Model;
-    /// Its name in a scene file.
+    /// The name of the kind in a scene file.
     const KIND: &'static str;
-    /// Its keys there, beside `type` and `sides`.
+    /// The keys in a scene file, in addition to `type` and `sides`.
     const KEYS: &'static [&'static str];
-    /// Whether light passes: both sides scatter, and what lies behind is not where a Lambertian surface would send light.
+    /// True if light passes through: both sides then scatter, and the transmitted light goes to places that a Lambertian
+    /// surface would not reach.
     const LETS_THROUGH: bool = false;
 
-    /// From a table of a scene file.
+    /// Reads a surface from a table of a scene file.
     ///
     /// # Errors
-    /// Names the value, its place and what to do.
+    /// If a key is missing or a value is not allowed. The error names the value and its place and says what to do.
     fn read(c: &Cursor<'_>) -> Result<Self, SceneError>;
 
-    /// From an MTL material, if it is one of this kind.
+    /// Reads a surface from an MTL material; `None` if the material is not of this kind.
     ///
     /// # Errors
     /// If an image cannot be read.
@@ -43,18 +44,18 @@ pub trait Surface: Clone + PartialEq + std::fmt::Debug {
         Ok(None)
     }
 
-    /// How one side scatters; `back` is the side the normal points away from. A textured colour is white until
-    /// [`Model::with_reflectance`] says more. Tables are made here: once per material, not per hit.
+    /// The BSDF of one side; `back` is the side from which the normal points away. A textured colour is white until
+    /// [`Model::with_reflectance`] sets it. Tables are computed here: once per material, not per hit.
     fn side(&self, back: bool) -> Self::Side;
 
-    /// The colour that an image may give.
+    /// The colour that an image may give; `None` if the kind cannot have a texture.
     fn colour(&self) -> Option<&Colour> {
         None
     }
 
-    /// Its parameters in words.
+    /// The parameters as text for the user.
     fn words(&self) -> String;
 
-    /// A few that differ in what matters, for tests.
+    /// A few examples with clearly different parameters, for tests.
     fn examples() -> Vec<Self>;
 }

@@ -1,4 +1,4 @@
-//! Which primitives coincide: neighbours from a tree of boxes, each pair decided in `f64`.
+//! Search for primitives that coincide. A tree of bounding boxes finds neighbours, and each pair is then tested in `f64`.
 //!
 //! ```text
 //! parallel    |n·m| ≥ 0.99                     the heights below are the sharper test
@@ -6,8 +6,10 @@
 //! overlap     no edge of either leaves the other outside, or inside by less than 2γ    (separating axes)
 //! ```
 //!
-//! Edges that touch overlap by rounding only, and a plane is known no better than γ: hence 2γ. Two convex polygons are apart
-//! if and only if an edge of one of them separates them. Reference: Ericson, *Real-Time Collision Detection* (2005), 5.2.1.
+//! n and m are the normals of the two primitives, h and γ the height and tolerance of the [parent module](super). Primitives
+//! that only touch along an edge overlap by rounding, and the position of a plane is uncertain by γ; hence the limit 2γ. Two
+//! convex polygons in one plane are separate if and only if an edge of one of them separates them. Reference: Ericson,
+//! *Real-Time Collision Detection* (2005), 5.2.1.
 
 use super::{Overlap, Scale};
 use crate::scene::primitive::Primitive;
@@ -15,12 +17,12 @@ use glam::DVec3;
 use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2};
 use rayon::prelude::*;
 
-/// Cosine from which on two normals are compared at all.
+/// Pairs of normals whose cosine is below this are not compared.
 const PARALLEL: f64 = 0.99;
 
-/// A primitive, ready to be compared.
+/// A primitive, prepared for comparison.
 enum Sheet {
-    /// Corners counter-clockwise seen from the front; three of four are used of a triangle.
+    /// Corners counter-clockwise as seen from the front; a triangle uses the first three of the four.
     Polygon {
         n: DVec3,
         corners: [DVec3; 4],
@@ -39,7 +41,7 @@ enum Sheet {
     },
 }
 
-/// All pairs that coincide, in ascending order.
+/// All pairs of primitives that coincide, in ascending order.
 pub(super) fn overlaps(list: &[(usize, Primitive)], scale: &Scale) -> Vec<Overlap> {
     let sheets: Vec<Sheet> = list.iter().map(|(_, p)| Sheet::new(p)).collect();
     let margin = DVec3::splat(2.0 * scale.largest_gap());
@@ -63,7 +65,7 @@ pub(super) fn overlaps(list: &[(usize, Primitive)], scale: &Scale) -> Vec<Overla
     (0..list.len()).into_par_iter().with_min_len(256).flat_map_iter(of).collect()
 }
 
-/// Calls `see` with everything whose box meets this one.
+/// Calls `see` with every primitive whose box intersects the box `own`.
 fn near(tree: &Bvh2, own: Aabb, mut see: impl FnMut(usize)) {
     tree.aabb_traverse(own, |tree, node| {
         let node = &tree.nodes[node as usize];
@@ -99,8 +101,8 @@ fn meeting(sheets: &[Sheet], pair: [usize; 2], scale: &Scale) -> Option<Overlap>
     Some(Overlap { pair, same_way: cosine > 0.0, height, gap })
 }
 
-/// Lowest and highest height of `a` over `b` along the normal of `a`, by the corners of one over the plane of the other;
-/// nothing where neither stays within `gap`.
+/// Lowest and highest height of `a` over `b` along the normal of `a`. Measured at the corners of one over the plane of the
+/// other; `None` if for neither choice all corners are within `gap`.
 fn heights(a: &Sheet, b: &Sheet, gap: f64) -> Option<[f64; 2]> {
     let (n, m) = (a.normal()?, b.normal()?);
     let m = if n.dot(m) < 0.0 { -m } else { m };
@@ -112,8 +114,8 @@ fn heights(a: &Sheet, b: &Sheet, gap: f64) -> Option<[f64; 2]> {
     [by_mine, by_theirs].into_iter().find(|[lo, hi]| *lo >= -gap && *hi <= gap)
 }
 
-/// Whether an edge of `a` has all of `b` outside, or less than `least` of it inside. Of a disk every tangent is an edge; the
-/// one that matters lies towards `b`.
+/// Returns true if an edge of `a` has all of `b` outside, or less than the length `least` of it inside. Every tangent of a
+/// disk counts as an edge; only the one towards `b` has to be tested.
 fn apart(a: &Sheet, b: &Sheet, least: f64) -> bool {
     match (a, b) {
         (Sheet::Polygon { n, corners, count }, _) => (0..*count).any(|i| {
@@ -144,7 +146,7 @@ impl Sheet {
         }
     }
 
-    /// Unit normal of a flat front.
+    /// Unit normal of the front; `None` for a sphere.
     fn normal(&self) -> Option<DVec3> {
         match *self {
             Self::Polygon { n, .. } | Self::Disk { n, .. } => Some(n),
@@ -152,7 +154,7 @@ impl Sheet {
         }
     }
 
-    /// A point of the plane.
+    /// A point of the plane, or the centre of a sphere.
     fn anchor(&self) -> DVec3 {
         match self {
             Self::Polygon { corners, .. } => corners[0],
@@ -172,7 +174,7 @@ impl Sheet {
         }
     }
 
-    /// The point nearest to `p`, which lies in the plane with normal `n`.
+    /// The point of this primitive nearest to `p`, within its plane with normal `n`.
     fn nearest(&self, p: DVec3, n: DVec3) -> DVec3 {
         match self {
             Self::Polygon { corners, count, n: own } => {
@@ -195,10 +197,10 @@ impl Sheet {
     }
 }
 
-/// Corners of a polygon inscribed in a disk.
+/// Number of corners of the polygon inscribed in a disk.
 const FACETS: usize = 32;
 
-/// Outline and unit normal of a flat primitive; of a disk, an inscribed polygon.
+/// Outline and unit normal of a flat primitive; for a disk, an inscribed polygon. `None` for a sphere.
 pub(super) fn outline(p: &Primitive) -> Option<(Vec<DVec3>, DVec3)> {
     match (*p, Sheet::new(p)) {
         (Primitive::Disk { center, normal, radius }, _) => {

@@ -1,27 +1,28 @@
-//! Surfaces that coincide: which primitives lie in one plane, and which of them is seen.
+//! Coincident surfaces: primitives that lie in one plane and overlap, and the rule that decides which of them is visible.
 //!
 //! ```text
 //! A, B coincide:   parallel,  |h| ≤ γ,  and they overlap by more than 2γ in every direction
-//! γ(n) = 64·2⁻²⁴ Σᵢ |nᵢ| Rᵢ                                       four times what rays may be off
-//! the rule:        an emitting front lies in front of what it touches: it is moved by s along its normal, so that h ≥ γ
+//! γ(n) = 64·2⁻²⁴ Σᵢ |nᵢ| Rᵢ                                       four times the error of a ray
+//! the rule:        an emitting front is moved by s along its normal, so that h ≥ γ over surfaces that it coincides with
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | R | largest coordinates of the scene about its middle ([`Description::centred`]) | `Scale` |
-//! | γ | planes nearer to each other than this are one plane | `Scale::gap` |
-//! | h | height of the first of a pair over the second, along the front normal of the first: lowest and highest | [`Overlap::height`] |
-//! | s | how far an emitter is moved | `shifts` |
+//! | R | largest absolute coordinates of the scene, measured from its middle ([`Description::centred`]) | `Scale` |
+//! | γ | tolerance: two planes closer than γ count as one plane | `Scale::gap` |
+//! | n, h | normal of the plane; lowest and highest height of the first primitive over the second, along the front normal of the first | [`Overlap::height`] |
+//! | s | distance by which an emitter is moved | `shifts` |
 //!
-//! Rays in `f32` cannot tell two surfaces apart that coincide: a ray that starts on one of them, or ends there, may or
-//! may not meet the other. So a lamp in the plane of a ceiling would be seen by some ways of sampling and not by others. The
-//! rule makes one geometry of it for rays, patches and every way of sampling. Of two emitters that look the same way, the one
-//! with the lower number lies in front; only their owners know whether that is right ([`relation`]). What does not emit
-//! stays where it is.
+//! Rays in `f32` cannot distinguish two coincident surfaces: a ray that starts or ends on one of them may or may not hit the
+//! other. A lamp in the plane of a ceiling would then be visible to some sampling techniques and hidden from others. The
+//! rule gives rays, patches and all sampling techniques the same geometry. If two emitters face the same direction, the one
+//! with the lower number lies in front. This choice is arbitrary, so [`relation`] reports the pair if they look different.
+//! Surfaces that do not emit are not moved.
 //!
-//! γ is a bound for the whole plane and not for one point, so that all triangles of a lamp move alike. All lengths are
-//! shares of the scene's size: scaling by a power of two changes no bit. Coordinates below 1/64 of the largest count as that:
-//! in a scene that lies in one plane, γ must not vanish.
+//! γ is a bound for the whole plane and not for a single point, so that all triangles of a lamp move by the same distance.
+//! All lengths are fractions of the scene's size, so scaling a scene by a power of two changes no bit of the result. A
+//! coordinate of R below 1/64 of the largest is replaced by that value, because γ must not vanish for a scene that lies in
+//! one plane.
 
 mod find;
 pub mod relation;
@@ -35,51 +36,51 @@ pub use relation::{Kind, Region, Relation};
 /// Two primitives that lie in one surface and overlap there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
-    /// Their numbers, ascending.
+    /// Numbers of the two primitives, ascending.
     pub pair: [usize; 2],
-    /// Whether their fronts look the same way.
+    /// True if their fronts face the same direction.
     pub same_way: bool,
-    /// Height of the first over the second along the front normal of the first, metres: lowest and highest over the
-    /// overlap.
+    /// Lowest and highest height (m) of the first over the second in the overlap, along the front normal of the first.
     pub height: [f64; 2],
-    /// γ of their plane, metres.
+    /// γ of their plane (m): the tolerance.
     pub gap: f64,
 }
 
 impl Overlap {
-    /// The one of the two (0 or 1) that lies in front, seen from the front of the first or from its back; nothing where
-    /// rays cannot tell.
+    /// The primitive (0 or 1) that lies in front, as seen from the front side of the first or from its back side. `None` if
+    /// rays cannot distinguish them.
     pub fn nearer(&self, from_front: bool) -> Option<usize> {
         let h = 0.5 * (self.height[0] + self.height[1]);
         (h.abs() > self.gap / 64.0).then_some(usize::from((h > 0.0) != from_front))
     }
 
-    /// The sides that both turn to the front of the first, or to its back: 0 is a front, 1 a back.
+    /// For each of the two primitives, the side that faces the front half space of the first, or its back half space: 0 is a
+    /// front, 1 a back.
     pub fn sides(&self, from_front: bool) -> [usize; 2] {
         [usize::from(!from_front), usize::from(from_front != self.same_way)]
     }
 }
 
-/// The primitives of a description as everything that solves it meets them.
+/// The primitives of a description as used by rays and by the mesh, after emitters have been moved.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surfaces {
-    /// Every primitive with the index of its shape, emitters in front of what they touch. In the order of
-    /// [`Description::primitives`].
+    /// Every primitive with the index of its shape, in the order of [`Description::primitives`]. Emitters lie in front of
+    /// surfaces that they coincide with.
     pub list: Vec<(usize, Primitive)>,
-    /// What coincides, in ascending order.
+    /// All pairs that coincide, in ascending order.
     pub overlaps: Vec<Overlap>,
-    /// The farthest that any primitive was moved, metres; 0 where nothing was.
+    /// The largest distance by which a primitive was moved (m); 0 if none was.
     pub moved: f64,
 }
 
-/// The size of a scene, as rounding sees it.
+/// The size of a scene, from which the tolerance γ follows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale {
-    /// R.
+    /// R: largest absolute coordinates.
     reach: DVec3,
 }
 
-/// γ in units of the last place of the coordinates.
+/// γ as a fraction of R: 64 units in the last place of `f32`.
 const UNITS: f64 = 64.0 / 16_777_216.0;
 
 impl Scale {
@@ -90,20 +91,21 @@ impl Scale {
         Self { reach: reach.max(DVec3::splat(reach.max_element() / 64.0)) }
     }
 
-    /// γ of a plane with this unit normal.
+    /// γ of a plane with the unit normal `n`, m.
     pub(crate) fn gap(&self, n: DVec3) -> f64 {
         UNITS * n.abs().dot(self.reach)
     }
 
-    /// The largest γ of any plane.
+    /// Upper bound of γ over all planes, m.
     pub(crate) fn largest_gap(&self) -> f64 {
         UNITS * self.reach.length()
     }
 }
 
 impl Description {
-    /// The primitives with every emitting one in front of what it touches, and all that coincides. The scene must be about its
-    /// middle ([`Description::centred`]): planes count as one by how rays see them there.
+    /// The primitives, with every emitter moved in front of surfaces that it coincides with, and all pairs that coincide.
+    /// The origin must be the middle of the scene ([`Description::centred`]), because γ is the tolerance of rays in those
+    /// coordinates.
     pub fn surfaces(&self) -> Surfaces {
         let mut list = self.primitives();
         let mut overlaps = find::overlaps(&list, &Scale::new(&list));
@@ -121,16 +123,17 @@ impl Description {
     }
 }
 
-/// s of every primitive. Emitters come in descending order: the one that is to lie in front finds the other in its place.
+/// s of every primitive. Emitters are handled in descending order, so that the other surface has its final place when an
+/// emitter is moved in front of it.
 fn shifts(n: usize, overlaps: &[Overlap], emits: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut shift = vec![0.0f64; n];
-    // (emitter, the other, lowest height over it, γ, same way)
+    // (emitter, other primitive, lowest height over it, γ, same direction)
     let mut pairs: Vec<(usize, usize, f64, f64, bool)> = vec![];
     for o in overlaps {
         let [i, j] = o.pair;
         let [lo, hi] = o.height;
         pairs.extend(emits(i).then_some((i, j, lo, o.gap, o.same_way)));
-        // the height of the second over the first, along its own normal
+        // the height of the second over the first, along the normal of the second
         let low = if o.same_way { -hi } else { lo };
         pairs.extend(emits(j).then_some((j, i, low, o.gap, o.same_way)));
     }
@@ -145,7 +148,7 @@ fn shifts(n: usize, overlaps: &[Overlap], emits: impl Fn(usize) -> bool) -> Vec<
     shift
 }
 
-/// The primitive moved by `s` along the normal of its front.
+/// The primitive moved by the distance `s` along the normal of its front.
 fn moved(p: &Primitive, s: f64) -> Primitive {
     match *p {
         Primitive::Triangle([a, b, c]) => {

@@ -1,13 +1,13 @@
-//! What it means that two shapes coincide: one lies in front, they look alike, or nothing says which is seen.
+//! Classification of coincident shapes: one lies in front, both look the same, or the visible one is undefined.
 //!
 //! ```text
-//! in front   one emits and the other does not, or their fronts look away from each other and both emit
-//! alike      else, and from either side both scatter and emit the same
-//! differ     else: no right answer, and it matters wherever a path can land there
+//! in front   one emits and the other does not, or both emit and their fronts face opposite directions
+//! alike      otherwise, if on both sides the two scatter and emit the same way
+//! differ     otherwise: which one is visible is undefined, and this matters wherever a path can land there
 //! ```
 //!
-//! Glass is never alike: a ray crosses every surface of it, so how many there are matters. An image is alike where it lies on
-//! the same shape.
+//! Coincident glass surfaces are never alike, because a ray crosses every one of them, so their number matters. Textured
+//! surfaces are alike only if the two shapes have the same geometry, so that the image lies at the same place.
 
 use super::{Surfaces, find};
 use crate::math::polygon::{clip, uniform};
@@ -17,50 +17,50 @@ use crate::scene::vertex::Side;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// What it means that two shapes coincide.
+/// Class of a pair of coincident shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// They look alike: images are right, and the surface counts twice in areas and in norms over all surfaces.
+    /// Both look the same. Images are right, but the surface counts twice in areas and in norms over all surfaces.
     Alike,
-    /// Emitters lie in front of what they touch.
+    /// An emitter lies in front of the other surface.
     InFront,
-    /// They differ, and nothing says which of them is seen.
+    /// They look different, and the renderer cannot decide which one is visible.
     Differ,
 }
 
-/// Two shapes that coincide, or one with itself.
+/// A pair of coincident shapes, or one shape that coincides with itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relation {
-    /// Their indices, ascending.
+    /// Indices of the two shapes, ascending.
     pub shapes: [usize; 2],
-    /// What to call them.
+    /// Names of the two shapes in messages.
     pub names: [String; 2],
-    /// The worst that is true of any of their primitives.
+    /// The worst class among all pairs of their primitives.
     pub kind: Kind,
-    /// Where they differ.
+    /// The parts of the surface where they look different.
     pub regions: Vec<Region>,
 }
 
-/// A part of a surface where two sides compete.
+/// A part of a surface where two coincident sides look different.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    /// The sides; both are seen from the same half space.
+    /// The two sides; both face the same half space.
     pub sides: [Side; 2],
-    /// γ there, metres.
+    /// γ of the surface (m): the tolerance.
     pub gap: f64,
     part: Part,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 enum Part {
-    /// A convex polygon, counter-clockwise seen from where the sides are seen.
+    /// A convex polygon, counter-clockwise as seen from the half space that the sides face.
     Flat(Vec<DVec3>),
-    /// A band of a sphere; `out` where it is seen from outside.
+    /// A band of a sphere; `out` is true if the sides face outwards.
     Band { center: DVec3, radius: f64, z: [f64; 2], out: bool },
 }
 
 impl Region {
-    /// The point at `u` in [0, 1)², uniform by area, and the unit normal of the half space that sees it.
+    /// The point at `u` in [0, 1)², uniform by area, and the unit normal towards the half space that sees it.
     pub fn point(&self, u: [f64; 2]) -> (DVec3, DVec3) {
         match &self.part {
             Part::Flat(p) => (uniform(p, u[0], u[1]), crate::math::polygon::area_vector(p).normalize()),
@@ -73,12 +73,12 @@ impl Region {
         }
     }
 
-    /// Whether it is part of a plane.
+    /// Returns true if the region is part of a plane.
     pub fn is_flat(&self) -> bool {
         matches!(self.part, Part::Flat(_))
     }
 
-    /// Whether a point of one of the two surfaces lies in the part that they share.
+    /// Returns true if the point `x` of one of the two surfaces lies in the region that they share.
     pub fn holds(&self, x: DVec3) -> bool {
         match &self.part {
             Part::Flat(p) => {
@@ -94,11 +94,11 @@ impl Region {
     }
 }
 
-/// How a side looks.
+/// Appearance of one side: its emission and its scattering.
 #[derive(PartialEq)]
 struct Look<'a> {
     emission: DVec3,
-    /// Black where nothing.
+    /// `None` for a black side.
     bsdf: Option<&'a BsdfDescription>,
 }
 
@@ -113,7 +113,7 @@ impl Description {
         }
     }
 
-    /// Whether two sides that coincide look the same.
+    /// Returns true if two coincident sides look the same.
     fn alike(&self, shapes: [usize; 2], sides: [usize; 2]) -> bool {
         let [a, b] = [0, 1].map(|i| self.look(shapes[i], sides[i]));
         let counts = a.bsdf.is_some_and(BsdfDescription::lets_through);
@@ -124,7 +124,7 @@ impl Description {
         a == b && !counts && (!a.bsdf.is_some_and(textured) || same_place())
     }
 
-    /// The name of a shape, with its number where others have the same.
+    /// The name of a shape, followed by its number if another shape has the same name.
     fn shape_name(&self, i: usize) -> String {
         let name = &self.shapes[i].name;
         let alone = self.shapes.iter().filter(|s| s.name == *name).count() == 1;
@@ -141,15 +141,15 @@ fn textured(bsdf: &BsdfDescription) -> bool {
 }
 
 impl Surfaces {
-    /// The relations without a right answer.
+    /// The relations of class [`Kind::Differ`], for which no image is right.
     pub fn conflicts(&self, of: &Description) -> Vec<Relation> {
         self.relations(of).into_iter().filter(|r| r.kind == Kind::Differ).collect()
     }
 
-    /// What the overlaps mean, by pairs of shapes in ascending order.
+    /// The class of every pair of coincident shapes, in ascending order of the pairs.
     pub fn relations(&self, of: &Description) -> Vec<Relation> {
         let mut all: BTreeMap<[usize; 2], (Kind, Vec<Region>)> = BTreeMap::new();
-        // images are compared once, not for every pair of triangles
+        // sides are compared once per pair of shapes, not for every pair of triangles, because they may have images
         let mut known: BTreeMap<([usize; 2], [usize; 2]), bool> = BTreeMap::new();
         for o in &self.overlaps {
             let shapes = o.pair.map(|i| self.list[i].0);
@@ -181,7 +181,7 @@ impl Surfaces {
     }
 }
 
-/// The part that two primitives share, seen from the front of the first or from its back.
+/// The overlap of two primitives, as seen from the front of the first or from its back.
 fn shared([a, b]: [&Primitive; 2], from_front: bool) -> Option<Part> {
     if let (&Primitive::Sphere { center, radius, z, inward }, &Primitive::Sphere { z: w, .. }) = (a, b) {
         let z = [z[0].max(w[0]), z[1].min(w[1])];

@@ -1,4 +1,4 @@
-//! A sphere as a light, seen from outside: directions uniform in the cone it fills.
+//! Sampling of a sphere light from a point outside: directions uniform in the cone that the sphere fills.
 //!
 //! ```text
 //! p(ω) = 1 / 2πm      m = 1 − cos θ_max = sin²θ_max / (1 + cos θ_max)      sin θ_max = r/d
@@ -7,19 +7,19 @@
 //! | symbol | meaning |
 //! |---|---|
 //! | r, d | radius; distance from the point to the centre |
-//! | θ | angle at the point, between ω and the centre: 1 − cos θ = um, u uniform |
-//! | θ_max | of the cone: where ω is tangent |
-//! | β | at the near point of the sphere on the ray, between its normal and −ω: sin β = sin θ / sin θ_max |
-//! | α = β − θ | at the centre, between the normal and the point |
+//! | θ | angle at the point, between ω and the direction to the centre: 1 − cos θ = um, with u uniform |
+//! | θ_max | half the opening angle of the cone: ω is tangent to the sphere there |
+//! | β | angle at the near point of the sphere on the ray, between its normal and −ω: sin β = sin θ / sin θ_max |
+//! | α = β − θ | angle at the centre, between the normal and the direction to the point |
 //!
-//! With sin²θ = um(2 − um) and sin²θ_max = m(2 − m), numerator and denominator share what vanishes:
+//! With sin²θ = um(2 − um) and sin²θ_max = m(2 − m), the factor that vanishes cancels from numerator and denominator:
 //!
 //! ```text
 //! sin²β = u (2 − um)/(2 − m)      cos²β = (1 − u)(2 − m(1 + u))/(2 − m)
 //! ```
 //!
-//! so no digits are lost, neither far away (m → 0) nor at the surface (m → 1, where d² − r² = (d − r)(d + r)). Computed
-//! in `f64`, as rays meet the sphere.
+//! So no digits are lost, neither far away (m → 0) nor at the surface (m → 1, where d² − r² = (d − r)(d + r)). All this is
+//! computed in `f64`, like the intersection of rays with spheres.
 //!
 //! References: Changyaw Wang, *Physically correct direct lighting for distribution ray tracing*, Graphics Gems III
 //! (1992); Matt Pharr, Wenzel Jakob and Greg Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 6.2.4.
@@ -28,7 +28,7 @@ use crate::math::direction::{about, cos_sin_turn};
 use glam::{DVec3, Vec3};
 use std::f64::consts::TAU;
 
-/// Unit vector from the centre to the point, and m; nothing from inside the sphere or on it.
+/// Unit vector from the centre to the point `from`, and m; `None` if the point is inside the sphere or on it.
 fn cone(from: Vec3, center: DVec3, r: f64) -> Option<(Vec3, f64)> {
     let away = from.as_dvec3() - center;
     let d = away.length();
@@ -39,8 +39,8 @@ fn cone(from: Vec3, center: DVec3, r: f64) -> Option<(Vec3, f64)> {
     Some(((away / d).as_vec3(), sin * sin / (1.0 + cos)))
 }
 
-/// A point on the near side of the sphere, its direction uniform in solid angle, and the density in sr⁻¹; nothing from
-/// inside the sphere or on it.
+/// A point on the near side of the sphere, with its direction uniform in solid angle, and the density (sr⁻¹). `None` if the
+/// point `from` is inside the sphere or on it.
 pub fn sample(from: Vec3, center: DVec3, radius: f64, u: [f32; 2]) -> Option<(Vec3, f32)> {
     let (axis, m) = cone(from, center, radius)?;
     let v = f64::from(u[0]);
@@ -51,11 +51,12 @@ pub fn sample(from: Vec3, center: DVec3, radius: f64, u: [f32; 2]) -> Option<(Ve
     let sin_alpha = sin_beta * cos_theta - cos_beta * sin_theta;
     let (c, s) = cos_sin_turn(u[1]);
     let normal = about(axis, sin_alpha as f32 * c, sin_alpha as f32 * s, cos_alpha as f32);
-    // back to length 1 in `f64`, so that the point lies on the sphere whatever its size
+    // normalised again in `f64`, so that the point lies on the sphere whatever its size
     Some(((center + radius * normal.as_dvec3().normalize()).as_vec3(), density(m)))
 }
 
-/// Density in sr⁻¹ with which [`sample`] chooses any direction that meets the sphere; 0 from inside it or on it.
+/// Density (sr⁻¹) of every direction that hits the sphere under [`sample`]; 0 if the point `from` is inside the sphere or on
+/// it.
 pub fn pdf(from: Vec3, center: DVec3, radius: f64) -> f32 {
     cone(from, center, radius).map_or(0.0, |(_, m)| density(m))
 }

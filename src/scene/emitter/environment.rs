@@ -1,4 +1,4 @@
-//! Light from every direction at infinity, sampled where it is bright.
+//! Environment light: radiance from every direction at infinity, sampled in proportion to its brightness.
 //!
 //! ```text
 //! u = ½ + (φ + α)/2π      φ = atan2(x, −z)      v = θ/π      cos θ = y
@@ -10,19 +10,19 @@
 //! | θ, φ | angle from +y; azimuth from −z towards +x | – |
 //! | α | rotation of the sky about the vertical, counter-clockwise seen from +y | `turn`, in turns |
 //! | (i, j) | texel ⌊uw⌋, ⌊vh⌋ of a w × h image; radiance is constant in it | [`Environment::radiance`] |
-//! | s = sin²(θ/2) | (1 − cos θ)/2, without its loss of digits at the pole | `heights`, at the edges of rows |
+//! | s = sin²(θ/2) | (1 − cos θ)/2, computed without its loss of digits at the pole | `heights`, at the edges of rows |
 //! | Ω | solid angle of a texel, exact | – |
-//! | Y | luminance (Rec. 709) | – |
+//! | Y | luminance of a texel (Rec. 709) | – |
 //! | P, p | probability of a texel; density, sr⁻¹ | [`Environment::pdf`] |
 //!
-//! A row, a column of it, then s and φ uniform in the texel, which is uniform in solid angle up to the poles: a sky of one
-//! texel is sampled uniformly over the sphere. Texels without light are never chosen. P differs from YΩ/Σ by the rounding of
-//! [`crate::math::distribution`], which is in p, too.
+//! Sampling chooses a row, then a column in it, then s and φ uniform in the texel. This is uniform in solid angle up to the
+//! poles, so a sky of one texel is sampled uniformly over the sphere. Texels without light are never chosen. P differs from
+//! YΩ/ΣYΩ only by the rounding of [`crate::math::distribution`], and p contains the same rounding.
 //!
-//! **The texel of a sampled direction is the texel that was chosen**, in [`Environment::radiance`] and
-//! [`Environment::pdf`]: otherwise a direction drawn for a dark texel could land on the sun beside it. Angles are computed
-//! in `f64` and positions kept 2⁻²¹ rad inside the edges, eight times what rounding the direction to `f32` can move it.
-//! The angle to the pole is atan2(√(x² + z²), y), which keeps its digits there.
+//! **The texel of a sampled direction must be the texel that was chosen**, in [`Environment::radiance`] and in
+//! [`Environment::pdf`]. Otherwise a direction sampled in a dark texel could fall on the sun in the next texel. So angles
+//! are computed in `f64`, and positions are kept 2⁻²¹ rad inside the edges. This is eight times the error of rounding the
+//! direction to `f32`. The angle to the pole is computed as atan2(√(x² + z²), y), which keeps its digits there.
 //!
 //! References: Paul Debevec, *Rendering synthetic objects into real scenes*, SIGGRAPH 1998; Matt Pharr, Wenzel Jakob and
 //! Greg Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 12.5 (infinite area lights).
@@ -34,25 +34,25 @@ use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// How far inside the edges of their texel sampled directions are kept, rad.
+/// Distance, in rad, that sampled directions keep from the edges of their texel.
 const INSIDE: f64 = 1.0 / (1 << 21) as f64;
 
-/// A sky ready for rays.
+/// An environment light, prepared for sampling and look-up.
 #[derive(Clone, Debug)]
 pub struct Environment {
     image: Arc<Raster>,
     scale: f32,
-    /// α/2π, in [0, 1).
+    /// α/2π, in [0, 1): rotation about the vertical.
     turn: f64,
     table: Table,
-    /// s at the h + 1 edges of rows, from 0 to 1.
+    /// s at the h + 1 edges of the rows, from 0 to 1.
     heights: Vec<f64>,
     mean: DVec3,
 }
 
 impl Environment {
-    /// A sky, rotated by degrees counter-clockwise seen from +y, its radiance multiplied by `scale`. One that is black
-    /// everywhere is sampled uniformly.
+    /// An environment light from a description. The sky is rotated by `rotate_degrees` counter-clockwise seen from +y, and
+    /// its radiance is multiplied by `scale`. A sky that is black everywhere is sampled uniformly.
     ///
     /// # Panics
     /// If a texel is negative or not finite.
@@ -91,17 +91,17 @@ impl Environment {
         [cell(u - u.floor(), w), cell(v, h)]
     }
 
-    /// Radiance from the unit direction `d`, W·sr⁻¹·m⁻².
+    /// Radiance that arrives from the unit direction `d`, W·sr⁻¹·m⁻².
     pub fn radiance(&self, d: Vec3) -> Rgb {
         let [column, row] = self.texel(d);
         self.image.texel(column, row) * self.scale
     }
 
-    /// A unit direction towards the sky, and its density in sr⁻¹ (never 0).
+    /// A sampled unit direction towards the sky, and its density in sr⁻¹ (never 0).
     pub fn sample(&self, u: [f32; 2]) -> (Vec3, f32) {
         let [w, h] = self.image.size;
         let ([column, row], rest) = self.table.sample(u);
-        // the middle of the step of 2⁻²⁴ that the number stands for
+        // the centre of the interval of length 2⁻²⁴ that the number represents
         let [across, down] = rest.map(|t| f64::from(t) + 0.5 / f64::from(1 << 24));
         let inside = |x: f64, cell: u32, step: f64| {
             x.max(f64::from(cell) * step + INSIDE).min(f64::from(cell + 1) * step - INSIDE)
@@ -114,7 +114,7 @@ impl Environment {
         (DVec3::new(sin * x, cos, -sin * minus_z).as_vec3(), self.density([column, row]))
     }
 
-    /// Density with which [`Self::sample`] chooses `d`, sr⁻¹.
+    /// Density of the direction `d` under [`Self::sample`], sr⁻¹.
     pub fn pdf(&self, d: Vec3) -> f32 {
         self.density(self.texel(d))
     }
@@ -125,7 +125,7 @@ impl Environment {
         (f64::from(self.table.probability([column, row])) / solid_angle) as f32
     }
 
-    /// Mean radiance over the sphere, (1/4π) ∫ L dω: exact, texel by texel.
+    /// Mean radiance over the sphere, (1/4π) ∫ L dω: exact, as a sum over texels.
     pub fn mean(&self) -> DVec3 {
         self.mean
     }

@@ -1,4 +1,4 @@
-//! A photograph of a mirror sphere, turned into a sky by latitude and longitude.
+//! Conversion of a photograph of a mirror sphere into a sky by latitude and longitude.
 //!
 //! ```text
 //! n = (d + e)/|d + e|      pixel (½ + ½ n_x, ½ − ½ n_y)      d = 2(n·e)n − e
@@ -6,14 +6,15 @@
 //!
 //! | symbol | meaning |
 //! |---|---|
-//! | e = +z | from the sphere to the camera, which is far away and looks along −z |
-//! | n | normal of the sphere where the sky in direction d is seen |
-//! | pixel | from the top left corner; the sphere touches the four edges of the image |
+//! | d | direction of the sky |
+//! | e = +z | direction from the sphere to the camera, which is far away and looks along −z |
+//! | n | normal at the point of the sphere that reflects the sky in direction d |
+//! | pixel | position from the top left corner, as a fraction of the image; the sphere touches the four edges of the image |
 //!
-//! **Blind spot.** The sky behind the sphere is squeezed into its rim: at distance ε from the rim (in radii), d is
-//! 2√(2ε) away from −z. Pixels there cover wide arcs, and those on the rim also show what is beside the sphere.
-//! Directions seen within three half-pixels of the rim are therefore given the colour at that distance: with h pixels
-//! across, everything within 2√(6/h) of −z, 9° for h = 1000, is a continuation and no measurement.
+//! **Blind spot.** The sky behind the sphere is compressed into its rim. At distance ε from the rim (in radii), d is 2√(2ε)
+//! rad away from −z. Pixels there cover wide arcs, and pixels on the rim also show the background beside the sphere.
+//! Directions seen within three half-pixels of the rim therefore get the colour at that distance. With h pixels across,
+//! everything within 2√(6/h) rad of −z (9° for h = 1000) is extrapolated and not measured.
 //!
 //! Reference: Paul Debevec, *Rendering synthetic objects into real scenes*, SIGGRAPH 1998.
 
@@ -22,15 +23,15 @@ use crate::scene::raster::Raster;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Directions per texel and axis.
+/// Number of directions per texel along each axis.
 const DIRECTIONS: u32 = 4;
 
-/// The sky of a mirror sphere as an image by latitude and longitude, as high as the photograph and twice as wide; a
-/// texel is the mean over a regular set of directions in it, uniform in solid angle.
+/// Converts the photograph to an image by latitude and longitude, as high as the photograph and twice as wide. A texel is
+/// the mean over a regular grid of directions in it, uniform in solid angle.
 pub(super) fn lat_long(photo: &Raster) -> Raster {
     let h = photo.size[1];
     let n = h * DIRECTIONS;
-    // directions of row i are at equal steps of cos θ between the edges of their texel
+    // the directions of row i have equal steps of cos θ between the edges of their texel
     let cosine = |i: u32| {
         let edge = |row: u32| (PI * f64::from(row) / f64::from(h)).cos();
         let t = (f64::from(i % DIRECTIONS) + 0.5) / f64::from(DIRECTIONS);
@@ -56,7 +57,7 @@ pub(super) fn lat_long(photo: &Raster) -> Raster {
     Raster::new([2 * h, h], texels)
 }
 
-/// What the photograph shows in direction `d`: bilinear, never from pixels beside the sphere.
+/// Colour of the photograph in direction `d`: bilinear, but never from pixels outside the sphere.
 fn seen(photo: &Raster, d: DVec3) -> Rgb {
     let half_pixel = 1.0 / f64::from(photo.size[0].min(photo.size[1]));
     let n = (d + DVec3::Z).normalize_or_zero();

@@ -1,16 +1,18 @@
-//! Lights: which one, which point of it, and with what density.
+//! Lights: choice of a light, choice of a point on it, and the densities.
 //!
-//! A light is a shape that emits (a mesh is one light, and its triangles share its area), a point, a direction, or the sky.
+//! A light is an emitting shape, a point light, a directional light, or the sky. An emitting mesh is one light, with points
+//! uniform over the area of its triangles.
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | P_i | probability of light i: 1/n, or Φ_i/ΣΦ | [`Selection`] |
-//! | p_A = P_i/A_i | density on a surface, m⁻² | `Lights::density` |
-//! | p_ω | density in solid angle at the receiver: p_A r²/cos θ_y; of a sphere, P_i over its solid angle ([`cone`]) | `LightSample::pdf` |
-//! | Φ | power, W: π A L, 4π I, π R² H, 4π² R² L̄ (R the radius of the scene) | `power` |
+//! | P_i | probability of choosing light i: 1/n, or Φ_i/ΣΦ | [`Selection`] |
+//! | p_A = P_i/A_i | density of a point on a surface, m⁻² | `Lights::density` |
+//! | p_ω | density in solid angle at the receiver: p_A r²/cos θ_y; for a sphere P_i over its solid angle ([`cone`]) | `LightSample::pdf` |
+//! | Φ | power, W: π A L for a surface, 4π I for a point, π R² H for a direction, 4π² R² L̄ for the sky (R the radius of the scene) | `power` |
 //!
-//! Powers are compared by luminance. Reference: Shirley, Wang, Zimmerman, *Monte Carlo Techniques for Direct Lighting
-//! Calculations* (1996); Pharr, Jakob, Humphreys, *Physically Based Rendering* (4th ed. 2023), ch. 12.
+//! For the choice of a light, powers are compared by luminance. References: Shirley, Wang, Zimmerman, *Monte Carlo
+//! Techniques for Direct Lighting Calculations* (1996); Pharr, Jakob, Humphreys, *Physically Based Rendering* (4th ed.
+//! 2023), ch. 12.
 
 pub mod cone;
 pub mod environment;
@@ -23,13 +25,13 @@ use environment::Environment;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
-/// How a light is selected.
+/// Rule by which next-event estimation chooses a light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Selection {
     /// Every light with the same probability.
     #[default]
     Uniform,
-    /// In proportion to its power.
+    /// Each light with a probability in proportion to its power.
     Power,
 }
 
@@ -39,18 +41,18 @@ impl std::fmt::Display for Selection {
     }
 }
 
-/// A light.
+/// One light, prepared for sampling.
 #[derive(Clone, Debug)]
 pub(crate) enum Light {
-    /// Primitives with cumulative shares of the area, ending in 1.
+    /// An emitting surface: its primitives, and the cumulative fractions of its area, ending in 1.
     Surface { prims: Vec<u32>, cdf: Vec<f32> },
-    /// A whole sphere that emits outwards.
+    /// A whole sphere that emits outwards; it is sampled by solid angle.
     Ball { prim: u32, center: DVec3, radius: f64 },
-    /// From a point; W/sr.
+    /// A point light; intensity in W/sr.
     Point { position: Vec3, intensity: Rgb },
-    /// Along a unit direction; W/m².
+    /// Parallel light along a unit direction; irradiance in W/m².
     Directional { direction: Vec3, irradiance: Rgb },
-    /// From the sky.
+    /// The sky.
     Environment,
 }
 
@@ -60,12 +62,14 @@ pub struct Lights {
     pub(crate) lights: Vec<Light>,
     power: Vec<f64>,
     selection: Selection,
-    /// P_i, and their sums.
+    /// P_i of every light, and their cumulative sums `cdf`.
     probability: Vec<f64>,
     cdf: Vec<f32>,
-    /// By primitive: its light, and p_A in m⁻²; 0 for what does not emit.
+    /// For every primitive the number of its light.
     of_prim: Vec<u32>,
+    /// Area of every light, m²; 0 for a light without a surface.
     area: Vec<f64>,
+    /// For every primitive p_A, m⁻²; 0 if it does not emit.
     pub(crate) density: Vec<f32>,
     /// The sky, and its number among the lights.
     pub(crate) environment: Option<(Environment, u32)>,
@@ -74,7 +78,7 @@ pub struct Lights {
 const NONE: u32 = u32::MAX;
 
 impl Lights {
-    /// `radius` is that of the scene.
+    /// Collects the lights of a description. `radius` is the radius of the scene, for the power of distant lights.
     pub(crate) fn new(description: &Description, prims: &[(usize, Primitive)], radius: f64) -> Self {
         let mut all = Self { of_prim: vec![NONE; prims.len()], ..Self::default() };
         for (s, shape) in description.shapes.iter().enumerate() {
@@ -126,7 +130,7 @@ impl Lights {
         self.area.push(area);
     }
 
-    /// Chooses lights in another way.
+    /// Sets the rule by which lights are chosen.
     pub(crate) fn select(&mut self, selection: Selection) {
         let (n, total) = (self.lights.len() as f64, self.power.iter().sum::<f64>());
         let uniform = selection == Selection::Uniform || total <= 0.0;
@@ -137,7 +141,7 @@ impl Lights {
             Some(*sum as f32)
         });
         self.cdf = sums.collect();
-        // rounding must not let the last number choose a light without power
+        // rounding must not let the largest number choose a light without power
         if let Some(last) = self.probability.iter().rposition(|&p| p > 0.0) {
             self.cdf[last..].fill(1.0);
         }
@@ -154,45 +158,45 @@ impl Lights {
         self.lights.len()
     }
 
-    /// Whether nothing emits.
+    /// Returns true if there is no light.
     pub fn is_empty(&self) -> bool {
         self.lights.is_empty()
     }
 
-    /// P_i.
+    /// P_i: the probability of choosing a light.
     #[inline(always)]
     pub(crate) fn probability(&self, light: u32) -> f32 {
         self.probability[light as usize] as f32
     }
 
-    /// Power of each light by luminance, W.
+    /// Power of each light, W, as luminance.
     pub fn powers(&self) -> &[f64] {
         &self.power
     }
 
-    /// Whether some light has no area, so that no ray hits it.
+    /// Returns true if some light has no area, so that no ray can hit it.
     pub fn any_delta(&self) -> bool {
         self.lights.iter().any(|l| matches!(l, Light::Point { .. } | Light::Directional { .. }))
     }
 
-    /// Whether no light has an area.
+    /// Returns true if no light has an area.
     pub fn all_delta(&self) -> bool {
         self.lights.iter().all(|l| matches!(l, Light::Point { .. } | Light::Directional { .. }))
     }
 
-    /// Whether all are selected alike.
+    /// Returns true if all lights are chosen with the same probability.
     #[inline(always)]
     pub(crate) fn alike(&self) -> bool {
         self.selection == Selection::Uniform
     }
 
-    /// The light that a primitive is part of.
+    /// The number of the light to which a primitive belongs; `None` if it does not emit.
     #[inline(always)]
     pub(crate) fn of_primitive(&self, prim: u32) -> Option<u32> {
         Some(self.of_prim[prim as usize]).filter(|&light| light != NONE)
     }
 
-    /// The emitting primitive, if there is only one and nothing else emits.
+    /// The emitting primitive, if there is exactly one and nothing else emits.
     pub(crate) fn only(&self) -> Option<u32> {
         match self.lights.as_slice() {
             [Light::Surface { prims, .. }] if prims.len() == 1 => Some(prims[0]),
@@ -200,7 +204,7 @@ impl Lights {
         }
     }
 
-    /// The sphere light that a primitive is.
+    /// Centre, radius and P_i of a sphere light, if the primitive is one.
     #[inline(always)]
     pub(crate) fn ball(&self, prim: u32) -> Option<(DVec3, f64, f32)> {
         let light = self.of_prim[prim as usize];
@@ -210,7 +214,7 @@ impl Lights {
         }
     }
 
-    /// The light that a uniform number selects.
+    /// The number of the light that the uniform number u chooses.
     #[inline(always)]
     pub(crate) fn choose(&self, u: f32) -> u32 {
         let n = self.lights.len();
@@ -221,7 +225,7 @@ impl Lights {
         i.min(n - 1) as u32
     }
 
-    /// The primitive of a light that a uniform number selects, if the light has any.
+    /// The primitive of a light that the uniform number u chooses; `None` if the light has no surface.
     #[inline(always)]
     pub(crate) fn primitive(&self, light: u32, u: f32) -> Option<u32> {
         match &self.lights[light as usize] {

@@ -1,37 +1,39 @@
-//! The camera of a file, and the one that frames a bare OBJ.
+//! Reading of the camera of a scene file, and placement of the camera for a bare OBJ.
 //!
 //! ```text
 //! z − max.z = max( half width / tan(fov/2), half height / tan(fov_y/2) ) / 0.9      tan(fov_y/2) = tan(fov/2)·h/w
 //! ```
 //!
-//! so that the nearest face of the bounds, seen along −z, fills 90 % of the frame.
+//! This distance lets the nearest face of the bounding box, seen along −z, fill 90 % of the frame in its tighter direction.
+//! fov and fov_y are the horizontal and vertical fields of view, w and h the width and height in pixels.
 
 use super::cursor::Cursor;
 use crate::scene::{SceneError, description::CameraDescription};
 use glam::DVec3;
 
-/// Horizontal field of view of a bare OBJ, degrees: that of the Cornell box's camera, 25 mm of film behind a 35 mm lens.
+/// Horizontal field of view for a bare OBJ, degrees: that of the Cornell box's camera, with 25 mm of film behind a 35 mm
+/// lens.
 pub(super) const FRAMED_FOV: f64 = 39.3077;
 const FILLED: f64 = 0.9;
-/// Least width of a pixel at distance 1. Its square is a density to be divided by, and it is multiplied with others in single precision;
-/// directions in `f64` are told apart at a thousandth of it.
+/// Smallest allowed width of a pixel at distance 1. Its square enters a density, which is multiplied with others in single
+/// precision. Directions in `f64` are exact to a thousandth of this width.
 const NARROWEST: f64 = 1e-12;
 pub(super) const KEYS: [&str; 5] = ["origin", "target", "up", "fov", "size"];
 
-/// Reads `[camera]`. With `bounds` a missing origin, target or up is chosen to frame them.
+/// Reads `[camera]`. With `bounds`, a missing origin, target or up is chosen so that the box `bounds` fills the frame.
 pub(super) fn read(c: &Cursor, bounds: Option<[DVec3; 2]>) -> Result<CameraDescription, SceneError> {
     c.only(&KEYS)?;
     let at = c.require("fov", "the horizontal field of view in degrees: fov = 40")?;
     let fov = at.number()?;
     if !(fov > 0.0 && fov < 180.0) {
-        return Err(at.error(format!("fov {fov} is outside (0, 180)")).help("it is the horizontal angle in degrees"));
+        return Err(at.error(format!("fov {fov} is outside (0, 180)")).help("fov is the horizontal angle in degrees"));
     }
     let size = c.require("size", "width and height in pixels: size = [256, 256]")?.size()?;
     let pixel = 2.0 * (0.5 * fov).to_radians().tan() / f64::from(size[0]);
     if pixel < NARROWEST {
         let e = at.error(format!("fov {fov:e} makes pixels {pixel:.0e} rad wide, too narrow for single precision"));
         return Err(e.help(format!(
-            "{:.0e} degrees is the least for {} pixels",
+            "use at least {:.0e} degrees for {} pixels",
             NARROWEST.to_degrees() * f64::from(size[0]),
             size[0]
         )));
@@ -49,7 +51,7 @@ pub(super) fn read(c: &Cursor, bounds: Option<[DVec3; 2]>) -> Result<CameraDescr
     // a thousand times the rounding of the coordinates
     if forward.length() <= 2e-13 * (origin.length() + target.length()) {
         let e = place("target").error("camera origin and target are the same point");
-        return Err(e.help("move the target to what the camera should look at"));
+        return Err(e.help("move the target to a point that the camera should look at"));
     }
     if up == DVec3::ZERO {
         return Err(place("up").error("up has zero length").help("write a direction such as [0, 1, 0]"));
@@ -61,7 +63,7 @@ pub(super) fn read(c: &Cursor, bounds: Option<[DVec3; 2]>) -> Result<CameraDescr
     Ok(CameraDescription { origin, target, up, fov, size })
 }
 
-/// Origin and target of the camera on +z.
+/// Origin and target of the camera that looks along −z at the box.
 fn frame([min, max]: [DVec3; 2], fov: f64, [w, h]: [u32; 2]) -> (DVec3, DVec3) {
     let (center, half) = (0.5 * (min + max), 0.5 * (max - min));
     let tan_x = (0.5 * fov).to_radians().tan();
@@ -74,7 +76,7 @@ fn frame([min, max]: [DVec3; 2], fov: f64, [w, h]: [u32; 2]) -> (DVec3, DVec3) {
 mod tests {
     use super::*;
 
-    /// The corners of the near face project to 0.9 of the half frame in the tighter direction.
+    /// The corners of the near face project to 0.9 of half the frame in the tighter direction.
     #[test]
     fn framing_fills_ninety_percent() {
         for (half, size) in [((2.0, 1.0), [256, 256]), ((1.0, 2.0), [300, 100]), ((1.0, 2.0), [100, 300])] {

@@ -1,6 +1,7 @@
-//! Strict reading: a cursor is a value with its dotted key, and asks it for exactly one type.
+//! Strict reading of a scene file. A cursor is one value of the file together with its dotted key. Each method asks the
+//! value for exactly one type.
 //!
-//! Every refusal names the value, the file and line (or the override) and the key, and says what to do.
+//! Every error names the value, the file and line (or the override) and the key, and says what to do.
 
 use super::{
     nearest::suggest,
@@ -10,16 +11,16 @@ use crate::scene::SceneError;
 use glam::{DVec2, DVec3};
 use std::path::{Path, PathBuf};
 
-/// Positions and lengths live in (1e-12, 1e12) metres, so that their squares fit the `f32` of the rays.
+/// Positions and lengths must be below 1e12 m in absolute value, so that their squares fit the `f32` of the rays.
 pub(super) const LARGEST_LENGTH: f64 = 1e12;
-/// See [`LARGEST_LENGTH`].
+/// Smallest length of an edge or a direction, m, for the same reason as [`LARGEST_LENGTH`].
 pub(super) const SMALLEST_LENGTH: f64 = 1e-12;
-/// Radiances and powers up to here fit `f32` with room for a path's weights.
+/// Largest allowed radiance or power. It fits `f32` and leaves room for the weights of a path.
 pub(super) const LARGEST_LIGHT: f64 = 1e30;
-/// Texture coordinates up to here keep a hundredth of the image in `f32`.
+/// Largest allowed texture coordinate, in repeats of the image. `f32` then still resolves a hundredth of the image.
 pub(super) const LARGEST_UV: f64 = 1e5;
 
-/// A value of the scene with its key.
+/// A value of the scene file with its dotted key.
 #[derive(Clone, Debug)]
 pub struct Cursor<'a> {
     pub(super) file: &'a Path,
@@ -55,7 +56,7 @@ impl<'a> Cursor<'a> {
         Ok(t.iter().map(|(k, node)| (k.as_str(), Cursor { file: self.file, key: self.join(k), node })).collect())
     }
 
-    /// Refuses every key of a table that is not one of `legal`.
+    /// Returns an error for the first key of a table that is not one of `legal`.
     pub fn only(&self, legal: &[&str]) -> Result<(), SceneError> {
         match self.entries()?.iter().find(|(k, _)| !legal.contains(k)) {
             Some((k, c)) => Err(c.error(format!("unknown key `{k}`")).help(suggest(k, "keys here", legal))),
@@ -63,12 +64,12 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The value of a key, if it is there.
+    /// The value of a key; `None` if the key is missing.
     pub fn get(&self, key: &str) -> Option<Cursor<'a>> {
         self.node.get(key).map(|node| Cursor { file: self.file, key: self.join(key), node })
     }
 
-    /// The value of a key; `example` shows what to add when it is missing.
+    /// The value of a required key; `example` says what to add if it is missing.
     pub fn require(&self, key: &str, example: &str) -> Result<Cursor<'a>, SceneError> {
         self.get(key).ok_or_else(|| {
             let here = Cursor { key: self.join(key), ..self.clone() };
@@ -101,13 +102,13 @@ impl<'a> Cursor<'a> {
         if x.is_finite() { Ok(x) } else { Err(self.error(format!("{x} is not finite")).help("write a finite number")) }
     }
 
-    /// A number of metres of sensible size.
+    /// A length in metres, at most 1e12 in absolute value.
     pub fn length(&self) -> Result<f64, SceneError> {
         let x = self.number()?;
         if x.abs() <= LARGEST_LENGTH {
             return Ok(x);
         }
-        Err(self.error(format!("{x:e} m is too far for single-precision rays")).help("stay within 1e12 m"))
+        Err(self.error(format!("{x:e} m is too large for single-precision rays")).help("stay within 1e12 m"))
     }
 
     /// An integer in `[low, high]`.
@@ -126,21 +127,21 @@ impl<'a> Cursor<'a> {
         if let Value::Flag(b) = self.node.value { Ok(b) } else { Err(self.mistyped("true or false")) }
     }
 
-    /// A string with something in it.
+    /// A string that is not empty.
     pub fn text(&self) -> Result<&'a str, SceneError> {
         match &self.node.value {
-            Value::Text(s) if s.trim().is_empty() => Err(self.error("the string is empty").help("write something")),
+            Value::Text(s) if s.trim().is_empty() => Err(self.error("the string is empty").help("write some text")),
             Value::Text(s) => Ok(s),
             _ => Err(self.mistyped("a string")),
         }
     }
 
-    /// One of a few words.
+    /// The value that belongs to one of a few known words.
     pub fn choice<T: Copy>(&self, kind: &str, known: &[(&str, T)]) -> Result<T, SceneError> {
         let word = self.text()?;
         known.iter().find(|(k, _)| *k == word).map(|&(_, v)| v).ok_or_else(|| {
             let names: Vec<&str> = known.iter().map(|(k, _)| *k).collect();
-            self.error(format!("`{word}` is no {kind}")).help(suggest(word, "known here", &names))
+            self.error(format!("`{word}` is not a {kind}")).help(suggest(word, "known here", &names))
         })
     }
 
@@ -163,7 +164,7 @@ impl<'a> Cursor<'a> {
         Ok(DVec3::new(x.length()?, y.length()?, z.length()?))
     }
 
-    /// A row of a transform.
+    /// A row of a transform: four numbers.
     pub fn row(&self) -> Result<[f64; 4], SceneError> {
         let [a, b, c, d] = self.several("4 numbers")?;
         Ok([a.length()?, b.length()?, c.length()?, d.length()?])
@@ -174,7 +175,7 @@ impl<'a> Cursor<'a> {
         self.several("3 rows of 4 numbers")
     }
 
-    /// The three corners of a face, each below `count`.
+    /// The three vertex indices of a face, each below `count`.
     pub fn face(&self, count: usize) -> Result<[u32; 3], SceneError> {
         let corners = self.several::<3>("3 vertex indices")?;
         let mut face = [0; 3];
@@ -198,7 +199,7 @@ impl<'a> Cursor<'a> {
         Err(self.error(format!("{name} {x} is outside [{low}, {most}]")).help(format!("stay within {low} and {most}")))
     }
 
-    /// Part of a complex index of refraction per channel, each in `[low, 100]`.
+    /// The real or imaginary part of a complex index of refraction, per channel, each in `[low, 100]`.
     pub fn index(&self, name: &str, low: f64) -> Result<DVec3, SceneError> {
         let rgb = self.colour()?;
         match rgb.to_array().into_iter().find(|x| !(low..=100.0).contains(x)) {
@@ -216,16 +217,16 @@ impl<'a> Cursor<'a> {
             return Ok(uv);
         }
         Err(self
-            .error(format!("the texture coordinate {uv} is too far out"))
+            .error(format!("the texture coordinate {uv} is too large"))
             .help("stay within 1e5 repeats of the image"))
     }
 
-    /// True if this is a string.
+    /// Returns true if the value is a string.
     pub fn is_text(&self) -> bool {
         matches!(self.node.value, Value::Text(_))
     }
 
-    /// An error found in a file that this value names.
+    /// Moves an error found in a file that this value names to the place of this value.
     pub fn place(&self, e: SceneError) -> SceneError {
         self.error(e.what).help(e.help.unwrap_or_default())
     }
@@ -239,9 +240,9 @@ impl<'a> Cursor<'a> {
     pub fn albedo(&self, name: &str) -> Result<DVec3, SceneError> {
         let rgb = self.colour()?;
         match rgb.to_array().into_iter().find(|x| !(0.0..=1.0).contains(x)) {
-            Some(x) => Err(self
-                .error(format!("{name} {x} is outside [0, 1]"))
-                .help("a surface returns at most what it receives, or the Neumann series may diverge")),
+            Some(x) => Err(self.error(format!("{name} {x} is outside [0, 1]")).help(
+                "a surface cannot reflect more light than it receives, otherwise the Neumann series may diverge",
+            )),
             None => Ok(rgb),
         }
     }
@@ -262,7 +263,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// A path written in `file`, relative to its folder.
+/// The path `path` as written in `file`, relative to the folder of that file.
 pub(super) fn beside(file: &Path, path: &str) -> PathBuf {
     file.parent().unwrap_or(Path::new("")).join(path)
 }

@@ -1,17 +1,19 @@
-//! Image files as linear radiance or albedo.
+//! Reading of image files as linear radiance or albedo.
 //!
 //! ```text
-//! linear = s/12.92                    s ≤ 0.04045
-//!          ((s + 0.055)/1.055)^2.4    above              (IEC 61966-2-1, 1999)
+//! linear = s/12.92                    for s ≤ 0.04045
+//!          ((s + 0.055)/1.055)^2.4    for s above          (IEC 61966-2-1, 1999)
 //! ```
 //!
-//! | file | numbers | decoded |
+//! s is the encoded value in [0, 1], n the stored integer.
+//!
+//! | file | numbers | decoding |
 //! |---|---|---|
-//! | `.exr` | float; the `R`, `G`, `B` of the first layer that has them | as they are |
-//! | `.hdr` | RGBE (Ward 1991) | as they are |
+//! | `.exr` | float; the `R`, `G`, `B` of the first layer that has them | none: already linear |
+//! | `.hdr` | RGBE (Ward 1991) | none: already linear |
 //! | `.png`, `.jpg` | 8 or 16 bits, s = n/(2^bits − 1) | by the curve above |
 //!
-//! Nothing is repaired: a texel that is no finite number of at least 0 is refused.
+//! No value is repaired: an image with a texel that is not a finite number of at least 0 is an error.
 
 use crate::{
     math::Rgb,
@@ -22,7 +24,7 @@ use std::path::Path;
 
 const FORMATS: &str = "images are .exr, .hdr, .png or .jpg";
 
-/// True if the name ends like an image that [`read`] reads.
+/// Returns true if the file name ends like an image that [`read`] can read.
 pub(super) fn is_image(path: &Path) -> bool {
     matches!(extension(path).as_str(), "exr" | "hdr" | "png" | "jpg" | "jpeg")
 }
@@ -31,11 +33,11 @@ fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
-/// Reads an image; whoever named the file adds the place to the error.
+/// Reads an image. The caller adds the place where the file is named to the error.
 pub(super) fn read(path: &Path) -> Result<Raster, SceneError> {
     let shown = path.display();
     if !is_image(path) {
-        return Err(SceneError::new(format!("`{shown}` is no image this program reads")).help(FORMATS));
+        return Err(SceneError::new(format!("`{shown}` is not an image that this program can read")).help(FORMATS));
     }
     let fail = |e: &dyn std::fmt::Display| {
         let reason = e.to_string().lines().collect::<Vec<_>>().join(", ");
@@ -53,7 +55,7 @@ pub(super) fn read(path: &Path) -> Result<Raster, SceneError> {
     }
 }
 
-/// The name of the `i`-th texel in messages.
+/// The position of the `i`-th texel, for messages.
 pub(super) fn texel(raster: &Raster, i: usize) -> String {
     let width = raster.size[0] as usize;
     format!("the texel in column {}, row {}", i % width, i / width)
@@ -99,7 +101,7 @@ fn other(path: &Path, fail: &dyn Fn(&dyn std::fmt::Display) -> SceneError) -> Re
     Ok(Raster::new(size, image.to_rgb16().pixels().map(|p| Rgb::from_array(p.0.map(linear))).collect()))
 }
 
-/// From sRGB to linear, on [0, 1].
+/// Converts sRGB to linear, on [0, 1].
 fn decode(s: f64) -> f64 {
     if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) }
 }

@@ -1,9 +1,9 @@
-//! `[[lights]]`: light without a surface.
+//! Reading of `[[lights]]`: lights without a surface.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | I | radiant intensity of a point, W·sr⁻¹ | `intensity` |
-//! | E⊥ | irradiance on a surface perpendicular to parallel light, W·m⁻² | `irradiance` |
+//! | I | radiant intensity of a point light, W·sr⁻¹ | `intensity` |
+//! | E⊥ | irradiance of a surface perpendicular to parallel light, W·m⁻² | `irradiance` |
 //! | L(ω) | radiance from infinity, W·sr⁻¹·m⁻² | `radiance` or `file`, times `scale` |
 
 use super::{
@@ -19,14 +19,14 @@ use crate::scene::{
 use glam::DVec3;
 use std::sync::Arc;
 
-/// The kinds of light with their keys.
+/// The kinds of light, each with its keys.
 pub(super) const KINDS: [(&str, &[&str]); 3] = [
     ("point", &["type", "position", "intensity"]),
     ("directional", &["type", "direction", "irradiance"]),
     ("environment", &["type", "radiance", "file", "mapping", "rotate", "scale"]),
 ];
 
-/// How an image covers the sphere of directions.
+/// Mapping between the directions of the sky and the pixels of an image.
 #[derive(Clone, Copy)]
 enum Mapping {
     LatLong,
@@ -46,8 +46,8 @@ pub(super) fn read(list: &Cursor) -> Result<Vec<LightDescription>, SceneError> {
             "point" => point(&c)?,
             "directional" => directional(&c)?,
             _ if out.iter().any(|l| matches!(l, LightDescription::Environment { .. })) => {
-                let e = at.error("a second environment");
-                return Err(e.help("there is one infinity: merge the two images into one"));
+                let e = at.error("there is a second environment");
+                return Err(e.help("a scene has only one sky: merge the two images into one"));
             }
             _ => environment(&c)?,
         });
@@ -55,7 +55,7 @@ pub(super) fn read(list: &Cursor) -> Result<Vec<LightDescription>, SceneError> {
     Ok(out)
 }
 
-/// True if a light sends nothing.
+/// Returns true if a light emits nothing.
 pub(super) fn dark(light: &LightDescription) -> bool {
     let black = |r: &Raster| image::largest(r).max_element() == 0.0;
     match light {
@@ -69,18 +69,21 @@ pub(super) fn dark(light: &LightDescription) -> bool {
 }
 
 fn point(c: &Cursor) -> Result<LightDescription, SceneError> {
-    let position = c.require("position", "where it is: position = [0, 1, 0]")?.vector()?;
-    let intensity = c.require("intensity", "watts per steradian: intensity = [1, 1, 1]")?.light("intensity")?;
+    let position = c.require("position", "the position of the light: position = [0, 1, 0]")?.vector()?;
+    let intensity =
+        c.require("intensity", "the radiant intensity in W/sr: intensity = [1, 1, 1]")?.light("intensity")?;
     Ok(LightDescription::Point { position, intensity })
 }
 
 fn directional(c: &Cursor) -> Result<LightDescription, SceneError> {
-    let at = c.require("direction", "where the light travels to: direction = [0, -1, 0]")?;
+    let at = c.require("direction", "the direction in which the light travels: direction = [0, -1, 0]")?;
     let direction = at.vector()?;
     if direction.length() < SMALLEST_LENGTH {
-        return Err(at.error("the direction has zero length").help("write where the light travels to: [0, -1, 0]"));
+        return Err(at
+            .error("the direction has zero length")
+            .help("write the direction in which the light travels, such as [0, -1, 0]"));
     }
-    let example = "what a surface across the light receives, W/m²: irradiance = [1, 1, 1]";
+    let example = "the irradiance of a surface perpendicular to the light, in W/m²: irradiance = [1, 1, 1]";
     let irradiance = c.require("irradiance", example)?.light("irradiance")?;
     Ok(LightDescription::Directional { direction, irradiance })
 }
@@ -95,7 +98,9 @@ fn environment(c: &Cursor) -> Result<LightDescription, SceneError> {
             let example = "radiance = [1, 1, 1] for a constant sky, or file = \"sky.exr\"";
             let radiance = c.require("radiance", example)?.light("radiance")?;
             if let Some(mapping) = c.get("mapping") {
-                return Err(mapping.error("mapping without file").help("a constant sky needs none: remove it"));
+                return Err(mapping
+                    .error("mapping is given without file")
+                    .help("a constant sky has no mapping: remove the key"));
             }
             Sky::Constant(radiance)
         }

@@ -1,4 +1,5 @@
-//! `[materials.NAME]`: which kind of surface it is, and on which sides. The keys of a kind are its own ([`Surface`](crate::scene::bsdf::Surface)).
+//! Reading of `[materials.NAME]`: the kind of surface and its sides. Each kind of surface reads its own keys
+//! ([`Surface`](crate::scene::bsdf::Surface)).
 
 use super::cursor::Cursor;
 use crate::scene::{
@@ -7,7 +8,7 @@ use crate::scene::{
     description::{Material, Sides},
 };
 
-/// Keys of every kind; `sides` is legal on all, if only to be refused on glass with a reason.
+/// Keys of every kind. `sides` is accepted here for all kinds, so that glass can refuse it with a specific message.
 pub(super) const KEYS: [&str; 2] = ["type", "sides"];
 
 /// Reads one material.
@@ -16,14 +17,14 @@ pub(super) fn read(name: &str, c: &Cursor) -> Result<Material, SceneError> {
     let at = c.require("type", &format!("type = \"diffuse\"; types: {}", names.join(", ")))?;
     let kinds: Vec<(&str, &Kind)> = KINDS.iter().map(|k| (k.name, k)).collect();
     let kind = at.choice("type of material", &kinds)?;
-    // in the order in which a file has them
+    // in the order in which a file lists them
     let [first, last] = KEYS;
     let keys: Vec<&str> = [first].into_iter().chain(kind.keys.iter().copied()).chain([last]).collect();
     c.only(&keys)?;
     let sides = match c.get("sides") {
         Some(s) if kind.lets_through => {
-            let what = format!("a {} has no sides", kind.name);
-            return Err(s.error(what).help("light passes from both sides: remove the key"));
+            let what = format!("a {} always has both sides", kind.name);
+            return Err(s.error(what).help("light enters from both sides: remove the key `sides`"));
         }
         Some(s) => s.choice("choice of sides", &[("both", Sides::Both), ("front", Sides::Front)])?,
         None => Sides::Both,

@@ -1,17 +1,18 @@
-//! Triangles and where a transform takes them.
+//! Reading of triangle meshes and of the transform of a shape.
 //!
 //! ```text
 //! x ↦ M x + t      M u × M v = det(M) M⁻ᵀ (u × v)
 //! ```
 //!
-//! so a mirroring M (det M < 0) turns the winding's normal against the image of the front; reversing the winding
-//! turns it back.
+//! A mirroring M (det M < 0) would turn the normal that follows from the winding away from the image of the front. Reversing
+//! the winding of every face turns it back.
 
 use super::cursor::{Cursor, LARGEST_LENGTH, SMALLEST_LENGTH};
 use crate::scene::{SceneError, description::Geometry};
 use glam::{DMat3, DVec2, DVec3};
 
-/// A sine this small is parallel, a height this much smaller than the longest edge is flat.
+/// Relative tolerance: edges whose angle has a smaller sine are parallel, and a triangle with a smaller ratio of height to
+/// longest edge has no area.
 pub(super) const FLAT: f64 = 1e-9;
 
 /// Reads the geometry of a mesh.
@@ -35,25 +36,25 @@ pub(super) fn mesh(c: &Cursor) -> Result<Geometry, SceneError> {
     Ok(Geometry::Mesh { vertices, faces, uvs })
 }
 
-/// The texture coordinates of the corners of each face, from one per vertex.
+/// The texture coordinates of the corners of each face, from the list `uvs` with one pair per vertex.
 fn uvs(c: &Cursor, vertices: usize, faces: &[[u32; 3]]) -> Result<Vec<[DVec2; 3]>, SceneError> {
     let Some(list) = c.get("uvs") else { return Ok(Vec::new()) };
     let rows = list.items("an array of pairs")?;
     if rows.len() != vertices {
-        let e = list.error(format!("{} uvs for {vertices} vertices", rows.len()));
-        return Err(e.help("one pair [u, v] per vertex, origin at the bottom left of the image"));
+        let e = list.error(format!("the mesh has {} uvs for {vertices} vertices", rows.len()));
+        return Err(e.help("write one pair [u, v] per vertex, with the origin at the bottom left of the image"));
     }
     let uvs = rows.iter().map(Cursor::uv).collect::<Result<Vec<_>, _>>()?;
     Ok(faces.iter().map(|f| f.map(|i| uvs[i as usize])).collect())
 }
 
-/// True if a triangle has no area worth the name.
+/// Returns true if the area of a triangle is zero or too small to compute with.
 pub(super) fn flat([a, b, c]: [DVec3; 3]) -> bool {
     let longest = (b - a).length().max((c - b).length()).max((a - c).length());
     longest < SMALLEST_LENGTH || (b - a).cross(c - a).length() <= FLAT * longest * longest
 }
 
-/// x ↦ M x + t
+/// The affine map x ↦ M x + t.
 pub(super) struct Transform<'a> {
     at: Cursor<'a>,
     linear: DMat3,
@@ -68,14 +69,15 @@ pub(super) fn transform<'a>(c: &Cursor<'a>) -> Result<Option<Transform<'a>>, Sce
     let linear = DMat3::from_cols_array_2d(&rows.map(|[a, b, c, _]| [a, b, c])).transpose();
     let scale = linear.x_axis.length() * linear.y_axis.length() * linear.z_axis.length();
     if linear.determinant().abs() <= FLAT * scale {
-        let e = at.error("the transform flattens the shape, its determinant is zero");
-        return Err(e.help("three rows [a, b, c, t] with linearly independent [a, b, c]"));
+        let e = at.error("the transform flattens the shape, because its determinant is zero");
+        return Err(e.help("write three rows [a, b, c, t] whose parts [a, b, c] are linearly independent"));
     }
     Ok(Some(Transform { at, linear, shift: DVec3::from(rows.map(|r| r[3])) }))
 }
 
 impl Transform<'_> {
-    /// The front stays the image of the front: a mirroring transform reverses the winding of every face.
+    /// Transforms the vertices. If the transform mirrors, it also reverses the winding of every face, so that the front
+    /// stays the image of the front.
     pub(super) fn apply(
         &self,
         vertices: &mut [DVec3],
@@ -89,8 +91,8 @@ impl Transform<'_> {
         }
         let far = vertices.iter().any(|v| v.abs().max_element() > LARGEST_LENGTH);
         if far || faces.iter().any(|f| flat(f.map(|i| vertices[i as usize]))) {
-            let e = self.at.error("the transform makes the shape too large, or a triangle of it too thin");
-            return Err(e.help("stay within 1e12 m, and scale all directions alike"));
+            let e = self.at.error("the transform makes the shape too large or one of its triangles too thin");
+            return Err(e.help("stay within 1e12 m, and scale all directions by similar factors"));
         }
         Ok(())
     }

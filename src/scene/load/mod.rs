@@ -1,11 +1,12 @@
-//! From a name on the command line to plain data: a built-in scene, a `.toml`, or a bare `.obj`.
+//! Loading: from a name on the command line to a scene as plain data. The name is a built-in scene, a `.toml` file or a bare
+//! `.obj` file.
 //!
 //! ```text
 //! text ─► tree (values with their lines) ─► overrides ─► strict reading ─► Description
 //! ```
 //!
-//! `scenes/README.md` documents every key. Nothing is repaired in silence: what a scene cannot mean is a
-//! [`SceneError`] with its line and key, what a file of other origin says beyond that is a warning.
+//! `scenes/README.md` documents every key. Nothing is corrected silently. A scene that makes no sense is a [`SceneError`]
+//! with its line and key. A statement of an OBJ or MTL file that this program cannot represent is a warning.
 
 mod camera;
 mod cursor;
@@ -35,32 +36,33 @@ use nearest::suggest;
 use std::path::Path;
 use tree::{Node, Place, Value};
 
-/// What the command line changes in a scene.
+/// Changes to a scene that the command line asks for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// `KEY=VALUE`: replaces a value of the file, as in `materials.white.reflectance=[0.7, 0.7, 0.7]`.
     pub set: Vec<String>,
     /// `MATERIAL=r,g,b`: every shape of that material emits this radiance from its front.
     pub emit: Vec<String>,
-    /// Every surface Lambertian, of one colour ([`stand_in`]).
+    /// True if every surface is replaced by a Lambertian one of one colour ([`stand_in`]).
     pub lambertian: bool,
 }
 
-/// A scene that has been read and found sound.
+/// A scene that has been read and checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
     /// The scene as plain data.
     pub description: Description,
-    /// What was left out or guessed; each worth a line on stderr.
+    /// Messages about statements that were ignored or guessed; each is printed as a line on stderr.
     pub warnings: Vec<String>,
-    /// The description as text: equal scenes have equal text whatever file they came from. Made to be hashed.
+    /// The description as text, from which the scene's hash is computed. Equal scenes have equal text, whatever file they
+    /// came from.
     pub canonical: String,
 }
 
-/// Loads a built-in scene, a `.toml` or a bare `.obj`, with overrides.
+/// Loads a built-in scene, a `.toml` file or a bare `.obj` file, and applies the options.
 ///
 /// # Errors
-/// Whatever is wrong with the name, the file, the overrides or the scene.
+/// If the name, the file, an override or the scene itself is wrong.
 ///
 /// ```
 /// use fredholm::scene::load::{Options, scene};
@@ -85,17 +87,18 @@ pub fn scene(name_or_path: &str, options: &Options) -> Result<Loaded, SceneError
     }
 }
 
-/// A scene from TOML text. `file` stands in messages, and paths in the text are relative to its folder.
+/// Loads a scene from TOML text. Messages name `file`, and paths in the text are relative to its folder.
 ///
 /// # Errors
-/// Whatever is wrong with the text, the files it names or the overrides.
+/// If the text, a file that it names or an override is wrong.
 pub fn toml(text: &str, file: &Path, options: &Options) -> Result<Loaded, SceneError> {
     let mut root = tree::parse(text, file)?;
     options.set.iter().try_for_each(|s| overrides::apply(&mut root, s))?;
     finish(toml::read(&root, file, false)?, file, options)
 }
 
-/// A bare OBJ is the scene file someone did not have to write; the camera frames what it shows.
+/// Loads an OBJ file without a scene file, as if there were a scene file with this one shape. The camera is placed so that
+/// the shape fills the frame.
 fn bare_obj(path: &Path, options: &Options) -> Result<Loaded, SceneError> {
     let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let shape = Node::table(vec![("type", Value::Text("obj".into())), ("file", Value::Text(file))]);
@@ -111,7 +114,7 @@ fn bare_obj(path: &Path, options: &Options) -> Result<Loaded, SceneError> {
     finish(toml::read(&root, path, true)?, path, options)
 }
 
-/// What reading a file yields: the scene, warnings, and hints for whoever finds it dark.
+/// Result of reading a file: the scene, warnings, and hints that are shown if no light is found.
 struct Draft {
     description: Description,
     warnings: Vec<String>,
@@ -125,7 +128,7 @@ fn finish(mut draft: Draft, file: &Path, options: &Options) -> Result<Loaded, Sc
         let names = in_use(scene);
         let lamp = names.iter().find(|n| n.to_lowercase().contains("light")).or(names.first()).copied();
         let general = format!(
-            "write `emission` on a shape, a light in [[lights]], Ke in an MTL, or pass --emit {}=1,1,1",
+            "add `emission` to a shape, a light in [[lights]] or Ke in an MTL file, or pass --emit {}=1,1,1",
             lamp.unwrap_or("MATERIAL")
         );
         let hint = draft.hints.first().unwrap_or(&general);
@@ -139,7 +142,7 @@ fn finish(mut draft: Draft, file: &Path, options: &Options) -> Result<Loaded, Sc
     Ok(Loaded { description: draft.description, warnings: draft.warnings, canonical })
 }
 
-/// Names of the materials that some shape has.
+/// Names of the materials that at least one shape uses.
 fn in_use(scene: &Description) -> Vec<&str> {
     let mut names: Vec<&str> = scene.shapes.iter().map(|s| scene.materials[s.material].name.as_str()).collect();
     names.sort_unstable();
@@ -147,7 +150,7 @@ fn in_use(scene: &Description) -> Vec<&str> {
     names
 }
 
-/// `MATERIAL=r,g,b`
+/// Applies `--emit MATERIAL=r,g,b`: all shapes of that material emit this radiance.
 fn emit(scene: &mut Description, setting: &str) -> Result<(), SceneError> {
     let fail = |what: String, help: &str| SceneError::new(what).key(format!("--emit {setting}")).help(help);
     let form = "write MATERIAL=r,g,b with radiances of at least 0, for example --emit light=17,12,4";
@@ -162,13 +165,13 @@ fn emit(scene: &mut Description, setting: &str) -> Result<(), SceneError> {
     let (shapes, materials) = (&mut scene.shapes, &scene.materials);
     let mut lit = shapes.iter_mut().filter(|s| materials[s.material].name == name).peekable();
     if lit.peek().is_none() {
-        return Err(fail(format!("no shape has a material `{name}`"), &help));
+        return Err(fail(format!("no shape uses a material `{name}`"), &help));
     }
     lit.for_each(|s| s.emission = radiance);
     Ok(())
 }
 
-/// The text of a file.
+/// The text of a UTF-8 file.
 fn read(path: &Path) -> Result<String, SceneError> {
     let bytes = bytes(path)?;
     String::from_utf8(bytes).map_err(|e| {
@@ -177,7 +180,7 @@ fn read(path: &Path) -> Result<String, SceneError> {
     })
 }
 
-/// The text of a file whose comments may be in any old encoding.
+/// The text of a file whose encoding may not be UTF-8, as in comments of old files.
 fn read_lossy(path: &Path) -> Result<String, SceneError> {
     bytes(path).map(|b| String::from_utf8_lossy(&b).trim_start_matches('\u{feff}').to_owned())
 }

@@ -1,7 +1,7 @@
-//! MTL (Wavefront Technologies, The Advanced Visualizer): what each material says, statement by statement.
+//! Parser of MTL files (Wavefront Technologies, The Advanced Visualizer): the statements about each material.
 //!
-//! What it means here is in [`mtl_surface`](super::mtl_surface). `Ka` is kept only to explain a dark scene; what else would
-//! change the picture is remembered as ignored.
+//! [`mtl_surface`](super::mtl_surface) converts them to a surface. `Ka` is kept only to explain a dark scene. Other
+//! statements that would change the image are remembered as ignored.
 
 use crate::scene::SceneError;
 use glam::DVec3;
@@ -9,22 +9,22 @@ use std::path::{Path, PathBuf};
 
 /// One statement of an OBJ or MTL file.
 pub(super) struct Statement {
-    /// 1-based line it starts on.
+    /// 1-based line on which it starts.
     pub(super) line: usize,
-    /// First word.
+    /// The first word.
     pub(super) key: String,
-    /// The rest, trimmed.
+    /// The rest of the line, trimmed.
     pub(super) rest: String,
 }
 
 impl Statement {
-    /// The words up to a comment.
+    /// The words before a comment.
     pub(super) fn words(&self) -> impl Iterator<Item = &str> {
         self.rest.split('#').next().unwrap_or("").split_whitespace()
     }
 }
 
-/// The statements of a file; a backslash at the end of a line continues it.
+/// The statements of a file. A backslash at the end of a line continues the statement on the next line.
 pub(super) fn statements(text: &str) -> Vec<Statement> {
     let mut out = Vec::new();
     let mut pending: Option<(usize, String)> = None;
@@ -53,7 +53,7 @@ fn push(out: &mut Vec<Statement>, line: usize, text: &str) {
     }
 }
 
-/// What an MTL file says of one material.
+/// The statements of an MTL file about one material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::scene) struct Entry {
     pub(super) name: String,
@@ -79,11 +79,11 @@ pub(in crate::scene) struct Entry {
     pub(super) illum: Option<u32>,
     /// `map_Kd`
     pub(super) texture: Option<Texture>,
-    /// Statements that would change the picture if they could be transported.
+    /// Statements that would change the image but are ignored.
     pub(super) ignored: Vec<String>,
 }
 
-/// A `map_Kd` and where it was said.
+/// A `map_Kd` and the place of its statement.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::scene) struct Texture {
     pub(super) path: PathBuf,
@@ -94,10 +94,10 @@ pub(in crate::scene) struct Texture {
 
 /// Statements that are read.
 const READ: [&str; 11] = ["Kd", "Ke", "Ka", "Ks", "Tf", "Ns", "Ni", "d", "Tr", "illum", "map_Kd"];
-/// Statements that would change the picture.
+/// Statements that are ignored although they would change the image.
 const IGNORED: [&str; 9] = ["map_Ke", "map_Ks", "map_Ns", "map_d", "map_Bump", "map_bump", "bump", "norm", "disp"];
 
-/// Parses MTL text; `file` is named in messages, and images are beside it.
+/// Parses MTL text. Messages name `file`, and paths of images are relative to its folder.
 pub(super) fn parse(text: &str, file: &Path) -> Result<Vec<Entry>, SceneError> {
     let mut entries: Vec<Entry> = Vec::new();
     for s in statements(text) {
@@ -114,7 +114,7 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<Vec<Entry>, SceneError> {
         }
         let Some(m) = entries.last_mut() else {
             return Err(at(
-                SceneError::new(format!("{} before the first newmtl", s.key)).help("start with newmtl NAME")
+                SceneError::new(format!("{} comes before the first newmtl", s.key)).help("start with newmtl NAME")
             ));
         };
         let key = format!("{}.{}", m.name, s.key);
@@ -123,13 +123,16 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<Vec<Entry>, SceneError> {
     Ok(entries)
 }
 
-/// One statement about the material `m`.
+/// Reads one statement about the material `m`.
 fn state(m: &mut Entry, s: &Statement, file: &Path) -> Result<(), SceneError> {
     match s.key.as_str() {
-        "Kd" => m.diffuse = Some(rgb(s, "reflectance", 1.0, "a surface returns at most what it receives: lower Kd")?),
+        "Kd" => {
+            m.diffuse =
+                Some(rgb(s, "reflectance", 1.0, "a surface cannot reflect more light than it receives: lower Kd")?)
+        }
         "Ke" => m.emission = Some(rgb(s, "emission", 1e30, "Ke is the radiance leaving the front")?),
         "Ka" => m.ambient = rgb(s, "Ka", f64::MAX, "").ok(),
-        "Ks" => m.specular = Some(rgb(s, "Ks", 1e30, "it is an albedo, at least 0")?),
+        "Ks" => m.specular = Some(rgb(s, "Ks", 1e30, "write Ks as an albedo of at least 0")?),
         "Tf" => m.filter = rgb(s, "Tf", f64::MAX, "").ok(),
         "Ns" => m.exponent = Some(number(s, f64::MAX)?),
         "Ni" => m.ior = Some(number(s, f64::MAX)?),
@@ -142,7 +145,7 @@ fn state(m: &mut Entry, s: &Statement, file: &Path) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// A number from 0 on.
+/// A number in [0, most].
 fn number(s: &Statement, most: f64) -> Result<f64, SceneError> {
     let word = s.words().find(|w| *w != "-halo");
     let x = word.and_then(|w| w.parse().ok()).filter(|x| (0.0..=most).contains(x));
@@ -151,7 +154,7 @@ fn number(s: &Statement, most: f64) -> Result<f64, SceneError> {
     x.ok_or_else(|| SceneError::new(format!("`{} {}` is not a number from 0{upper}", s.key, s.rest)).help(help))
 }
 
-/// Three numbers in [0, most]; one stands for three.
+/// Three numbers in [0, most]; a single number is used for all three.
 fn rgb(s: &Statement, name: &str, most: f64, help: &str) -> Result<DVec3, SceneError> {
     let fail = || SceneError::new(format!("`{} {}` is not a colour", s.key, s.rest)).help("write three finite numbers");
     let numbers = s.words().map(str::parse).collect::<Result<Vec<f64>, _>>().map_err(|_| fail())?;
@@ -167,7 +170,7 @@ fn rgb(s: &Statement, name: &str, most: f64, help: &str) -> Result<DVec3, SceneE
     }
 }
 
-/// Options with their number of words; of `-o`, `-s` and `-t` one to three numbers.
+/// The options of `map_Kd` with the number of words that follow each. Those with 3 take one to three numbers.
 const OPTIONS: [(&str, usize); 14] = [
     ("-blendu", 1),
     ("-blendv", 1),
@@ -185,7 +188,7 @@ const OPTIONS: [(&str, usize); 14] = [
     ("-t", 3),
 ];
 
-/// `map_Kd [options] name with spaces`
+/// Parses `map_Kd [options] name`; the name may contain spaces.
 fn texture(s: &Statement, file: &Path) -> Option<Texture> {
     let (mut rest, mut options) = (s.rest.split(" #").next().unwrap_or("").trim(), Vec::new());
     while let Some(&(_, words)) = OPTIONS.iter().find(|(o, _)| rest.split_whitespace().next() == Some(o)) {
@@ -199,7 +202,7 @@ fn texture(s: &Statement, file: &Path) -> Option<Texture> {
         }
     }
     let folder = file.parent().unwrap_or(Path::new(""));
-    // names written on Windows
+    // names written on Windows use backslashes
     let path = [rest.to_owned(), rest.replace('\\', "/")].map(|name| folder.join(name));
     let [written, slashed] = path;
     let path = if written.is_file() { written } else { slashed };

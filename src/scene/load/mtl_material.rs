@@ -1,4 +1,4 @@
-//! An MTL material as the kinds of surface see it.
+//! An MTL material, with the questions that the kinds of surface ask in order to accept it.
 
 use super::keys::{LARGEST_EXPONENT, ROUNDING, albedos, times_raster};
 use super::{image, mtl::Entry};
@@ -7,12 +7,12 @@ use crate::scene::bsdf::colour::Colour;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Albedo of what has no `Kd`.
+/// Albedo of a material without `Kd`.
 pub(super) const GREY: DVec3 = DVec3::splat(0.5);
-/// A diffuse part this much weaker than the mirror is left out.
+/// A mirror ignores its diffuse part if the ratio of `Kd` to `Ks` is at most this.
 const FAINT: f64 = 0.1;
 
-/// An MTL material as the kinds of surface see it.
+/// An MTL material that is offered to the kinds of surface.
 pub struct MtlMaterial<'a> {
     pub(in crate::scene) entry: &'a Entry,
     pub(super) placed: bool,
@@ -20,17 +20,18 @@ pub struct MtlMaterial<'a> {
 }
 
 impl MtlMaterial<'_> {
-    /// Tells what is left out or changed: `has …`, `is …`.
+    /// Adds a warning about something that is ignored or changed. The text continues "material NAME" and starts with `has`
+    /// or `is`.
     pub fn warn(&mut self, what: String) {
         (self.warn)(what);
     }
 
-    /// `illum`, 2 without.
+    /// `illum`; 2 if it is not given.
     pub fn illum(&self) -> u32 {
         self.entry.illum.unwrap_or(2)
     }
 
-    /// `Ks`, black without.
+    /// `Ks`; black if it is not given.
     pub fn specular(&self) -> DVec3 {
         self.entry.specular.unwrap_or(DVec3::ZERO)
     }
@@ -39,38 +40,40 @@ impl MtlMaterial<'_> {
         [4, 6, 7, 9].contains(&self.illum())
     }
 
-    /// Whether light passes.
+    /// Returns true if light passes through the material.
     pub fn is_glass(&self) -> bool {
         let m = self.entry;
         let opaque = m.opacity.or(m.transparency.map(|t| 1.0 - t)).is_none_or(|d| d == 1.0);
         !opaque || self.refracts() && m.ior.is_some_and(|n| n > 1.0)
     }
 
-    /// Whether it mirrors at all.
+    /// Returns true if the material has a mirror part.
     pub fn mirrors(&self) -> bool {
         (3..=9).contains(&self.illum()) && self.specular() != DVec3::ZERO
     }
 
-    /// Whether it mirrors, and hardly anything else.
+    /// Returns true if the material is a mirror with almost no other part.
     pub fn is_mirror(&self) -> bool {
         let kd = self.entry.diffuse.unwrap_or(DVec3::ZERO).max_element();
         !self.is_glass() && self.mirrors() && kd <= FAINT * self.specular().max_element()
     }
 
-    /// Why `Ks` makes no lobe; nothing where it does, or where there is none.
+    /// The reason why `Ks` does not become a lobe; `None` if it does, or if there is no `Ks`.
     pub fn lost_lobe(&self) -> Option<String> {
         if self.specular() == DVec3::ZERO {
             return None;
         }
         match self.entry.exponent {
-            _ if self.illum() < 2 => Some(format!("has Ks, which illum {} leaves out", self.illum())),
-            None => Some("has Ks but no Ns, it is diffuse".into()),
-            Some(n) if n > LARGEST_EXPONENT => Some(format!("has Ns {n}, which is too narrow a lobe: it is diffuse")),
+            _ if self.illum() < 2 => Some(format!("has Ks, which illum {} does not use", self.illum())),
+            None => Some("has Ks but no Ns, so it is rendered as diffuse".into()),
+            Some(n) if n > LARGEST_EXPONENT => {
+                Some(format!("has Ns {n}, which makes the lobe too narrow; it is rendered as diffuse"))
+            }
             Some(_) => None,
         }
     }
 
-    /// The diffuse part that a mirror loses, by name.
+    /// The names of the diffuse statements that a mirror ignores; `None` if there are none.
     pub fn base(&self) -> Option<&'static str> {
         if self.entry.texture.is_some() {
             return Some("Kd and map_Kd");
@@ -78,7 +81,7 @@ impl MtlMaterial<'_> {
         self.entry.diffuse.is_some_and(|kd| kd != DVec3::ZERO).then_some("Kd")
     }
 
-    /// The colours that clear glass loses, by name.
+    /// The names of the colours that clear glass ignores.
     pub fn tints(&self) -> Vec<&'static str> {
         let m = self.entry;
         let lost = [("Kd", m.diffuse, DVec3::ZERO), ("Tf", m.filter, DVec3::ONE)];
@@ -86,17 +89,17 @@ impl MtlMaterial<'_> {
         lost.chain(m.texture.is_some().then_some("map_Kd")).collect()
     }
 
-    /// What to divide by so that no channel returns more than it receives.
+    /// The number by which to divide the albedo so that no channel exceeds 1; warns if it is not 1.
     pub fn excess(&mut self, what: &str, albedo: DVec3) -> f64 {
         let most = albedo.max_element();
         if most <= 1.0 + ROUNDING {
             return 1.0;
         }
-        self.warn(format!("returns more than it receives, {what} {most}: divided by that"));
+        self.warn(format!("reflects more light than it receives: {what} {most}, so its colours are divided by that"));
         most
     }
 
-    /// `Kd`, or `map_Kd` times `Kd`.
+    /// The diffuse colour: `Kd`, or `map_Kd` times `Kd`.
     ///
     /// # Errors
     /// If the image cannot be read, or a texel of it is above 1.
@@ -106,23 +109,23 @@ impl MtlMaterial<'_> {
         if let Some(t) = &m.texture {
             let shown = t.path.file_name().unwrap_or_default().to_string_lossy();
             if !self.placed {
-                self.warn(format!("has map_Kd {shown} on polygons without vt, Kd is used"));
+                self.warn(format!("has map_Kd {shown}, but its polygons have no vt; Kd is used"));
             } else if !t.path.is_file() {
-                self.warn(format!("has map_Kd {shown}, which is missing, Kd is used"));
+                self.warn(format!("has map_Kd {shown}, but the file is missing; Kd is used"));
             } else if !image::is_image(&t.path) {
-                self.warn(format!("has map_Kd {shown}, which is no EXR, HDR, PNG or JPEG, Kd is used"));
+                self.warn(format!("has map_Kd {shown}, which is not an EXR, HDR, PNG or JPEG file; Kd is used"));
             } else {
                 usable = true;
             }
         }
         let Some(t) = m.texture.as_ref().filter(|_| usable) else {
             if m.diffuse.is_none() {
-                self.warn("has no Kd, it is grey 0.5".into());
+                self.warn("has no Kd; grey 0.5 is used".into());
             }
             return Ok(Colour::Uniform(m.diffuse.unwrap_or(GREY)));
         };
         if !t.options.is_empty() {
-            self.warn(format!("has map_Kd options {} ignored", t.options));
+            self.warn(format!("has map_Kd options that are ignored: {}", t.options));
         }
         let factor = m.diffuse.unwrap_or(DVec3::ONE);
         if factor == DVec3::ZERO {

@@ -1,14 +1,14 @@
-//! OBJ (Wavefront Technologies, The Advanced Visualizer, appendix B1): polygons in groups, as triangles, with what
-//! their MTL says of light.
+//! Reading of OBJ files (Wavefront Technologies, The Advanced Visualizer, appendix B1): polygons in groups, converted to
+//! triangles, with the materials and emission of their MTL files.
 //!
-//! Every statement that matters is checked first, because only there its line is known; `tobj` then resolves indices,
-//! groups and materials. Normals, lines and points do not reach it: surfaces are flat here. A fourth number of a vertex
-//! (a weight) and vertex colours are left out. A corner without `vt` gets one that is not a number, so that all
-//! corners of a file have the same form.
+//! Every statement that matters is checked first, because only at this stage its line is known. The crate `tobj` then
+//! resolves indices, groups and materials. It does not receive normals, lines and points, because surfaces are flat here. A
+//! fourth number of a vertex (a weight) and vertex colours are ignored. A corner without `vt` gets a texture coordinate that
+//! is NaN, so that all corners of a file have the same form.
 //!
-//! A polygon p₀ … pₙ becomes the fan (p₀, pᵢ, pᵢ₊₁). That is exact for convex polygons. In others some
-//! triangle turns against the polygon's normal N = Σ (pᵢ − p₀) × (pᵢ₊₁ − p₀) (M. Newell, in Sutherland, Sproull and
-//! Schumacker 1974): those are counted in a warning.
+//! A polygon p₀ … pₙ becomes the fan of triangles (p₀, pᵢ, pᵢ₊₁). This is exact for convex polygons. In a polygon that is
+//! not convex, some triangle faces against the polygon's normal N = Σ (pᵢ − p₀) × (pᵢ₊₁ − p₀) (M. Newell, in Sutherland,
+//! Sproull and Schumacker 1974). A warning gives the number of such polygons.
 
 use super::{
     mesh::flat,
@@ -32,27 +32,27 @@ pub(super) struct Piece {
     pub(super) material: usize,
     pub(super) vertices: Vec<DVec3>,
     pub(super) faces: Vec<[u32; 3]>,
-    /// Texture coordinates of the corners; empty unless every corner has them.
+    /// Texture coordinates of the corners of each face; empty unless every corner has them.
     pub(super) uvs: Vec<[DVec2; 3]>,
 }
 
-/// A two-sided surface of an OBJ.
+/// A two-sided material of an OBJ file, with its emission.
 pub(super) struct Surface {
     pub(super) name: String,
     pub(super) bsdf: BsdfDescription,
     pub(super) emission: DVec3,
 }
 
-/// An OBJ file as far as light is concerned.
+/// The content of an OBJ file that matters for light transport.
 pub(super) struct Model {
     pub(super) pieces: Vec<Piece>,
     pub(super) materials: Vec<Surface>,
     pub(super) warnings: Vec<String>,
-    /// What to do if nothing emits.
+    /// Help texts that are shown if nothing emits.
     pub(super) hints: Vec<String>,
 }
 
-/// Reads an OBJ, and its MTL files if `with_mtl`.
+/// Reads an OBJ file, and its MTL files if `with_mtl` is true.
 pub(super) fn read(path: &Path, with_mtl: bool) -> Result<Model, SceneError> {
     let list = statements(&read_lossy(path)?);
     check(&list, path)?;
@@ -66,7 +66,7 @@ pub(super) fn read(path: &Path, with_mtl: bool) -> Result<Model, SceneError> {
             .map_err(|e| SceneError::new(format!("not a valid OBJ: {e}")).file(path).help("export it again"))?;
 
     let mut model = Model { pieces: Vec::new(), materials: Vec::new(), warnings, hints: Vec::new() };
-    // a material with an image is another one where there are no texture coordinates
+    // a material with an image counts as another material on polygons without texture coordinates
     let mut numbers: HashMap<(Option<usize>, bool), usize> = HashMap::new();
     let mut flaws = Flaws::default();
     for m in models.iter().filter(|m| !m.mesh.indices.is_empty()) {
@@ -92,7 +92,7 @@ pub(super) fn read(path: &Path, with_mtl: bool) -> Result<Model, SceneError> {
         model.pieces.push(Piece { name, material, vertices, faces, uvs });
     }
     if model.pieces.is_empty() {
-        let what = if flaws.flat > 0 { "every triangle of the file is without area" } else { "the file has no faces" };
+        let what = if flaws.flat > 0 { "no triangle of the file has an area" } else { "the file has no faces" };
         return Err(SceneError::new(what).file(path).help("an OBJ scene needs polygons: f 1 2 3"));
     }
     flaws.report(path, &mut model.warnings);
@@ -103,12 +103,12 @@ fn stem(path: &Path) -> String {
     path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Every material of every MTL file the OBJ names.
+/// Every material of every MTL file that the OBJ names.
 fn library(list: &[Statement], path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Entry>, SceneError> {
     let mut entries = Vec::new();
     for s in list.iter().filter(|s| s.key == "mtllib") {
         let folder = path.parent().unwrap_or(Path::new(""));
-        // one name with spaces, or several names in which a backslash keeps a space
+        // either one name with spaces, or several names in which a backslash marks a space that belongs to a name
         let whole = folder.join(&s.rest);
         let files: Vec<PathBuf> =
             if whole.is_file() { vec![whole] } else { split_names(&s.rest).iter().map(|n| folder.join(n)).collect() };
@@ -116,7 +116,7 @@ fn library(list: &[Statement], path: &Path, warnings: &mut Vec<String>) -> Resul
         if found.is_empty() {
             let e =
                 SceneError::new(format!("cannot find the material file `{}`", s.rest)).at(path, s.line).key("mtllib");
-            return Err(e.help("put it beside the OBJ, or remove the line: everything is grey 0.5 then"));
+            return Err(e.help("put it next to the OBJ, or remove the line, so that everything is grey 0.5"));
         }
         for m in missing {
             warnings.push(format!("{}:{}: material file {} is missing", path.display(), s.line, m.display()));
@@ -133,7 +133,7 @@ fn split_names(rest: &str) -> Vec<String> {
     marked.split_whitespace().map(|n| n.replace('\0', " ")).collect()
 }
 
-/// The statements of geometry for `tobj`, the names of materials in order, and the line each is first used on.
+/// The geometry statements for `tobj`, the names of the materials in order of first use, and the line of each first use.
 fn geometry(list: &[Statement]) -> (String, Vec<String>, HashMap<String, usize>) {
     let mut names: Vec<String> = Vec::new();
     let mut first_use: HashMap<String, usize> = HashMap::new();
@@ -162,7 +162,7 @@ fn geometry(list: &[Statement]) -> (String, Vec<String>, HashMap<String, usize>)
     (text, names, first_use)
 }
 
-/// `v`, `v/vt/vn`, … as `v/vt` with a positive vt; number 1 is the one that is not a number.
+/// Rewrites `v`, `v/vt/vn`, … as `v/vt` with a positive vt. A missing vt becomes number 1, whose coordinates are NaN.
 fn corner(word: &str, seen: i64) -> String {
     let mut parts = word.split('/');
     let v = parts.next().unwrap_or("");
@@ -174,7 +174,7 @@ fn corner(word: &str, seen: i64) -> String {
     format!("{v}/{vt}")
 }
 
-/// What to make of a material name; the last definition in the MTL counts.
+/// The surface of a material name. If the MTL files define the name several times, the last definition is used.
 fn surface(
     name: Option<&str>,
     at: &str,
@@ -194,7 +194,7 @@ fn surface(
     let Some(m) = library.iter().rev().find(|m| m.name == name) else {
         let close = nearest(name, library.iter().map(|m| m.name.as_str()));
         let close = close.map_or(String::new(), |k| format!("; did you mean `{k}`?"));
-        warn(format!("is not defined, it is grey 0.5{close}"));
+        warn(format!("is not defined; grey 0.5 is used{close}"));
         return Ok(grey(name));
     };
     let bsdf = mtl_surface::surface(m, placed, &mut warn)?;
@@ -211,7 +211,7 @@ fn surface(
     Ok(Surface { name: name.to_owned(), bsdf, emission })
 }
 
-/// What fans could not represent.
+/// Numbers of triangles and polygons that the fans do not represent exactly.
 #[derive(Default)]
 struct Flaws {
     flat: usize,
@@ -221,22 +221,22 @@ struct Flaws {
 impl Flaws {
     fn report(&self, path: &Path, warnings: &mut Vec<String>) {
         if self.flat > 0 {
-            warnings.push(format!("{}: triangles without area, left out: {}", path.display(), self.flat));
+            warnings.push(format!("{}: triangles without area that are ignored: {}", path.display(), self.flat));
         }
         if self.concave > 0 {
-            let help = "their fans overlap, triangulate them in the program that made them";
+            let help = "their triangles overlap: triangulate these polygons in the program that exported them";
             warnings.push(format!("{}: polygons that are not convex: {} ({help})", path.display(), self.concave));
         }
     }
 }
 
-/// The fans of all polygons with their texture coordinates, without triangles that have no area.
+/// The triangles of all polygons with their texture coordinates, except triangles that have no area.
 fn triangles(mesh: &tobj::Mesh, vertices: &[DVec3], flaws: &mut Flaws) -> (Vec<[u32; 3]>, Vec<[DVec2; 3]>) {
     let (mut out, mut uvs) = (Vec::new(), Vec::new());
     let mut rest = mesh.indices.as_slice();
     let mut places = mesh.texcoord_indices.as_slice();
     let uv = |i: u32| DVec2::new(mesh.texcoords[2 * i as usize], mesh.texcoords[2 * i as usize + 1]);
-    // no arities at all means triangles only
+    // if there are no arities at all, every face is a triangle
     let mut arities = mesh.face_arities.iter().map(|&n| n as usize);
     while !rest.is_empty() {
         let (polygon, tail) = rest.split_at(arities.next().unwrap_or(3).min(rest.len()));

@@ -1,4 +1,4 @@
-//! What is wrong in an OBJ, with its line: numbers that are none, indices that point nowhere, faces without area to be.
+//! Checks of an OBJ file that report the line: wrong numbers, indices out of range, and faces with too few corners.
 
 use super::{
     cursor::{LARGEST_LENGTH, LARGEST_UV},
@@ -7,12 +7,12 @@ use super::{
 use crate::scene::SceneError;
 use std::path::Path;
 
-/// An index of a corner.
+/// The integer index in a corner of a face.
 pub(super) fn number_of(word: &str) -> Option<i64> {
     word.parse().ok()
 }
 
-/// Refuses the first statement that is not geometry, with its line.
+/// Returns an error for the first malformed statement, with its line.
 pub(super) fn check(list: &[Statement], path: &Path) -> Result<(), SceneError> {
     let count = |key: &str| list.iter().filter(|s| s.key == key).count() as i64;
     let (total, total_vt) = (count("v"), count("vt"));
@@ -28,8 +28,8 @@ pub(super) fn check(list: &[Statement], path: &Path) -> Result<(), SceneError> {
                 }
                 if numbers.iter().any(|x| x.is_nan() || x.abs() > LARGEST_LENGTH) {
                     return fail(
-                        format!("the vertex {} is not finite, or beyond 1e12", s.rest),
-                        "repair the exporter's numbers",
+                        format!("the vertex {} is not finite or exceeds 1e12", s.rest),
+                        "correct the numbers in the file",
                     );
                 }
             }

@@ -1,8 +1,8 @@
-//! `--set KEY=VALUE`: the parsed file with one value replaced, before anything is interpreted.
+//! Overrides `--set KEY=VALUE`: they replace one value of the parsed file before the file is interpreted.
 //!
-//! KEY is the dotted key of the error messages: `materials.white.reflectance`, `shapes[5].emission` or
-//! `shapes.5.emission`, `camera.size[0]`. VALUE is TOML; a bare word counts as a string. All but the last step of
-//! KEY must exist; whether a new last step is legal is decided where the table is read, like any other key.
+//! KEY is the dotted key of the error messages: `materials.white.reflectance`, `shapes[5].emission` or `shapes.5.emission`,
+//! `camera.size[0]`. VALUE is TOML; a bare word counts as a string. All steps of KEY except the last must exist. A new last
+//! step is added to its table, and is checked like any other key when the table is read.
 
 use super::{
     nearest::suggest,
@@ -10,7 +10,7 @@ use super::{
 };
 use crate::scene::SceneError;
 
-/// Replaces or adds one value.
+/// Replaces or adds the value of one override.
 pub(super) fn apply(root: &mut Node, setting: &str) -> Result<(), SceneError> {
     let Some((path, text)) = setting.split_once('=') else {
         let help = "write KEY=VALUE, for example --set camera.fov=40";
@@ -60,14 +60,17 @@ pub(super) fn apply(root: &mut Node, setting: &str) -> Result<(), SceneError> {
                     Some(item) => item,
                     None => {
                         return fail(
-                            format!("{place} has no [{step}], it has {count} elements"),
+                            format!("{place} has no element [{step}], only {count} elements"),
                             "indices start at 0".into(),
                         );
                     }
                 }
             }
             other => {
-                return fail(format!("{place} is {}, it has no `{step}`", other.kind()), "leave that step out".into());
+                return fail(
+                    format!("{place} is {} and has no `{step}`", other.kind()),
+                    "remove this part of the key".into(),
+                );
             }
         };
         done = match step.parse::<usize>() {
@@ -80,7 +83,7 @@ pub(super) fn apply(root: &mut Node, setting: &str) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// `shapes[5].emission` and `shapes.5.emission` both become `shapes`, `5`, `emission`.
+/// The steps of a key: `shapes[5].emission` and `shapes.5.emission` both become `shapes`, `5`, `emission`.
 fn steps(path: &str) -> Option<Vec<String>> {
     let mut steps = Vec::new();
     for part in path.split('.') {

@@ -1,12 +1,12 @@
-//! `[[shapes]]`: geometry that has area, a material that exists, and light per area or in total.
+//! Reading of `[[shapes]]`: the geometry, its material and its emission, as radiance or as total power.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | L | radiance leaving the front, W·sr⁻¹·m⁻² | `emission` |
-//! | Φ | power leaving the shape, W | `power` |
+//! | L | radiance that leaves the front, W·sr⁻¹·m⁻² | `emission` |
+//! | Φ | power that leaves the whole shape, W | `power` |
 //! | A | area of the front of the whole shape, m² | [`Primitive::area`](crate::scene::Primitive::area) |
 //!
-//! A Lambertian emitter sends Φ = L·A·∫cos θ dω = π A L, hence `L = Φ/(π A)`.
+//! A Lambertian emitter has the power Φ = L·A·∫cos θ dω = π A L, hence `L = Φ/(π A)`.
 
 use super::{
     beside,
@@ -23,7 +23,7 @@ use crate::scene::{
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// The kinds of shape with the keys of their geometry.
+/// The kinds of shape, each with the keys of its geometry.
 pub(super) const KINDS: [(&str, &[&str]); 6] = [
     ("mesh", &["vertices", "faces", "uvs", "transform"]),
     ("obj", &["file", "transform"]),
@@ -32,20 +32,20 @@ pub(super) const KINDS: [(&str, &[&str]); 6] = [
     ("sphere", &["center", "radius", "z", "inward"]),
     ("disk", &["center", "normal", "radius"]),
 ];
-/// The keys every shape may have.
+/// The keys that every shape may have.
 pub(super) const SHAPE_KEYS: [&str; 5] = ["type", "name", "material", "emission", "power"];
 
-/// What the shapes of a file amount to.
+/// The shapes of a file, with the materials and messages that OBJ files add.
 pub(super) struct Read {
     pub(super) shapes: Vec<Shape>,
     pub(super) materials: Vec<Material>,
     pub(super) warnings: Vec<String>,
     pub(super) hints: Vec<String>,
-    /// Where each shape stands, for errors that only the whole scene shows.
+    /// The place of each shape in the file, for errors that are found only in the whole scene.
     pub(super) places: Vec<SceneError>,
 }
 
-/// Reads every shape; OBJ files add their own materials behind those of the file.
+/// Reads every shape. The materials of OBJ files are added after those of the scene file.
 pub(super) fn read(list: &Cursor, materials: Vec<Material>) -> Result<Read, SceneError> {
     let mut out = Read { shapes: Vec::new(), materials, warnings: Vec::new(), hints: Vec::new(), places: Vec::new() };
     let named = out.materials.len();
@@ -82,7 +82,7 @@ fn material(c: &Cursor, materials: &[Material]) -> Result<usize, SceneError> {
     })
 }
 
-/// Refuses an image on a shape without texture coordinates.
+/// Returns an error if a material with an image is used on a shape without texture coordinates.
 fn placed(at: &Cursor, material: &Material, geometry: &Geometry, kind: &str) -> Result<(), SceneError> {
     let has_uv = match geometry {
         Geometry::Quad { .. } => true,
@@ -92,20 +92,20 @@ fn placed(at: &Cursor, material: &Material, geometry: &Geometry, kind: &str) -> 
     if has_uv || !material.bsdf.colour().is_some_and(crate::scene::description::Colour::is_texture) {
         return Ok(());
     }
-    let e = at.error(format!("material `{}` has a texture, this {kind} has no texture coordinates", material.name));
+    let e = at.error(format!("material `{}` has a texture, but this {kind} has no texture coordinates", material.name));
     Err(e.help(match kind {
         "mesh" => "add uvs = [[u, v], …] to the mesh, one pair per vertex",
         "obj" => "every corner needs a vt, as in f 1/1 2/2 3/3; or use a material with reflectance",
-        _ => "textures go on quads, meshes with uvs and obj files with vt; or use a material with reflectance",
+        _ => "use a quad, a mesh with uvs or an obj file with vt, or a material with reflectance",
     }))
 }
 
-/// Front area of a shape, m².
+/// Area of the front of a shape, m².
 fn area(geometry: &Geometry) -> f64 {
     geometry.primitives().iter().map(|p| p.area()).sum()
 }
 
-/// L from `emission`, or Φ/(π A) from `power`; nothing if neither is there.
+/// The radiance L: from `emission`, or Φ/(π A) from `power`; `None` if neither is given.
 fn emission(c: &Cursor, area: f64) -> Result<Option<DVec3>, SceneError> {
     match (c.get("emission"), c.get("power")) {
         (Some(_), Some(power)) => {
@@ -114,7 +114,8 @@ fn emission(c: &Cursor, area: f64) -> Result<Option<DVec3>, SceneError> {
         (Some(e), None) => e.light("emission").map(Some),
         (None, Some(p)) => {
             let radiance = p.light("power")? / (PI * area);
-            let large = || p.error(format!("that power makes the radiance {:.3e}", radiance.max_element()));
+            let large =
+                || p.error(format!("this power makes the radiance {:.3e}, which is too large", radiance.max_element()));
             if radiance.max_element() <= LARGEST_LIGHT {
                 Ok(Some(radiance))
             } else {
@@ -145,8 +146,8 @@ fn quad(c: &Cursor) -> Result<Geometry, SceneError> {
     };
     let (edge_u, edge_v) = (edge(&at_u)?, edge(&at_v)?);
     if edge_u.normalize().cross(edge_v.normalize()).length() <= FLAT {
-        let e = at_v.error("edge_u and edge_v are parallel, the quad has no area");
-        return Err(e.help("choose edges along two directions"));
+        let e = at_v.error("edge_u and edge_v are parallel, so the quad has no area");
+        return Err(e.help("choose edges with different directions"));
     }
     Ok(Geometry::Quad { origin, edge_u, edge_v })
 }
@@ -173,7 +174,7 @@ fn sphere(c: &Cursor) -> Result<Geometry, SceneError> {
             let [low, high] = at.pair()?;
             let help = "z = [low, high] in radii from the centre, -1 <= low < high <= 1";
             if low < -1.0 || high > 1.0 {
-                return Err(at.error(format!("the band [{low}, {high}] leaves the sphere")).help(help));
+                return Err(at.error(format!("the band [{low}, {high}] reaches beyond the sphere")).help(help));
             }
             if high - low <= FLAT {
                 return Err(at.error(format!("the band [{low}, {high}] is empty")).help(help));
@@ -207,12 +208,13 @@ fn inward(c: &Cursor) -> Result<bool, SceneError> {
     c.get("inward").map_or(Ok(false), |i| i.flag())
 }
 
-/// One shape per group and material of the file, with the MTL's materials unless the scene names one.
+/// Adds the shapes of an OBJ file: one per group and material. They have the materials of the MTL files, unless the scene
+/// names one material for all.
 fn append_obj(c: &Cursor, material: Option<usize>, out: &mut Read) -> Result<(), SceneError> {
     let at = c.require("file", "file = \"model.obj\", relative to the scene file")?;
     let path = beside(c.file, at.text()?);
     let mut model = obj::read(&path, material.is_none()).map_err(|e| match at.node.place {
-        // the file exists but is wrong: its own line says more than ours
+        // the file exists but has an error: its own line is more useful than the line that names it
         _ if e.line.is_some() || path.is_file() => e,
         Place::Program => e,
         _ => at.error(format!("cannot read `{}`", path.display())).help("paths are relative to the scene file"),
@@ -228,8 +230,8 @@ fn append_obj(c: &Cursor, material: Option<usize>, out: &mut Read) -> Result<(),
     let given = emission(c, total)?;
     if let (Some(_), None) = (given, material) {
         let at = c.get("emission").or(c.get("power")).unwrap_or(c.clone());
-        let help = "name a material for the whole file, write Ke in its MTL, or pass --emit MATERIAL=r,g,b";
-        return Err(at.error("the light of an OBJ comes from its MTL").help(help));
+        let help = "add a material for the whole file, write Ke in its MTL, or pass --emit MATERIAL=r,g,b";
+        return Err(at.error("an OBJ without `material` takes its emission from its MTL").help(help));
     }
     for p in &model.pieces {
         let (material, emission) = match material {
@@ -247,7 +249,7 @@ fn append_obj(c: &Cursor, material: Option<usize>, out: &mut Read) -> Result<(),
     Ok(())
 }
 
-/// The index of an MTL material among all materials. Equal ones of several files are one.
+/// The index of an MTL material among all materials. Equal materials of several files become one.
 fn intern(m: &obj::Surface, materials: &mut Vec<Material>) -> usize {
     let material = Material { name: m.name.clone(), bsdf: m.bsdf.clone(), sides: Sides::Both };
     materials.iter().position(|o| *o == material).unwrap_or_else(|| {

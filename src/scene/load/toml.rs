@@ -1,4 +1,4 @@
-//! The scene file as a whole: which tables there are, and the closed forms it claims.
+//! Reading of the scene file as a whole: its tables, and the closed-form values in `[expect]`.
 
 use super::{Draft, camera, cursor::Cursor, lights, materials, shapes, tree::Node};
 use crate::scene::centre::{Centred, TOO_COARSE};
@@ -9,7 +9,8 @@ use std::path::Path;
 pub(super) const ROOT_KEYS: [&str; 6] = ["name", "camera", "materials", "shapes", "lights", "expect"];
 pub(super) const EXPECT_KEYS: [&str; 3] = ["terms", "gamma", "source"];
 
-/// Reads a whole scene. A `framed` scene may leave the camera's place to the program.
+/// Reads a whole scene. With `framed`, the file may omit the camera's position, and the camera is placed so that the shapes
+/// fill the frame.
 pub(super) fn read(root: &Node, file: &Path, framed: bool) -> Result<Draft, SceneError> {
     let c = Cursor { file, key: String::new(), node: root };
     c.only(&ROOT_KEYS)?;
@@ -35,21 +36,22 @@ pub(super) fn read(root: &Node, file: &Path, framed: bool) -> Result<Draft, Scen
     Ok(Draft { description, warnings, hints })
 }
 
-/// Refuses a scene with a shape that single precision would deform.
+/// Returns an error if single precision would deform a shape too much.
 fn precise(scene: &Description, places: &[SceneError]) -> Result<(), SceneError> {
     let Centred { scene: centred, .. } = scene.centred();
     let Some(worst) = centred.coarsest(DVec3::ZERO).filter(|w| w.share() > TOO_COARSE) else { return Ok(()) };
     let name = &scene.shapes[worst.shape].name;
     let what = format!(
-        "{name} is too small for where it stands: single precision moves its points by {:.1e} m, and its least height is {:.1e} m",
+        "{name} is too small for its distance from the middle of the scene: single precision moves its points by {:.1e} m, and its smallest height is {:.1e} m",
         worst.moved, worst.height
     );
     let help =
-        "bring the scene's parts nearer together, or make this one larger: a ten-thousandth of its height is the limit";
+        "move the scene's parts closer together or enlarge this one: points may move by a ten-thousandth of its height";
     Err(SceneError { what, ..places[worst.shape].clone() }.help(help))
 }
 
-/// The name is also a folder: no separators, not `.` or `..`. Without one, the file is its name.
+/// The name of the scene, which is also the name of a folder: it has no separators and is not `.` or `..`. Without `name`,
+/// it is the name of the file.
 fn name(c: &Cursor, file: &Path) -> Result<String, SceneError> {
     let Some(at) = c.get("name") else {
         return Ok(file.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned()));
@@ -67,7 +69,7 @@ fn expect(c: &Cursor) -> Result<Expect, SceneError> {
     let at = c.require("terms", "the image means of T^k E: terms = [1, 0.5, 0.25]")?;
     let items = at.items("an array of numbers")?;
     if items.is_empty() {
-        return Err(at.error("terms is empty").help("write at least the mean of E itself"));
+        return Err(at.error("terms is empty").help("write at least the image mean of E"));
     }
     let nonnegative = |c: &Cursor| {
         let x = c.number()?;
@@ -75,7 +77,7 @@ fn expect(c: &Cursor) -> Result<Expect, SceneError> {
     };
     let terms = items.iter().map(nonnegative).collect::<Result<_, _>>()?;
     let gamma = c.get("gamma").map(|c| nonnegative(&c)).transpose()?;
-    let source = c.require("source", "where the numbers come from: source = \"…\"")?.text()?.to_owned();
+    let source = c.require("source", "the reference for the numbers: source = \"…\"")?.text()?.to_owned();
     Ok(Expect { terms, gamma, source })
 }
 

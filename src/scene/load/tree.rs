@@ -1,24 +1,24 @@
-//! A scene file as a tree of values that remember where they were said: on a line, or in an override.
+//! A scene file as a tree of values. Each value stores its place: a line of the file, or an override.
 
 use crate::scene::SceneError;
 use std::{ops::Range, path::Path};
 use toml_edit::{Document, Item, Value as Toml};
 
-/// A value and the place it was said.
+/// A value and its place.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
     pub(super) value: Value,
     pub(super) place: Place,
 }
 
-/// Where a value was said.
+/// The place where a value was given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
-    /// 1-based line of the file.
+    /// A line of the file, counted from 1.
     Line(usize),
-    /// A `--set` on the command line.
+    /// An override `--set` on the command line.
     Override,
-    /// Nowhere: the program itself put it there.
+    /// No place: the program itself created the value.
     Program,
 }
 
@@ -35,7 +35,7 @@ pub(super) enum Value {
 }
 
 impl Value {
-    /// What to call it in a message.
+    /// The name of this kind of value in messages.
     pub(super) fn kind(&self) -> &'static str {
         match self {
             Self::Table(_) => "a table",
@@ -50,7 +50,7 @@ impl Value {
 }
 
 impl Node {
-    /// The value of a key, if this is a table that has it.
+    /// The value of a key; `None` if this is not a table or the key is missing.
     pub(super) fn get(&self, key: &str) -> Option<&Node> {
         match &self.value {
             Value::Table(t) => t.iter().find(|(k, _)| k == key).map(|(_, n)| n),
@@ -58,14 +58,14 @@ impl Node {
         }
     }
 
-    /// A table made by the program.
+    /// A table created by the program.
     pub(super) fn table(entries: Vec<(&str, Value)>) -> Value {
         let node = |value| Node { value, place: Place::Program };
         Value::Table(entries.into_iter().map(|(k, v)| (k.to_owned(), node(v))).collect())
     }
 }
 
-/// Parses TOML text; `file` is only named in messages.
+/// Parses TOML text; `file` is used only in messages.
 pub(super) fn parse(text: &str, file: &Path) -> Result<Node, SceneError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let lines = Lines::of(text);
@@ -82,7 +82,7 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<Node, SceneError> {
     Ok(Node { value: Value::Table(entries), place: Place::Line(1) })
 }
 
-/// Parses the right-hand side of an override; a bare word counts as a string.
+/// Parses the right-hand side of an override. A bare word is read as a string.
 pub(super) fn parse_override(text: &str) -> Result<Node, String> {
     let mut node = match text.trim().parse::<Toml>() {
         Ok(v) => value(&v, &Lines::of(text), 1),
@@ -106,7 +106,7 @@ fn mark_override(node: &mut Node) {
     }
 }
 
-/// Byte offsets at which lines start.
+/// Byte offset of the start of each line.
 struct Lines(Vec<usize>);
 
 impl Lines {

@@ -1,25 +1,25 @@
-//! The solvers by name, and what each did step by step.
+//! The names of the solvers, and the record of their steps.
 
 use crate::math::names::named;
 use std::fmt;
 use std::str::FromStr;
 
-/// A way to solve (I − T) L = E.
+/// A method to solve (I − T) L = E.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solver {
-    /// Partial sums of the series.
+    /// Partial sums of the Neumann series.
     Neumann,
     /// Jacobi's iteration.
     Jacobi,
-    /// Gauss–Seidel.
+    /// Gauss–Seidel iteration.
     GaussSeidel,
-    /// Over-relaxation with Young's ω.
+    /// Successive over-relaxation (SOR) with Young's ω.
     Sor,
-    /// Progressive shooting.
+    /// Southwell's relaxation: progressive shooting.
     Southwell,
-    /// Chebyshev's semi-iteration with the ends found by Lanczos.
+    /// Chebyshev's semi-iteration, with the ends of the spectrum from Lanczos.
     Chebyshev,
-    /// Conjugate gradients in the weight 1/ρ.
+    /// Conjugate gradients in the inner product with weight 1/ρ.
     ConjugateGradients,
     /// GMRES without restarts.
     Gmres,
@@ -28,7 +28,7 @@ pub enum Solver {
 }
 
 impl Solver {
-    /// All of them; the direct one is last.
+    /// All solvers; the direct one is last.
     pub const ALL: [Self; 9] = [
         Self::Neumann,
         Self::Jacobi,
@@ -41,12 +41,12 @@ impl Solver {
         Self::Lu,
     ];
 
-    /// Whether it solves with stored rays: conjugate gradients need a self-adjoint T, LU a matrix.
+    /// Returns true if the solver works with stored rays. Conjugate gradients need a self-adjoint T, and LU needs a matrix.
     pub fn suits_rays(self) -> bool {
         !matches!(self, Self::ConjugateGradients | Self::Lu)
     }
 
-    /// Its name, as in tables.
+    /// The name of the solver in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Neumann => "Neumann",
@@ -63,7 +63,7 @@ impl Solver {
 }
 
 impl fmt::Display for Solver {
-    /// As it is typed.
+    /// Writes the name as it is typed on the command line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Neumann => "neumann",
@@ -86,22 +86,22 @@ impl FromStr for Solver {
     }
 }
 
-/// Which solvers are compared.
+/// The choice of solvers to compare.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solvers {
-    /// Every one.
+    /// All solvers.
     All,
-    /// This one, beside the direct solution.
+    /// This solver only; the direct solution is always added as a reference.
     One(Solver),
 }
 
 impl Solvers {
-    /// All choices.
+    /// All possible choices.
     pub fn choices() -> Vec<Self> {
         std::iter::once(Self::All).chain(Solver::ALL.map(Self::One)).collect()
     }
 
-    /// Whether this solver is one of them.
+    /// Returns true if this choice includes `solver`.
     pub fn include(self, solver: Solver) -> bool {
         self == Self::All || self == Self::One(solver)
     }
@@ -123,34 +123,34 @@ impl FromStr for Solvers {
     }
 }
 
-/// One step of a solver.
+/// The state of a solver after one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Steps so far.
+    /// Number of steps so far.
     pub step: usize,
     /// Work so far, in products with T.
     pub applications: f64,
-    /// ‖x‖_A.
+    /// ‖x‖ in the area inner product.
     pub norm: f64,
-    /// ‖E − (I − T) x‖_A.
+    /// Residual ‖E − (I − T) x‖ in the area inner product.
     pub residual: f64,
-    /// ‖x − L‖_w/‖L‖_w.
+    /// Relative error ‖x − L‖_w/‖L‖_w, with the weight w = A/ρ.
     pub error: f64,
     /// Seconds so far.
     pub seconds: f64,
 }
 
-/// What a solver did.
+/// All recorded steps of one solver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
-    /// Which one.
+    /// The solver.
     pub solver: Solver,
-    /// Its steps, the start first.
+    /// Its steps, beginning with the start.
     pub points: Vec<Point>,
 }
 
 impl History {
-    /// The first step with an error of at most `error`.
+    /// The first step whose error is at most `error`; `None` if there is none.
     pub fn reaches(&self, error: f64) -> Option<&Point> {
         self.points.iter().find(|p| p.error <= error)
     }

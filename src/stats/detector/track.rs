@@ -1,39 +1,39 @@
-//! One scalar that is watched, and what it rests on.
+//! One scalar that is compared batch by batch, and the events behind it.
 
 use crate::stats::evidence::{Evidence, Reason};
 use crate::stats::sequential::MeanSequence;
 use crate::stats::verdict::Quantity;
 use crate::terms::{Events, Functional};
 
-/// One scalar that is watched.
+/// One scalar (quantity, functional, channel) that is compared batch by batch.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
     pub(super) quantity: Quantity,
-    /// Which functional of both lists.
+    /// Index of the functional in the list of each side.
     pub(super) at: [usize; 2],
     pub(super) name: String,
     pub(super) channel: usize,
-    /// α_φ, what is left of it for the batches.
+    /// The part of α_φ that is left for the batches.
     pub(super) level: f64,
     pub(super) difference: MeanSequence,
-    /// The value on both sides.
+    /// The value on each side.
     pub(super) values: [MeanSequence; 2],
-    /// What both sides rest on.
+    /// The events behind each side.
     pub(super) events: [Counted; 2],
     /// Error of a finished second side.
     pub(super) allowance: f64,
-    /// Largest ln E_n so far where the evidence carries a verdict.
+    /// Largest ln E_n so far, over the batches at which the evidence allowed a verdict.
     pub(super) evidence: f64,
 }
 
-/// The events of all batches, from those of each: Σ x, Σ x² and Σ x⁴ add up.
+/// The events of all batches together, from those of each batch: Σ x, Σ x² and Σ x⁴ are added.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counted {
     known: bool,
     sum: f64,
     square: f64,
     fourth: f64,
-    /// k̂ of one batch is noisy, its mean over batches is not.
+    /// k̂ of one batch is noisy; its mean over batches is not.
     tail: MeanSequence,
 }
 
@@ -68,14 +68,14 @@ impl Track {
         self.difference.push(values[0] - values[1]);
         for s in 0..2 {
             self.values[s].push(values[s]);
-            // of a finished result the events have been counted once and for all
+            // the events of a finished result are counted only once
             if s == 0 || !finished || self.difference.count() == 1 {
                 self.events[s].push(self.quantity, &sides[s][self.at[s]]);
             }
         }
     }
 
-    /// Why nothing may be rejected.
+    /// Reason why nothing may be rejected.
     pub(super) fn weak(&self) -> Option<Reason> {
         self.events.iter().filter_map(Counted::events).find_map(|e| Evidence::of_events(e).no_verdict)
     }

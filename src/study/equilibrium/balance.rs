@@ -1,28 +1,29 @@
-//! Both sides of the equation at points, and what rests on some of them.
+//! Both sides of the rendering equation at single points, and the [evidence](crate::stats::evidence) behind them: how many
+//! samples contributed.
 
 use crate::scene::Vertex;
 use crate::stats::{Evidence, Measured, estimate, two_sided_p};
 use crate::terms::{Estimate, Events, TermFilm, Variance};
 use glam::DVec3;
 
-/// Both sides at one point.
+/// Both sides of L = E + T L at one point.
 #[derive(Clone, Debug)]
 pub struct Balance {
-    /// Where.
+    /// The point with its direction.
     pub at: Vertex,
-    /// E, exactly.
+    /// E, known exactly.
     pub emission: DVec3,
-    /// L.
+    /// Estimate of L.
     pub left: Estimate,
-    /// E + T L.
+    /// Estimate of E + T L.
     pub right: Estimate,
-    /// d, replicate by replicate.
+    /// The differences d = L − (E + T L), one per replicate.
     pub differences: Vec<DVec3>,
-    /// The mean of d over channels is 0; NaN where both sides have no noise.
+    /// p-value of the hypothesis that the mean of d over the channels is 0. NaN if both sides have no noise.
     pub p: f64,
-    /// The same channel by channel.
+    /// The same p-value for each channel separately.
     pub channels: [f64; 3],
-    /// Whether L by such paths has a variance.
+    /// States whether the estimator of L has finite variance.
     pub variance: Variance,
 }
 
@@ -53,19 +54,20 @@ impl Balance {
         }
     }
 
-    /// What both sides rest on.
+    /// The evidence behind both sides, combined: the weaker one decides.
     pub fn evidence(&self) -> Evidence {
         let of = |side: &Estimate| Evidence::of_events(side.events.unwrap_or(Events::equal(0.0)));
         Evidence::of_variance(self.variance).and(of(&self.left)).and(of(&self.right))
     }
 
-    /// Whether the point is judged by itself. Equal without noise is no test at all.
+    /// Returns true if the point gets its own test. Points at which both sides have no noise get none, because their
+    /// equality tests nothing.
     pub fn judged(&self) -> bool {
         self.evidence().no_verdict.is_none() && !self.p.is_nan()
     }
 }
 
-/// The events behind the mean of one side over some points.
+/// The number of equal contributions (events) that would carry the mean of one side over several points.
 fn events<'a>(sides: impl Iterator<Item = &'a Estimate>) -> Events {
     let add = |(sum, square): (f64, f64), e: &Estimate| {
         let (m, n) = (e.mean.element_sum(), e.events.map_or(0.0, |e| e.mean));
@@ -75,14 +77,14 @@ fn events<'a>(sides: impl Iterator<Item = &'a Estimate>) -> Events {
     Events::equal(if square > 0.0 { sum * sum / square } else { 0.0 })
 }
 
-/// What the mean over some points rests on.
+/// The evidence behind the mean over several points.
 pub fn evidence(balances: &[&Balance]) -> Evidence {
     let [left, right] = [events(balances.iter().map(|b| &b.left)), events(balances.iter().map(|b| &b.right))];
     let variance = balances.first().map_or(Variance::Finite, |b| b.variance);
     Evidence::of_variance(variance).and(Evidence::of_events(left)).and(Evidence::of_events(right))
 }
 
-/// The mean of d over some points, with the error of its replicates.
+/// The mean of d over several points, with the standard error from its replicates.
 pub fn aggregate(balances: &[&Balance]) -> Estimate {
     let n = balances.len() as f64;
     let replicates = balances.first().map_or(0, |b| b.differences.len());

@@ -1,59 +1,60 @@
-//! The verdict on the equation: at every point, over all points, and of the p-values among each other.
+//! The verdict on the rendering equation, from three tests: every point, the means over all points, and the distribution of
+//! the p-values.
 //!
 //! ```text
-//! Differs    a point is rejected (Holm), or a mean over points, or the p-values are not uniform: α/3 each
-//! Agrees     nothing is, and every mean over points lies within ±δ with its whole interval
+//! Differs    a point is rejected (Holm), or a mean over points is, or the p-values are not uniform: level α/3 each
+//! Agrees     none of these, and the whole interval of every mean over points lies within ±δ
 //! ```
 //!
-//! A point whose [evidence](crate::stats::evidence) will not carry a verdict is not judged by itself. It still counts in the mean over
-//! points, which rests on the events of all.
+//! A point with too little [evidence](crate::stats::evidence) is not tested separately. It still counts in the mean over all
+//! points.
 
 use super::balance::{Balance, aggregate, evidence};
 use crate::stats::{Evidence, Measured, Outcome, Uniformity, critical, holm, two_sided_p, uniformity};
 use crate::terms::Estimate;
 use glam::DVec3;
 
-/// The mean over some points.
+/// The mean over a group of points.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// `surface`, `camera`.
+    /// Name of the group: `surface` or `camera`.
     pub name: String,
-    /// How many points.
+    /// Number of points.
     pub points: usize,
-    /// Mean of T L = L − E over them: E is exact and the same on both sides.
+    /// Mean of T L = L − E over the points. E is left out because it is exact and the same on both sides.
     pub value: DVec3,
-    /// Mean of L − (E + T L).
+    /// Mean of the difference L − (E + T L).
     pub difference: Estimate,
-    /// Half width of its interval at level α; NaN where no error is known.
+    /// Half width of the interval of the difference at level α; NaN if its error is not known.
     pub half: DVec3,
-    /// What it rests on.
+    /// The evidence behind the difference.
     pub evidence: Evidence,
-    /// The smallest of its channels' p-values, for all groups and channels together.
+    /// The smallest p-value of the three channels, adjusted for all groups and channels.
     pub p: f64,
-    /// The margin.
+    /// The margin δ of agreement.
     pub delta: DVec3,
-    /// Agrees, Differs or Inconclusive.
+    /// Verdict on this group: agrees, differs or inconclusive.
     pub outcome: Outcome,
 }
 
-/// What was found.
+/// Result of all three tests.
 #[derive(Clone, Debug)]
 pub struct Judgement {
-    /// Means over points.
+    /// The groups of points with their means.
     pub groups: Vec<Group>,
-    /// Points with events enough to be judged one by one.
+    /// Number of points with enough evidence to be tested separately.
     pub judged: usize,
-    /// Points where it is rejected that both sides agree, by number in the order given.
+    /// Indices of the points at which equality of the two sides is rejected, in the order given.
     pub rejected: Vec<usize>,
-    /// The smallest p-value of a point, adjusted by Holm for all points and channels; 1 if no point is judged.
+    /// The smallest p-value of a point, adjusted by Holm for all points and channels; 1 if no point is tested.
     pub smallest: f64,
-    /// Distance of the p-values from uniform ones.
+    /// Test of the p-values against the uniform distribution.
     pub uniformity: Uniformity,
-    /// All together.
+    /// The overall verdict.
     pub outcome: Outcome,
 }
 
-/// Judges groups of points at level `alpha`; δ is `of_term` of the mean of T L over a group.
+/// Tests groups of points at level `alpha`. The margin δ of a group is `of_term` times the mean of T L over it.
 pub fn judge(groups: &[(&str, &[Balance])], alpha: f64, of_term: f64) -> Judgement {
     let third = alpha / 3.0;
     let all: Vec<&Balance> = groups.iter().flat_map(|g| g.1).collect();
@@ -85,7 +86,7 @@ pub fn judge(groups: &[(&str, &[Balance])], alpha: f64, of_term: f64) -> Judgeme
     }
 }
 
-/// A channel without any noise (black on both sides) says nothing against the equation.
+/// A channel without noise (black on both sides) gives no evidence against the equation, so that its p-value is 1.
 fn quiet(p: f64) -> f64 {
     if p.is_nan() { 1.0 } else { p }
 }

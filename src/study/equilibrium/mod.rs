@@ -1,4 +1,4 @@
-//! The rendering equation as a test: L against E + T L, at points and directions of a scene.
+//! The rendering equation as a test: compares estimates of L and of E + T L at points and directions of a scene.
 //!
 //! ```text
 //! d_r = (L − (E + T L))(x), replicate r        t = d̄ / (s_d/√R)        p = P(|T_{R−1}| ≥ |t|)
@@ -6,13 +6,14 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | x | a point with a direction: by the surface sensor, or seen by a pixel | [`points`] |
-//! | L, E + T L | estimates from independent paths | [`Balance`] |
-//! | p | no difference at this point, of the mean over channels, and of each | [`Balance::p`], [`Balance::channels`] |
+//! | x | a point with a direction: chosen by the surface sensor, or seen through a pixel | [`points`] |
+//! | L, E + T L | the two sides, estimated from independent paths | [`Balance`] |
+//! | p | p-value of "no difference at this point", for the mean over channels and for each channel | [`Balance::p`], [`Balance::channels`] |
 //! | aggregate | mean of d over all points | [`aggregate`] |
-//! | verdict | all of them together, at level α | [`judge`] |
+//! | verdict | on all points together, at level α | [`judge`] |
 //!
-//! Errors of an aggregate are those of its points, not of a choice of points: the equation holds at every one.
+//! The error of an aggregate contains only the noise at its points. It does not contain the random choice of points, because
+//! the equation must hold at every point.
 
 mod balance;
 mod judge;
@@ -30,10 +31,10 @@ use crate::progress::Progress;
 use crate::scene::{Scene, SurfaceSensor, Vertex};
 use crate::terms::TermImage;
 
-/// Replicates at every point.
+/// Replicates per point.
 pub const REPLICATES: usize = 32;
 
-/// Points as a sensor: pixel i is the i-th.
+/// A sensor with one pixel per given point.
 struct Fixed<'a>(&'a [Vertex]);
 
 impl Sensor<SceneTransport<'_>> for Fixed<'_> {
@@ -45,16 +46,16 @@ impl Sensor<SceneTransport<'_>> for Fixed<'_> {
     }
 }
 
-/// Where the points come from.
+/// Source of the random points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// Uniform on all surfaces, with cosine-distributed directions.
+    /// Points uniform on all surfaces, with cosine-distributed directions.
     Surface,
-    /// Seen by random pixels.
+    /// Points seen through random pixels of the camera.
     Camera,
 }
 
-/// `n` random points; fewer through a camera that sees almost nothing.
+/// Returns `n` random points, or fewer if most camera rays hit no surface.
 pub fn points(scene: &Scene, from: Origin, n: u32, seed: u64) -> Vec<Vertex> {
     let key = Key::new(seed, "points of equilibrium");
     let t = SceneTransport::new(scene);
@@ -73,12 +74,13 @@ pub fn points(scene: &Scene, from: Origin, n: u32, seed: u64) -> Vec<Vertex> {
     (0..64 * n).filter_map(one).take(n as usize).collect()
 }
 
-/// How both sides are estimated, and by what factor the step is wrong (1: not at all).
+/// The estimator of both sides. `factor` multiplies the weight of the step in E + T L; 1 leaves the equation correct, any
+/// other value breaks it on purpose.
 fn estimator(settings: &Settings, factor: f32) -> Equilibrium {
     Equilibrium { plan: Plan { roulette: settings.path_roulette.clone(), ..settings.plan() }, factor }
 }
 
-/// Both sides at given points, `settings.spp` samples each.
+/// Estimates both sides at the given points, with `settings.spp` samples each.
 pub fn at_points(
     scene: &Scene,
     at: &[Vertex],
@@ -96,7 +98,7 @@ pub fn at_points(
     at.iter().enumerate().map(balance).collect()
 }
 
-/// Both sides through the camera: images of L and of E + T L.
+/// Estimates both sides through the camera: returns the image of L and the image of E + T L.
 pub fn through_camera(scene: &Scene, settings: &Settings, factor: f32, progress: Progress<'_>) -> [TermImage; 2] {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let replicates = REPLICATES.min(settings.spp as usize);
