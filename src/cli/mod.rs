@@ -1,7 +1,7 @@
 //! Commands: each folder or file parses its own arguments, calls the library and reports.
 //!
 //! ```text
-//! base ← options, open, output, progress, preflight, notes, write ← session ← commands ← here
+//! base ← options, open, output, progress, preflight, notes, answer, write ← session ← commands ← here
 //! ```
 //!
 //! Results go to stdout, progress and errors to stderr. Exit codes: 0 ok, 1 a comparison failed, 2 usage, 3 scene or file,
@@ -9,6 +9,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 #![allow(unreachable_pub)] // in a binary `pub` reaches no further than `pub(crate)` and reads better
 
+mod answer;
 mod base;
 mod chapter;
 mod check;

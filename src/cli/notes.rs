@@ -1,4 +1,4 @@
-//! What a run says beside its tables: the judgement, facts about the matrix and the decay, warnings.
+//! Sentences that stand beside the tables of a run: its verdict, facts about the matrix and the decay, warnings.
 
 use fredholm::engine::by_matrix::{Discrete, Unlit};
 use fredholm::engine::by_rays::Estimator;
@@ -9,32 +9,37 @@ use fredholm::estimator::Roulette;
 use fredholm::guide::warp::CELLS;
 use fredholm::report::figures::extrapolation::{self, Measured};
 use fredholm::report::figures::refine::limit_words;
+use fredholm::report::text::grid::Grid;
+use fredholm::report::text::number::{average, plus_minus, significant};
 use fredholm::scene::{Description, bsdf};
 use fredholm::stats::evidence::{JUDGED, SHOWN};
 use fredholm::stats::{self, Comparison, Evidence};
 use fredholm::study::run::Run;
-use fredholm::terms::Series;
 use fredholm::terms::functional::Replicates;
+use fredholm::terms::{Estimate, Series};
 use glam::DVec3;
 use nalgebra::DMatrix;
 
-/// One line: the outcome, and what would decide.
+/// The outcome of a comparison in one line, and what would decide it if it is open.
 pub fn judgement(c: &Comparison) -> String {
     if let Some(why) = &c.undecided {
         return undecided(why);
     }
     match c.outcome {
         stats::Outcome::Agrees => {
-            format!("Agrees: every difference is proved smaller than δ ({} comparisons share α).", c.family)
+            format!(
+                "Agrees: every difference is proved to be smaller than δ (one of {} comparisons may fail with probability α).",
+                c.family
+            )
         }
-        stats::Outcome::Differs => format!("Differs: at least one of {} comparisons is rejected.", c.family),
+        stats::Outcome::Differs => format!("Differs: at least one of {} comparisons shows a difference.", c.family),
         stats::Outcome::Inconclusive => {
             let reason = c.rows.iter().find_map(|r| r.reason.as_deref());
             let factor = c.rows.iter().filter_map(|r| r.needed_factor).fold(0.0, f64::max);
             match reason {
                 Some(reason) => format!("Inconclusive: {reason}."),
                 None if factor > 0.0 => format!(
-                    "Inconclusive: the noise hides differences of the size of δ; {factor:.1} times the samples will decide."
+                    "Inconclusive: the noise hides differences as large as δ; {factor:.1} times the samples will decide."
                 ),
                 None => "Inconclusive: the results have nothing in common to compare.".into(),
             }
@@ -42,14 +47,14 @@ pub fn judgement(c: &Comparison) -> String {
     }
 }
 
-/// No verdict, and what to do about it.
+/// Why there is no verdict, and what to do about it.
 pub fn undecided(why: &str) -> String {
     format!(
-        "Undecided: {why}.\nNothing says which of them is seen: move one by a thousandth of the scene, or take it away."
+        "No verdict: {why}, so the image is undefined there.\nMove one of them by a thousandth of the size of the scene, or remove it."
     )
 }
 
-/// What is printed about the matrix on every run.
+/// Facts about the matrix: row sums, reciprocity, residual, spectral radius, mesh error, norms, areas.
 pub fn matrix_facts(r: &Discrete) -> String {
     let m = &r.matrix;
     let i = &m.invariants;
@@ -63,9 +68,9 @@ pub fn matrix_facts(r: &Discrete) -> String {
     };
     let d = (r.fine.series.image().total.mean - r.coarse.series.image().total.mean).abs();
     let mut out = format!(
-        "F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4}, {reciprocity}\n\
+        "The matrix. Form factors F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4}, {reciprocity}\n\
          residual of the solve {:.1e}; spectral radius ({rho})\n{}\
-         |R_h − R_2h| of the image mean {:.1e}",
+         change of the image mean from the coarser mesh, |R_h − R_2h|: {:.1e}",
         i.row_sum_min,
         i.row_sum_max,
         i.smallest,
@@ -79,7 +84,7 @@ pub fn matrix_facts(r: &Discrete) -> String {
     }
     if let Some(norms) = &m.norms {
         let norms = norms.each_ref().map(|(one, inf)| format!("{one:.4}/{inf:.4}")).join(", ");
-        out += &format!("\n‖T_h‖₁/‖T_h‖∞ per channel {norms}");
+        out += &format!("\n‖T_h‖₁/‖T_h‖∞ in red, green, blue: {norms}");
     }
     let p = m.radiosity.patches();
     out += &format!(
@@ -89,28 +94,31 @@ pub fn matrix_facts(r: &Discrete) -> String {
         if m.sampling.is_some() { "rays" } else { "visibility rays" },
         m.radiosity.rays()
     );
-    out += "\nT¹ through the camera reads E itself: it tests no matrix";
+    out += "\nThe matrix enters the picture from k = 2 on: the picture of T¹ E gathers E itself.";
     out
 }
 
-/// What stored rays are worth.
+/// The accuracy of stored rays.
 fn sampling(s: &SampledRows) -> String {
     let mut out = format!(
-        "{} rays a row: relative L² error bar of L − E over the patches {:.1e}; {} steps",
+        "{} rays per patch: relative L² error of L − E over the patches {:.1e}; {} steps of the solver",
         s.per_row,
         s.noise.element_sum() / 3.0,
         s.steps
     );
     if s.checks.lost > 0.0 {
-        out += &format!("\n{:.1e} of the rays met a surface where no patch is, and count as lost", s.checks.lost);
+        out += &format!(
+            "\nA fraction {:.1e} of the rays hit a surface where there is no patch; their light is lost.",
+            s.checks.lost
+        );
     }
     out
 }
 
-/// How far stored rays are from the matrix.
+/// The difference between stored rays and the matrix on the same patches.
 pub fn difference(d: &Difference) -> String {
     format!(
-        "stored rays on the same patches: L − E differs by {:.1e} (relative L²)\n\
+        "Stored rays on the same patches: L − E differs from the matrix by {:.1e} (relative L²);\n\
          their spectral radius ({})\n{}",
         d.of_u.element_sum() / 3.0,
         d.spectral.each_ref().map(|s| format!("{:.5}", s.radius)).join(", "),
@@ -118,11 +126,11 @@ pub fn difference(d: &Difference) -> String {
     )
 }
 
-/// What is printed about a guide.
+/// The line that describes the guide: its number of patches and rays, and the seconds of its preparation.
 pub fn guide(g: &Prepared) -> String {
     let r = g.recipe;
     format!(
-        "guide: radiosity of {} patches, {} rays each, in {:.2} s; {:.0} % of the directions by the cosine",
+        "guide: radiosity of {} patches with {} rays each, prepared in {:.2} s; {:.0} % of the directions follow the cosine alone",
         g.guide.len(),
         r.fineness.rays * CELLS * CELLS,
         g.time.as_secs_f64(),
@@ -130,15 +138,15 @@ pub fn guide(g: &Prepared) -> String {
     )
 }
 
-/// What is printed about the decay.
+/// The observed rate of the surface norm, averaged over the channels, and its guaranteed bound.
 pub fn decay_facts(run: &Run) -> Option<String> {
     Some(match run.observed_rate()? {
         Ok(f) => {
-            // two terms fit any line: there is nothing to test
-            let p = if f.p.is_finite() { format!("p = {:.2}", f.p) } else { "two terms: no p".into() };
+            // a line through two terms always fits, so there is no p value
+            let p = if f.p.is_finite() { format!("p = {:.2}", f.p) } else { "two terms, so no p".into() };
             let (first, last) = (f.window.start, f.window.end - 1);
             format!(
-                "observed rate of the surface norm {:.4} ± {:.4} (k = {first} to {last}, {p})\nguaranteed: ‖T‖₁ ≤ {:.4}",
+                "observed rate of the surface norm, mean of the channels: {:.4} ± {:.4} (k = {first} to {last}, {p})\nguaranteed: ‖T‖₁ ≤ {:.4}",
                 f.rate,
                 f.std_error,
                 run.guaranteed_rate().max_element()
@@ -148,18 +156,17 @@ pub fn decay_facts(run: &Run) -> Option<String> {
     })
 }
 
-/// What the first half of the terms says about the whole, in the slowest channel.
+/// Extrapolation of the whole from the first half of the terms, in the channel in which they fall most slowly.
 pub fn extrapolated(run: &Run) -> Option<String> {
     let last = run.settings.max_bounces / 2 + 1;
-    // two terms are too few for what is shown, and without a tail there is no whole
-    // and where the tail has no error bar, nothing is known of how far off anything is
+    // two terms are too few to extrapolate; without a tail, or without its error, there is nothing to compare with
     let doubted = run.terms.iter().any(|t| t.series.variance != fredholm::terms::Variance::Finite);
     if last < 3 || run.surface.is_empty() || doubted || !run.settings.roulette.ends() {
         return None;
     }
     let rests = |r: &Replicates| (1..=last).find_map(|k| Some((k, Evidence::of(&r.estimate(k..k + 1)).no_error?)));
     if let Some((k, why)) = run.surface.iter().find_map(|(_, r)| rests(r)) {
-        return Some(format!("no extrapolation from the surface means of the terms: of k = {k}, {why}"));
+        return Some(format!("The terms are not extrapolated, because the mean of T{k} has no error: {why}."));
     }
     let radii = run.radiosity.as_ref().map(|r| r.matrix.spectral.each_ref().map(|s| s.radius));
     let by = radii.unwrap_or(run.scene.max_albedo().as_dvec3().to_array());
@@ -175,45 +182,61 @@ pub fn extrapolated(run: &Run) -> Option<String> {
     };
     let measured: Vec<Measured> = run.surface.iter().map(measured).collect();
     let rate = radii.map_or(f64::NAN, |r| r[slowest]);
-    let note = if rate.is_nan() { "" } else { "; the known rate is r(T)" };
+    let note = if rate.is_nan() { "" } else { "; the known rate is the spectral radius" };
     Some(format!(
-        "L − E from its terms k = 1 to {last}: mean over all surfaces, {}, in units of L − E as measured;\n\
-         noise: standard error; gain: how much noisier than the sum of these terms{note}\n{}",
+        "Extrapolation of L − E from its terms k = 1 to {last} (mean over all surfaces, {}, relative to the measured L − E).\n\
+         off: error; noise: standard error; gain: noise relative to the plain sum{note}.\n{}",
         fredholm::math::CHANNELS[slowest],
         extrapolation::table(&measured, rate)
     ))
 }
 
-/// The fitted order of convergence of the radiosity, from three meshes.
-pub fn orders(run: &Run) -> Option<String> {
-    let whole = run.order(None)?;
-    let order = |order: f64| if order.is_finite() { format!("{order:.1}") } else { "–".into() };
-    let terms = run.meshes.last()?.image().terms.len();
-    let per_term = (2..terms).filter_map(|k| Some(format!("T{k} {}", order(run.order(Some(k))?))));
-    Some(format!(
-        "order of convergence in h, from {}: whole image {}\n{}",
-        run.meshes.iter().map(|m| m.label.split(' ').nth(1).unwrap_or("?")).collect::<Vec<_>>().join(", "),
-        order(whole),
-        per_term.collect::<Vec<_>>().join(", ")
-    ))
+/// The order of convergence of the radiosity, term by term, with the change on the finest mesh.
+pub fn orders(run: &Run) -> Option<Grid> {
+    let (whole, _) = run.order(None)?;
+    let sizes =
+        run.meshes.iter().map(|m| m.series.label.split(' ').nth(1).unwrap_or("?")).collect::<Vec<_>>().join(", ");
+    let sentence = format!(
+        "How fast does the matrix converge? Change of the picture from the second mesh to the\n\
+         finest, and the order p in error ~ h^p, from {sizes} patches."
+    );
+    let mut grid = Grid::new(sentence, ["k", "mean", "change", "order"]);
+    let image = run.meshes.last()?.series.image();
+    let mut row = |name: String, mean: &Estimate, k: Option<usize>| {
+        let change = run.last_change(k).map_or_else(String::new, |c| significant(c, 2));
+        let order = run.order(k).filter(|o| o.0.is_finite());
+        let order = order.map_or("–".into(), |(order, error)| match error {
+            // an order whose error is as large as itself is none
+            e if e.is_nan() || e > order.abs() => "not resolved".into(),
+            e => plus_minus(order, e, 1),
+        });
+        grid.push([name, significant(average(mean).0, 4), change, order]);
+    };
+    for (k, term) in image.terms.iter().enumerate().skip(2) {
+        row(k.to_string(), term, Some(k));
+    }
+    if whole.is_finite() {
+        row("all".into(), &image.total, None);
+    }
+    Some(grid)
 }
 
-/// What the samples of some results cannot know, where too few events are to be expected for a verdict.
+/// For each result whose estimator finds some light only by chance: what that light is, and how often it is expected.
 pub fn doubts<'a>(results: impl Iterator<Item = &'a Series>) -> Vec<String> {
     let of = |s: &'a Series| {
         let thin = s.doubts.iter().filter(|d| s.expected(d) < JUDGED).map(|d| (d, s.expected(d)));
         let worst = thin.min_by(|a, b| a.1.total_cmp(&b.1))?;
         let (what, from) = (&worst.0.what, worst.0.from);
         Some(format!(
-            "{}: met only by chance: {what};\n\
-             {:.1} such events are to be expected: no verdict below {JUDGED}, no ± below {SHOWN}, from k = {from} on",
+            "{}: this estimator finds some light only by chance ({what}).\n\
+             {:.1} such hits are expected from k = {from} on; a ± needs {SHOWN}, a verdict {JUDGED}",
             s.label, worst.1
         ))
     };
     results.filter_map(of).collect()
 }
 
-/// Where a whole picture is black: that nothing was found, and what there is to be seen.
+/// If the whole picture is black: how many paths found no light, and what the camera sees.
 pub fn black(run: &Run) -> Option<String> {
     let mut all = run.sampled().peekable();
     all.peek()?;
@@ -230,10 +253,10 @@ pub fn black(run: &Run) -> Option<String> {
     let far: Vec<f64> = (0..pixels).filter_map(look).map(|v| v.p.as_dvec3().distance(camera.origin)).collect();
     let (near, far_off) = far.iter().fold((f64::INFINITY, 0.0f64), |a, &d| (a.0.min(d), a.1.max(d)));
     let seen = match far.len() {
-        0 => "nothing: its rays leave the scene".to_owned(),
-        n => format!("surfaces that send no light, {near:.3} to {far_off:.3} m away, in {n} of {pixels} pixels"),
+        0 => "no surface: all its rays leave the scene".to_owned(),
+        n => format!("unlit surfaces, {near:.3} to {far_off:.3} m away, in {n} of {pixels} pixels"),
     };
-    Some(format!("every pixel is black: none of {paths} paths found any light. The camera sees\n{seen}"))
+    Some(format!("every pixel is black: none of {paths} paths found any light.\nThe camera sees {seen}"))
 }
 
 /// A warning for each result with samples that are not finite.
@@ -243,36 +266,52 @@ pub fn not_finite(all: &[Series]) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// What the reader must know before trusting an error bar.
+/// Everything that a reader must know before trusting an error bar.
 pub fn warnings(run: &Run) -> Vec<String> {
     let mut out = vec![];
     out.extend(black(run));
     out.extend(doubts(run.sampled().map(|s| &s.series)));
     for s in run.results().filter(|s| s.series.cost.non_finite > 0) {
         out.push(format!(
-            "{}: {} samples were not finite; they are left in the sums",
+            "{}: {} samples were infinite or not a number; the sums contain them",
             s.series.label, s.series.cost.non_finite
         ));
     }
     if let Some(r) = run.radiosity.as_ref().filter(|r| r.matrix.invariants.row_sum_max > 1.01) {
         out.push(format!(
-            "the mesh is too coarse: a row of F sums to {:.3}, and no more than 1 can leave a patch;\nraise --patches",
+            "the mesh is too coarse: the form factors of one patch add up to {:.3} instead of at most 1;\nraise --patches",
             r.matrix.invariants.row_sum_max
         ));
     }
+    out.extend(preparation(run));
     out.extend(variances(run));
     out
 }
 
-/// What has no error bar because its variance is infinite or not known, and what would have one.
+/// With `--guide` and `--time`: says so if preparing the guide took most of the time.
+fn preparation(run: &Run) -> Option<String> {
+    let (guide, time) = (run.guide.as_ref()?, run.settings.time?);
+    let (spent, given) = (guide.time.as_secs_f64(), time.as_secs_f64());
+    if spent < 0.5 * given {
+        return None;
+    }
+    let part = if spent >= given { "all".into() } else { format!("{:.0} %", 100.0 * spent / given) };
+    Some(format!(
+        "preparing the guide took {spent:.1} s, {part} of the {given:.1} s for the samples, so only {} samples per pixel were\n\
+         rendered; give more --time, or a smaller guide with --patches",
+        run.spp()
+    ))
+}
+
+/// The results without an error bar, because their variance is infinite or not known, and a setting that gives one.
 fn variances(run: &Run) -> Vec<String> {
     let s = &run.settings;
     let safe = if run.guide.is_some() {
-        "leave --guide out"
+        "render without --guide"
     } else if growth::proved(&run.scene, s.sampling, &Roulette::Albedo { from: 0 }) {
-        "--roulette albedo is safe"
+        "use --roulette albedo, whose variance is finite here"
     } else if s.sampling == bsdf::Sampling::Uniform {
-        "leave --sampling uniform out"
+        "render without --sampling uniform"
     } else {
         "try --roulette albedo"
     };
@@ -281,11 +320,11 @@ fn variances(run: &Run) -> Vec<String> {
     let mut out: Vec<String> = vec![];
     for (who, roulette, result) in terms.chain(path) {
         if let Some(what) = result.doubt.and_then(|d| d.doubt()) {
-            let words = format!("{who} under roulette {roulette} {what},\nand no ± stands beside it; {safe}");
+            let words = format!("{who} under roulette {roulette} {what},\nso it has no ±; {safe}");
             out.extend((!out.contains(&words)).then_some(words));
         }
     }
-    // the matrix, or a bound, speaks where nothing was measured: of what it proves, and of the error of an error bar
+    // where nothing was measured, the matrix or a bound tells whether the variance of the path tracer, and of its error, is finite
     if let (Some(r), true) = (run.radii, run.path.as_ref().is_some_and(|p| p.doubt.is_none())) {
         let proved = !r.bounds || r.second < 1.0;
         out.extend(
@@ -297,7 +336,7 @@ fn variances(run: &Run) -> Vec<String> {
     out
 }
 
-/// Sides that light never reaches, in words, by shape; nothing if there are none.
+/// The sides of surfaces that light never reaches, by shape; nothing if there are none.
 pub fn unlit(found: &[Unlit], description: &Description) -> Option<String> {
     let owner: Vec<usize> = description.primitives().iter().map(|(shape, _)| *shape).collect();
     let mut shapes: Vec<(String, [bool; 3], usize)> = vec![];
@@ -316,10 +355,14 @@ pub fn unlit(found: &[Unlit], description: &Description) -> Option<String> {
     let sides = found.len();
     let list: Vec<String> = shapes.iter().take(SHAPES).map(words).collect();
     let more = if shapes.len() > SHAPES { format!(", … {} shapes in all", shapes.len()) } else { String::new() };
-    let (s, are) = if sides == 1 { ("", "is") } else { ("s", "are") };
-    (sides > 0)
-        .then(|| format!("{sides} side{s} {are} never reached by light and left out of T: {}{more}", list.join(", ")))
+    let (s, them) = if sides == 1 { ("", "it") } else { ("s", "them") };
+    (sides > 0).then(|| {
+        format!(
+            "Light never reaches {sides} side{s} of the surfaces, so T leaves {them} out: {}{more}",
+            list.join(", ")
+        )
+    })
 }
 
-/// Shapes that are listed by name.
+/// Shapes that are listed by name at most.
 const SHAPES: usize = 6;

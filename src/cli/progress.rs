@@ -14,7 +14,7 @@ pub fn stop_flag() -> &'static AtomicBool {
     FLAG.get_or_init(|| {
         let flag = Arc::new(AtomicBool::new(false));
         let set = Arc::clone(&flag);
-        // without a handler Ctrl-C simply ends the program, which is a fair second best
+        // without a handler Ctrl-C ends the program at once, without saving
         let _ = ctrlc::set_handler(move || {
             if set.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
@@ -36,7 +36,7 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// `preview` is shown the film after every complete pass.
+    /// A bar that also calls `preview` with the film after every complete pass.
     pub fn new(quiet: bool, preview: impl Fn(&fredholm::terms::TermFilm) + Sync + Send + 'static) -> Self {
         Self {
             quiet,
@@ -48,17 +48,17 @@ impl Bar {
         }
     }
 
-    /// Without a preview.
+    /// A bar without a preview.
     pub fn plain(quiet: bool) -> Self {
         Self::new(quiet, |_| ())
     }
 
-    /// What the library is given: work that this bar shows, and that Ctrl-C ends.
+    /// The progress value for library calls: it moves this bar, and Ctrl-C stops it.
     pub fn progress(&self) -> Progress<'_> {
         Progress::to(self).stopped_by(stop_flag())
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish(&self) {
         if let Some(bar) = lock(&self.bar).take() {
             bar.finish_and_clear();

@@ -1,5 +1,5 @@
-//! What every command does alike: threads and scene, the output folder, progress and Ctrl-C, and at the end the record, as
-//! text or as JSON.
+//! The steps that all commands share: threads, scene, output folder, progress and Ctrl-C, and at the end the record of the run,
+//! printed as text or as JSON.
 //!
 //! ```text
 //! new → open → make_folder → progress … → sign → show → ending
@@ -18,19 +18,19 @@ use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// A command at work.
+/// A running command: its options, its output folder, its progress bar, its record.
 pub struct Session {
-    /// Where its results go, once [made](Session::make_folder).
+    /// The output folder, once it is [made](Session::make_folder).
     pub folder: PathBuf,
     manner: Manner,
     started: Instant,
     bar: Bar,
-    /// What its record says in any case.
+    /// The part of the record that is known from the start.
     record: Summary,
 }
 
 impl Session {
-    /// Begins: sets the number of threads.
+    /// Starts a command and sets the number of threads.
     pub fn new(manner: impl Into<Manner>, seed: u64) -> Result<Self, Failure> {
         let (manner, started) = (manner.into(), Instant::now());
         if let Some(n) = manner.threads {
@@ -40,7 +40,7 @@ impl Session {
         Ok(Self { folder: PathBuf::new(), bar: Bar::plain(manner.quiet), manner, started, record })
     }
 
-    /// The scene of that name, changed by the options; warnings go to stderr.
+    /// Loads the scene of that name and applies the options that change it. Warnings go to stderr.
     pub fn open(&mut self, name: &str, changes: &Changes, size: Option<[u32; 2]>) -> Result<Opened, Failure> {
         let opened = open::scene(name, changes, size)?;
         self.about(&opened.description.name, &opened.hash);
@@ -49,59 +49,59 @@ impl Session {
         Ok(opened)
     }
 
-    /// What the record says of the scene.
+    /// Sets the name and the hash of the scene in the record.
     pub fn about(&mut self, scene: &str, hash: &str) {
         (self.record.scene, self.record.scene_hash) = (scene.into(), hash.into());
     }
 
-    /// Width and height in the record; a matrix has one pixel for every patch, in one row.
+    /// Sets width and height in the record. A result on a matrix has one row with one pixel for each patch.
     pub fn sized(&mut self, [w, h]: [u32; 2]) {
         (self.record.width, self.record.height) = (w as usize, h as usize);
     }
 
-    /// Makes the output folder: `-o`, or one of that name.
+    /// Makes the output folder: the one of `-o`, or else one of that name in `fredholm-out`.
     pub fn make_folder(&mut self, name: &str) -> Result<(), Failure> {
         let Manner { out, force, .. } = &self.manner;
         self.folder = output::folder(out.as_deref(), name, self.command(), *force)?;
         Ok(())
     }
 
-    /// The film is shown after every complete pass.
+    /// Calls `show` with the film after every complete pass.
     pub fn preview(&mut self, show: impl Fn(&TermFilm) + Sync + Send + 'static) {
         self.bar = Bar::new(self.manner.quiet, show);
     }
 
-    /// The command, as anyone would type it again.
+    /// The command line that makes the result again.
     pub fn command(&self) -> &str {
         &self.record.command
     }
 
-    /// What the library is given: work that is shown, and that Ctrl-C ends.
+    /// The progress value for library calls: it moves the progress bar, and Ctrl-C stops it.
     pub fn progress(&self) -> Progress<'_> {
         self.bar.progress()
     }
 
-    /// Whether Ctrl-C was pressed.
+    /// Returns true if Ctrl-C was pressed.
     pub fn stopped(&self) -> bool {
         self.progress().stopped()
     }
 
-    /// Whether no progress is to be shown.
+    /// Returns true if no progress is to be shown.
     pub fn quiet(&self) -> bool {
         self.manner.quiet
     }
 
-    /// When it began.
+    /// The time at which the command started.
     pub fn since(&self) -> Instant {
         self.started
     }
 
-    /// Takes the progress bar away, before something is printed.
+    /// Removes the progress bar before something is printed.
     pub fn clear(&self) {
         self.bar.finish();
     }
 
-    /// Interrupted before anything was found.
+    /// Ends an interrupted command that has no result yet, and says why.
     pub fn nothing_to_save(&self, why: &str) -> Ending {
         self.clear();
         note(&format!("nothing to save yet{why}"));
@@ -109,23 +109,23 @@ impl Session {
         Ending::Interrupted
     }
 
-    /// Leaves no folder behind, if it is empty.
+    /// Removes the output folder if it is empty.
     pub fn abandon(&self) {
         let _ = std::fs::remove_dir(&self.folder);
     }
 
-    /// What stands below every picture.
+    /// The caption below every picture: command, seed and scene.
     pub fn caption(&self) -> Caption {
         let Summary { command, seed, scene, .. } = &self.record;
         Caption { command: command.clone(), seed: *seed, scene: scene.clone() }
     }
 
-    /// What every record says: command, scene, seed, threads, seconds, size.
+    /// The common part of every record: command, scene, seed, threads, seconds, size.
     pub fn record(&self) -> Summary {
         Summary { seconds: self.started.elapsed().as_secs_f64(), ..self.record.clone() }
     }
 
-    /// Writes the record that owns the folder, and removes what the last run left and this one did not write.
+    /// Writes `summary.json`, and removes the files of the previous run that this run did not replace.
     pub fn sign(&self, record: &Summary) -> Result<(), Failure> {
         self.clear();
         let old = output::left_by_the_last_run(&self.folder);
@@ -134,13 +134,13 @@ impl Session {
         Ok(())
     }
 
-    /// Prints a result, for programs or for people.
+    /// Prints a result: with `--json` the value `machine`, otherwise the text `people`.
     pub fn show(&self, machine: &impl Serialize, people: impl FnOnce() -> String) -> Result<(), Failure> {
         self.clear();
         if self.manner.json { print(&serde_json::to_string_pretty(machine)?) } else { print(&people()) }
     }
 
-    /// Warnings for those who read JSON; text has them in its place.
+    /// With `--json`, prints warnings to stderr. In text they are part of the result.
     pub fn warn(&self, warnings: &[String]) {
         if self.manner.json {
             warnings.iter().for_each(|w| note(&format!("warning: {w}")));
@@ -153,7 +153,7 @@ impl Session {
         self.text_ending(answer, tables, details, &self.written(files))
     }
 
-    /// The same with a last line of its own.
+    /// The same as [`text`](Self::text), with another last line.
     pub fn text_ending(&self, answer: &str, tables: &[String], details: &[String], last: &str) -> String {
         let verbose = self.manner.verbose;
         let more = if verbose || details.iter().all(String::is_empty) { "" } else { "; more numbers: --verbose" };
@@ -164,12 +164,12 @@ impl Session {
         paragraphs(&blocks)
     }
 
-    /// Where which files are.
+    /// The last line of a result: the folder and the names of its files.
     pub fn written(&self, files: &[String]) -> String {
         format!("written to {}: {}", self.folder.display(), files.join(", "))
     }
 
-    /// How it ends.
+    /// The ending of the command: interrupted, failed or well.
     pub fn ending(&self, failed: bool) -> Ending {
         match (self.stopped(), failed) {
             (true, _) => Ending::Interrupted,

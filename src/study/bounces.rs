@@ -40,7 +40,7 @@ const REPLICATES: u32 = 64;
 /// Pixels of the sensors. Each sees everything, so their number changes only the parallelism.
 const PIXELS: u32 = 64;
 /// Paths of each sensor at most.
-const MOST_PATHS: u32 = 1 << 19;
+const MOST_PATHS: u32 = 1 << 20;
 /// Standard errors between which the remainder is called equal to ε.
 const SURE: f64 = 3.0;
 

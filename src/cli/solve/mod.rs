@@ -1,4 +1,4 @@
-//! `tour`, `series`, `render`, `radiosity`: load, solve in the worlds asked for, compare, write, print.
+//! The commands `tour`, `series`, `render` and `radiosity`: load a scene, solve it, compare the results, write and print them.
 
 mod args;
 mod text;
@@ -17,7 +17,7 @@ use fredholm::study::roulette::Schedule;
 use fredholm::study::run::{Asked, Run};
 use fredholm::terms::World;
 
-/// What a command computes unless told otherwise.
+/// The defaults of a command.
 struct Default {
     worlds: &'static [World],
     both_estimators: bool,
@@ -25,11 +25,11 @@ struct Default {
     roulette: Roulette,
     patches: u32,
     export: Option<Export>,
-    /// What to try next.
+    /// Suggestions for the next command, printed at the end.
     next: &'static str,
 }
 
-/// What `series` computes.
+/// The defaults of `series`: all three results.
 const SERIES: Default = Default {
     worlds: &World::ALL,
     both_estimators: false,
@@ -40,26 +40,26 @@ const SERIES: Default = Default {
     next: "",
 };
 
-/// What the tour suggests at its end.
+/// The suggestions at the end of the tour.
 const NEXT: &str = "Next: fredholm chapter 1 (the book, run), fredholm series veach-ajar (a harder scene),
       fredholm diagnose YOURS.exr --against cornell (is your own renderer right?)";
 
-/// The tour: all worlds, both estimators.
+/// `tour`: all three results, the terms by two estimators.
 pub fn tour(args: &RunArgs) -> Result<Ending, Failure> {
     solve(args, &Default { both_estimators: true, size: Some([192, 192]), patches: 3600, next: NEXT, ..SERIES })
 }
 
-/// Each T^k E and the sum.
+/// `series`: each T^k E and the sum.
 pub fn series(args: &RunArgs) -> Result<Ending, Failure> {
     solve(args, &SERIES)
 }
 
-/// The full path tracer, with the lecture's roulette.
+/// `render`: the full path tracer, with the roulette of the lecture.
 pub fn render(args: &RunArgs) -> Result<Ending, Failure> {
     solve(args, &Default { worlds: &[World::Path], roulette: Roulette::LECTURE, ..SERIES })
 }
 
-/// The matrix.
+/// `radiosity`: the matrix.
 pub fn radiosity(args: &RunArgs, export: Option<Export>) -> Result<Ending, Failure> {
     solve(args, &Default { worlds: &[World::Radiosity], export, ..SERIES })
 }
@@ -83,7 +83,7 @@ fn solve(args: &RunArgs, default: &Default) -> Result<Ending, Failure> {
     Ok(session.ending(run.failed()))
 }
 
-/// What is to be done, refused if it could only end badly.
+/// Checks the arguments and turns them into a run that is not solved yet.
 fn plan(args: &RunArgs, default: &Default, opened: Opened) -> Result<Run, Failure> {
     let Opened { description, scene, .. } = opened;
     let scene = scene.select_lights(args.lights);
@@ -119,7 +119,7 @@ fn plan(args: &RunArgs, default: &Default, opened: Opened) -> Result<Run, Failur
     Ok(Run::new(description, scene, settings, asked))
 }
 
-/// The estimators of the terms, if these are asked for.
+/// The estimators of the terms, or none if no terms are asked for.
 fn estimators(args: &RunArgs, default: &Default, worlds: &[World]) -> Result<Vec<Estimator>, Failure> {
     match (worlds.contains(&World::Terms), args.estimator()) {
         (false, Some(_)) => Err(usage(

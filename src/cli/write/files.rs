@@ -1,4 +1,4 @@
-//! The files of a run as they are written.
+//! The list of files that a run has written.
 
 use fredholm::report::text::summary::Summary;
 use fredholm::study::run::Run;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 pub(super) type Pixels = Vec<[f32; 3]>;
 
-/// Where they go, which there are, and what all records tell.
+/// The output folder, the names of the files in it, and the common part of the record.
 pub(super) struct Files {
     pub folder: PathBuf,
     pub names: Vec<String>,
@@ -24,7 +24,7 @@ impl Files {
     pub fn has(&self, name: &str) -> bool {
         self.names.iter().any(|n| n == name)
     }
-    /// What an EXR says of how it was made; nothing that differs between two equal runs.
+    /// The header of an EXR file: how it was made. Two equal runs write equal headers, so there is no time in it.
     pub fn attributes(&self, run: &Run) -> [(&'static str, String); 5] {
         [
             ("fredholm.command", self.record.command.clone()),

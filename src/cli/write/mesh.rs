@@ -1,4 +1,4 @@
-//! `--export`: what another program needs to check the matrix, or to use it.
+//! `--export`: files with which another program can check or use the matrix.
 
 use super::files::Files;
 use crate::cli::base::Failure;
@@ -8,12 +8,12 @@ use fredholm::report::figures::patches as mesh;
 use fredholm::report::text::summary;
 use fredholm::report::write_atomically;
 
-/// What is written for other programs.
+/// The files to write for other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Export {
     /// Patches, terms and norms
     Mesh,
-    /// F as well
+    /// Also the form factors F
     Matrix,
 }
 

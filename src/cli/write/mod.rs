@@ -1,4 +1,4 @@
-//! What a run leaves behind: `terms.exr`, pictures, plots, `summary.json`, `index.html`.
+//! The files that a run writes: `terms.exr`, pictures, plots, `summary.json`, `index.html`.
 
 mod files;
 mod mesh;
@@ -11,9 +11,11 @@ use super::base::Failure;
 use files::{Files, Pixels};
 use fredholm::engine::by_matrix::Discrete;
 use fredholm::engine::radius::radius_limit;
+use fredholm::report::figures::bounces;
 use fredholm::report::image::typeset::Caption;
 use fredholm::report::text::summary::{self, Summary};
-use fredholm::stats::Limit;
+use fredholm::stats::{Limit, Rate};
+use fredholm::study::lit::Lit;
 use fredholm::study::roulette;
 use fredholm::study::run::Run;
 use fredholm::terms::{Estimate, TermFilm, TermImage};
@@ -23,15 +25,15 @@ use pictures::terms_sheet;
 pub use pictures::z_values;
 use std::path::Path;
 
-/// Writes the contact sheet of the terms so far after every pass, so that there is something to look at.
+/// Writes a preview after every pass: the contact sheet of the terms so far.
 pub fn preview(folder: &Path, caption: Caption) -> impl Fn(&TermFilm) + Sync + Send + use<> {
     let folder = folder.to_path_buf();
     move |film: &TermFilm| {
         let slots = film.shape.slots;
-        // only the films of the terms; and only while waiting for the first picture matters
+        // a film of the path tracer has one slot and no terms; after 64 samples the preview hardly changes
         if slots > 1 && film.least_samples() <= 64 {
             let images: Vec<Pixels> = (0..slots - 1).map(|s| TermImage::of(film, s..s + 1).mean).collect();
-            // a preview that cannot be written is no reason to stop; the final files will say what is wrong
+            // an error is ignored here, because writing the final files reports the same error
             let _ =
                 terms_sheet(film.shape.size, &images, None, &caption, &format!("{} spp so far", film.least_samples()))
                     .and_then(|s| s.picture.write(&folder.join("terms.png")).map_err(Failure::from));
@@ -39,7 +41,7 @@ pub fn preview(folder: &Path, caption: Caption) -> impl Fn(&TermFilm) + Sync + S
     }
 }
 
-/// Writes everything into a folder and returns the record of it, complete; `record` tells what all records tell, by now.
+/// Writes all files of a run into a folder and returns the complete record. `record` gives its common part.
 pub fn all(run: &Run, folder: &Path, export: Option<Export>, record: impl Fn() -> Summary) -> Result<Summary, Failure> {
     let mut out = Files { folder: folder.to_path_buf(), names: vec![], record: record() };
     let Summary { command, seed, scene, .. } = record();
@@ -71,6 +73,12 @@ fn summarise(run: &Run, record: Summary) -> Summary {
     let last = first.and_then(|t| t.snapshots.last());
     let variance: Vec<DVec3> = last.map_or(vec![], |s| s.slots.iter().map(|v| v.channels * f64::from(s.spp)).collect());
     let fit = run.observed_rate().and_then(Result::ok);
+    let by_channel = [0, 1, 2].map(|c| run.observed_rate_in(c).and_then(Result::ok));
+    let rates = |of: &dyn Fn(&Rate) -> f64| {
+        DVec3::from_array(by_channel.each_ref().map(|fit| fit.as_ref().map_or(f64::NAN, of)))
+    };
+    let albedo = run.guaranteed_rate().max_element();
+    let surface = |s: &Lit| summary::Surface { name: s.name.clone(), area: s.area, shares: s.shares() };
     Summary {
         spp: u64::from(run.spp()),
         max_bounces: run.settings.max_bounces,
@@ -79,11 +87,15 @@ fn summarise(run: &Run, record: Summary) -> Summary {
         sum: image.map_or(Estimate::NONE, |f| f.sum),
         path: run.path.as_ref().map(|p| p.series.image().total),
         radiosity: run.radiosity.as_ref().map(radiosity_summary),
+        bounces: run.bounces.as_ref().map_or(vec![], |b| bounces::records(b, albedo, run.bounds_from())),
+        surfaces: run.lit.iter().map(surface).collect(),
         cross_moments: run.moments.as_ref().map(|m| summary::cross_moments(m, roulette::beyond(&run.scene))),
         bounds: summary::Bounds {
             max_albedo: run.guaranteed_rate(),
             observed_rate: fit.as_ref().map_or(f64::NAN, |f| f.rate),
             observed_rate_error: fit.as_ref().map_or(f64::NAN, |f| f.std_error),
+            observed_rates: rates(&|fit| fit.rate),
+            observed_rate_errors: rates(&|fit| fit.std_error),
             tail_bound: run.tail_bound().unwrap_or(DVec3::NAN),
         },
         verdicts: run.verdicts.iter().flat_map(|v| summary::verdicts(v.name, &v.comparison)).collect(),

@@ -1,10 +1,13 @@
-//! The page that shows a run.
+//! Collects the content of `index.html` from a run.
 
 use super::files::Files;
+use crate::cli::answer;
 use crate::cli::base::Failure;
 use fredholm::report::page::html::{self, Page, Plate};
+use fredholm::report::text::sentence::sentence;
 use fredholm::report::text::summary;
-use fredholm::study::run::Run;
+use fredholm::report::text::summary::VerdictRecord;
+use fredholm::study::run::{Run, RunVerdict};
 
 pub(super) fn write_page(run: &Run, out: &Files, summary: &summary::Summary) -> Result<(), Failure> {
     let path = |name: &str| out.path(name);
@@ -12,6 +15,8 @@ pub(super) fn write_page(run: &Run, out: &Files, summary: &summary::Summary) -> 
         ["terms.png", "direct.png", "decay.svg", "variance.svg", "z.png"].map(path);
     let mut plates = vec![];
     let three = out.path("three.png");
+    let only = ["path.png", "radiosity.png"].into_iter().find(|name| out.has(name)).unwrap_or_default();
+    let alone = out.path(only);
     let candidates = [
         (
             "three.png",
@@ -21,6 +26,15 @@ pub(super) fn write_page(run: &Run, out: &Files, summary: &summary::Summary) -> 
                        system over patches. One exposure for all.",
                 alt: "The scene by the series, by the path tracer and by radiosity",
                 path: &three,
+            },
+        ),
+        (
+            if out.has("three.png") { "" } else { only },
+            Plate {
+                heading: "The picture",
+                text: "The whole image at its own exposure.",
+                alt: "The scene as the camera sees it",
+                path: &alone,
             },
         ),
         ("terms.png", Plate::terms(&sheet)),
@@ -55,15 +69,22 @@ pub(super) fn write_page(run: &Run, out: &Files, summary: &summary::Summary) -> 
     let facts = facts.chain((!errors.is_empty()).then(|| ("errors of pixels".to_string(), errors)));
     let page = Page {
         title: run.description.name.clone(),
+        answer: answer::head(run),
+        plates,
+        comparisons: run.verdicts.iter().map(comparison).collect(),
+        grids: answer::grids(run),
+        series: run.results().map(|s| (s.series.label.clone(), s.series.image())).collect(),
         command: summary.command.clone(),
         facts: facts.collect(),
-        verdicts: &summary.verdicts,
-        plates,
-        series: run.results().map(|s| (s.series.label.clone(), s.series.image())).collect(),
         files: out.names.iter().map(|n| (n.clone(), meaning(n).to_string())).collect(),
     };
     html::write(&out.path("index.html"), &page)?;
     Ok(())
+}
+
+/// The sentence of a comparison and the numbers behind it.
+fn comparison(verdict: &RunVerdict) -> (String, Vec<VerdictRecord>) {
+    (sentence(verdict.sides, &verdict.comparison), summary::verdicts(verdict.name, &verdict.comparison))
 }
 
 fn meaning(name: &str) -> &'static str {

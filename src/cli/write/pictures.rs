@@ -1,4 +1,4 @@
-//! The images of a run: every one as floats in one EXR, and what a reader looks at as PNG.
+//! The images of a run: all of them as floats in one EXR file, and the pictures for a reader as PNG.
 
 use super::files::{Files, Pixels};
 use crate::cli::base::Failure;
@@ -12,14 +12,14 @@ use fredholm::report::text::pixel_errors::{self, PixelErrors};
 use fredholm::study::run::Run;
 use fredholm::terms::{Estimate, TermImage};
 
-/// A layer with errors: its name, its image, and what is said of these errors.
+/// A layer with errors: its name, its image, and whether the errors can be trusted.
 type Layer<'a> = (String, &'a TermImage, PixelErrors);
 
 /// The layers of a run that have errors.
 fn layers(run: &Run) -> Vec<Layer<'_>> {
     let mut layers = vec![];
     let mut push = |name: String, image, s: &Sampled, part: usize, mean: &Estimate| {
-        // met by chance only: a pixel rests on no more than its share of what is to be expected
+        // light that is found only by chance: a pixel gets at most its share of the expected hits
         let share = s.series.cost.paths as f64 / s.total.mean.len() as f64;
         let concerned = s.series.doubts.iter().filter(|d| part >= s.terms.len() || d.from <= part);
         let events = concerned.map(|d| d.per_path * share).fold(s.pixel_events[part], f64::min);
@@ -48,7 +48,7 @@ fn layers(run: &Run) -> Vec<Layer<'_>> {
     layers
 }
 
-/// Which of the errors can be trusted.
+/// For each layer with errors, whether they can be trusted.
 pub(super) fn pixel_errors(run: &Run) -> Vec<PixelErrors> {
     layers(run).into_iter().map(|l| l.2).collect()
 }
@@ -125,7 +125,7 @@ pub(super) fn write_pictures(run: &Run, out: &mut Files, size: [u32; 2], caption
     Ok(())
 }
 
-/// The exposure of a whole image: without the lamps in view, where it is known where they are.
+/// The exposure of a whole image. Pixels of lamps are left out where the terms tell which they are.
 fn whole_gain(pixels: &Pixels, emission: Option<&TermImage>) -> f64 {
     emission.map_or_else(|| picture::auto_gain(pixels), |e| picture::auto_gain_beside_lamps(pixels, &e.mean))
 }
@@ -152,14 +152,15 @@ pub(super) fn terms_sheet(
     Ok(contact_sheet::terms(w as usize, h as usize, &images, whole.map(Vec::as_slice), note, caption)?)
 }
 
-/// z per pixel of the mean over channels of a − b; its error takes the channels as fully correlated, which they nearly are.
+/// z for each pixel: the mean over the channels of a − b, divided by its standard error. The channels are treated as fully
+/// correlated, which they nearly are.
 pub fn z_values(a: (&Pixels, &Pixels), b: (&Pixels, &Pixels)) -> Vec<f64> {
     let sum = |v: &[f32; 3]| v.iter().map(|&x| f64::from(x)).sum::<f64>();
     let z = |i: usize| {
         let errors = (sum(&a.1[i]), sum(&b.1[i]));
         let error = errors.0.hypot(errors.1);
         let difference = sum(&a.0[i]) - sum(&b.0[i]);
-        // an error of 0 is that of a pixel that nothing has hit yet: not known
+        // an error of 0 means that no light has reached the pixel yet, so its error is not known
         if errors.0 > 0.0 && errors.1 > 0.0 { difference / error } else { f64::NAN }
     };
     (0..a.0.len()).map(z).collect()

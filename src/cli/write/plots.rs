@@ -43,7 +43,7 @@ pub(super) fn write_plots(run: &Run, out: &mut Files, caption: &Caption) -> Resu
         let look = if s.series.label.starts_with("single") { Look::SINGLE } else { Look::PREFIX };
         let point = |(k, n): (usize, &Option<fredholm::terms::norms::SquaredNorm>)| {
             let n = (*n)?;
-            // √ of an unbiased square, its error by the delta method; a negative square is drawn as an upper limit
+            // the square is unbiased; the error of its root follows by the delta method; a negative square becomes an upper limit
             let value = n.value.max(0.0).sqrt();
             let std_error = if value > 0.0 { 0.5 * n.std_error / value } else { n.std_error.sqrt() };
             Some(Point { x: k as f64, value, std_error, replicates: 16 })
@@ -61,7 +61,7 @@ fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Observed rate, guarantee, tail bound and spectral radius.
+/// The straight lines of the decay plot: observed rate, guaranteed bound, bound of the tail, spectral radius.
 fn lines(run: &Run) -> Vec<RateLine> {
     let mut lines = vec![];
     let g = run.guaranteed_rate().max_element();
@@ -81,7 +81,7 @@ fn lines(run: &Run) -> Vec<RateLine> {
 
 fn write_variance(run: &Run, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
     let mut figure = Variance { title: "How the noise falls".into(), curves: vec![] };
-    // a slot of the snapshots, or their sum
+    // one slot of the snapshots, or with no slot their sum
     let mut curve = |label: String, s: &Sampled, slot: Option<usize>| {
         let at = |snap: &Snapshot| Some((snap.spp, snap.scatter.get(slot.unwrap_or(snap.scatter.len() - 1))?.clone()));
         let variance = if slot.is_none() { s.series.variance } else { Default::default() };

@@ -8,10 +8,10 @@ use fredholm::report::text::table;
 use fredholm::study::strategies::Strategy;
 use std::path::Path;
 
-/// Names of the files.
+/// Names of the files that are written.
 pub const FILES: [&str; 3] = ["strategies.png", "strategies-alone.png", "strategies.exr"];
 
-/// Writes [`FILES`]; layers `KkSs` are weighted, `KkSs_alone` are not.
+/// Writes [`FILES`]. In the EXR file the layers `KkSs` are weighted by multiple importance sampling, `KkSs_alone` are not.
 pub fn write(
     folder: &Path,
     all: &[Strategy],

@@ -1,22 +1,27 @@
 //! `index.html`: the report of a run as one file that opens from disk, with no network and no script.
 //!
-//! Pictures are embedded as data URIs and plots as inline SVG, so the page can be mailed or handed in. Colours follow
-//! the reader's light or dark setting; inside the plots, too.
+//! ```text
+//! title, answer → pictures → comparisons, tables folded → small tables → plots → numbers, folded → how it was made
+//! ```
+//!
+//! Pictures are embedded as data URIs and plots as inline SVG, so that the page can be mailed or handed in. The colours of the
+//! page and of its plots follow the reader's light or dark setting.
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 use std::{fmt::Write, path::Path};
 
+use super::tables;
 use crate::report::{
     ReportError, files,
     image::typeset::escape,
     text::{
-        number::{average, count, dash, error, known, mark, outcome, p_value, percent, signed, significant},
-        rows::{Cell, Column, Rows},
+        grid::Grid,
+        number::average,
+        rows::{Column, Rows},
         summary::VerdictRecord,
     },
     write_atomically,
 };
-use crate::stats::Outcome;
 use crate::terms::Functional;
 
 /// Everything on the page.
@@ -24,28 +29,35 @@ use crate::terms::Functional;
 pub struct Page<'a> {
     /// Heading, usually the scene.
     pub title: String,
+    /// The answer: one sentence.
+    pub answer: String,
+    /// Pictures and plots. The first [`PICTURES`] stand above everything else.
+    pub plates: Vec<Plate<'a>>,
+    /// One sentence for each comparison, with the numbers behind it.
+    pub comparisons: Vec<(String, Vec<VerdictRecord>)>,
+    /// Small tables.
+    pub grids: Vec<Grid>,
+    /// Label and image means of each result.
+    pub series: Vec<(String, &'a Functional)>,
     /// The command that makes the page again.
     pub command: String,
-    /// Short facts beside it: seed, samples, size, time.
+    /// Short facts about the run: seed, samples, size, time.
     pub facts: Vec<(String, String)>,
-    /// What was compared, and the results.
-    pub verdicts: &'a [VerdictRecord],
-    /// Pictures and plots in the order of the page.
-    pub plates: Vec<Plate<'a>>,
-    /// Label and image means of each world.
-    pub series: Vec<(String, &'a Functional)>,
     /// Names (relative to the page) and meanings of the files beside it.
     pub files: Vec<(String, String)>,
 }
 
-/// A picture (`.png`) or plot (`.svg`) with its words.
+/// Plates above the comparisons.
+pub const PICTURES: usize = 2;
+
+/// A picture (`.png`) or plot (`.svg`) with heading and text.
 #[derive(Clone, Debug)]
 pub struct Plate<'a> {
     /// Heading above it.
     pub heading: &'a str,
     /// One or two sentences on what it shows.
     pub text: &'a str,
-    /// For those who cannot see it.
+    /// A description for readers who cannot see it.
     pub alt: &'a str,
     /// The file to embed.
     pub path: &'a Path,
@@ -110,24 +122,20 @@ pub fn write(path: &Path, page: &Page) -> Result<(), ReportError> {
 /// # Errors
 /// If a plate cannot be read or is neither `.png` nor `.svg`.
 pub fn render(page: &Page) -> Result<String, ReportError> {
-    let mut body = String::new();
     let title = escape(&page.title);
-    let command = escape(&page.command);
-    body += &format!("<header>\n<h1>{title}</h1>\n<p class=\"equation\">L = E + T L = Σ T<sup>k</sup> E</p>\n");
-    body += &format!("<p>Made by</p>\n<pre><code>{command}</code></pre>\n");
-    if !page.facts.is_empty() {
-        let fact = |(name, value): &(String, String)| {
-            format!("<div><dt>{}</dt><dd>{}</dd></div>", escape(name), escape(value))
-        };
-        body += &format!("<dl>{}</dl>\n", page.facts.iter().map(fact).collect::<String>());
+    let mut body = format!("<header>\n<h1>{title}</h1>\n<p class=\"equation\">L = E + T L = Σ T<sup>k</sup> E</p>\n");
+    body += &format!("<p class=\"answer\">{}</p>\n</header>\n<main>\n", escape(&page.answer));
+    let (pictures, plots) = page.plates.split_at(page.plates.len().min(PICTURES));
+    for plate in pictures {
+        body += &plate_section(plate)?;
     }
-    body += "</header>\n<main>\n";
-    body += &verdict_section(page.verdicts);
-    for plate in &page.plates {
+    body += &comparison_section(&page.comparisons);
+    body += &grid_section(&page.grids);
+    for plate in plots {
         body += &plate_section(plate)?;
     }
     body += &series_section(&page.series);
-    body += &file_section(&page.files);
+    body += &made_section(page);
     Ok(format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -136,12 +144,11 @@ pub fn render(page: &Page) -> Result<String, ReportError> {
     ))
 }
 
-fn verdict_section(verdicts: &[VerdictRecord]) -> String {
-    if verdicts.is_empty() {
+/// One sentence for each comparison; its table is folded.
+fn comparison_section(comparisons: &[(String, Vec<VerdictRecord>)]) -> String {
+    if comparisons.is_empty() {
         return String::new();
     }
-    let count = |wanted| verdicts.iter().filter(|v| v.outcome == wanted).count();
-    let [agrees, differs, open] = [Outcome::Agrees, Outcome::Differs, Outcome::Inconclusive].map(count);
     let columns = [
         (Column::Difference, "difference"),
         (Column::Interval, "interval"),
@@ -149,14 +156,34 @@ fn verdict_section(verdicts: &[VerdictRecord]) -> String {
         (Column::Detectable, "detectable"),
         (Column::Outcome, "verdict"),
     ];
-    let table = table("what", &columns, &Rows::verdicts(verdicts), None);
+    let one = |(sentence, verdicts): &(String, Vec<VerdictRecord>)| {
+        let table = tables::table("what", &columns, &Rows::verdicts(verdicts), None);
+        format!("<details>\n<summary>{}</summary>\n{table}</details>\n", escape(sentence))
+    };
+    let all: String = comparisons.iter().map(one).collect();
     format!(
-        "<section>\n<h2>Do the worlds agree?</h2>\n<p class=\"tally\"><b>{agrees}</b> agree, <b>{differs}</b> differ, \
-         <b>{open}</b> inconclusive.</p>\n<p>Agreement is a claim that has to be earned: the interval of the \
-         difference must hold zero <em>and</em> lie within the margin. If it is too wide the verdict is inconclusive, \
-         and more samples decide. <em>Detectable</em> is the smallest difference the comparison would have found.</p>\n\
-         {table}</section>\n"
+        "<section>\n<h2>Do the answers agree?</h2>\n{all}<p><em>Agrees</em> means that the whole interval of the difference \
+         lies inside a margin of 2 % of the term. <em>Differs</em> means that the difference is proved not to be zero. \
+         Otherwise the comparison is <em>inconclusive</em>, and more samples decide. <em>Detectable</em> is the smallest \
+         difference that the comparison would have found.</p>\n</section>\n"
     )
+}
+
+fn grid_section(grids: &[Grid]) -> String {
+    let all: String = grids.iter().map(tables::grid).collect();
+    if all.is_empty() { all } else { format!("<section>\n<h2>Which bounce matters</h2>\n{all}</section>\n") }
+}
+
+/// The command, the settings and the files.
+fn made_section(page: &Page) -> String {
+    let mut out =
+        format!("<section>\n<h2>How this page was made</h2>\n<pre><code>{}</code></pre>\n", escape(&page.command));
+    let fact =
+        |(name, value): &(String, String)| format!("<div><dt>{}</dt><dd>{}</dd></div>", escape(name), escape(value));
+    if !page.facts.is_empty() {
+        out += &format!("<dl>{}</dl>\n", page.facts.iter().map(fact).collect::<String>());
+    }
+    out + &file_list(&page.files) + "</section>\n"
 }
 
 fn plate_section(plate: &Plate) -> Result<String, ReportError> {
@@ -167,7 +194,7 @@ fn plate_section(plate: &Plate) -> Result<String, ReportError> {
         Some("png") => format!("<img alt=\"{alt}\" src=\"data:image/png;base64,{}\">", BASE64_STANDARD.encode(&bytes)),
         Some("svg") => {
             let svg = String::from_utf8(bytes).map_err(|_| unsuitable("the plot is not UTF-8 text"))?;
-            // In HTML the name space is understood; the page then holds no address at all.
+            // HTML knows the name space of SVG; without the attribute the page contains no address
             let svg = svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
             let rest = svg.strip_prefix("<svg").ok_or_else(|| unsuitable("the plot does not start with <svg"))?;
             format!("<svg role=\"img\" aria-label=\"{alt}\"{rest}")
@@ -183,8 +210,8 @@ fn series_section(series: &[(String, &Functional)]) -> String {
         return String::new();
     }
     let mut out = String::from(
-        "<section>\n<h2>The series in numbers</h2>\n<p>Image means, averaged over the three channels, with 95 % \
-         intervals. The dots stand on one logarithmic axis per table, the interval as a line through them; an \
+        "<section>\n<h2>All terms in numbers</h2>\n<p>Means of the picture, averaged over the three channels, with 95 % \
+         intervals. The dots show the same on one logarithmic axis per table, with the interval as a line; an \
          arrow to the left means that the interval reaches zero.</p>\n",
     );
     let columns = [(Column::World(0), "mean"), (Column::Ratio, "ratio"), (Column::Share, "share")];
@@ -193,80 +220,13 @@ fn series_section(series: &[(String, &Functional)]) -> String {
         let values = || functional.terms.iter().chain([&functional.tail]).map(|e| average(e).0).filter(|&v| v > 0.0);
         let (lo, hi) = (values().fold(total, f64::min), values().fold(total, f64::max));
         let rows = Rows::series(&[functional], &[]).without_repetition();
-        let table = table("k", &columns, &rows, Some((lo / 1.5, hi * 1.5)));
-        out += &format!("<h3>{}</h3>\n{table}", escape(label));
+        let table = tables::table("k", &columns, &rows, Some((lo / 1.5, hi * 1.5)));
+        out += &format!("<details>\n<summary>{}</summary>\n{table}</details>\n", escape(label));
     }
     out + "</section>\n"
 }
 
-/// A table; an estimate takes two columns, its mean and its error. With a `scale`, estimates are also drawn in a last column.
-fn table(first: &str, columns: &[(Column, &str)], rows: &Rows, scale: Option<(f64, f64)>) -> String {
-    let mut head = format!("<th scope=\"col\">{first}</th>");
-    for (column, words) in columns {
-        let class = if *column == Column::Outcome { " class=\"word\"" } else { "" };
-        head += &format!("<th scope=\"col\"{class}>{words}</th>");
-        if matches!(column, Column::World(_)) {
-            head += "<th scope=\"col\">± 95 %</th>";
-        }
-    }
-    if scale.is_some() {
-        head += "<th scope=\"col\">log scale</th>";
-    }
-    let mut body = String::new();
-    let columns: Vec<Column> = columns.iter().map(|c| c.0).collect();
-    for (name, cells) in rows.pick(&columns) {
-        let words: String = cells.iter().copied().map(cell).collect();
-        let drawn = scale.map_or(String::new(), |scale| {
-            format!("<td>{}</td>", cells.iter().map(|c| dot(c, scale)).collect::<String>())
-        });
-        let _ = writeln!(body, "<tr><th scope=\"row\">{}</th>{words}{drawn}</tr>", escape(&name.to_string()));
-    }
-    format!("<div class=\"wide\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n")
-}
-
-fn cell(cell: &Cell) -> String {
-    let words = match cell {
-        Cell::Blank => String::new(),
-        Cell::Words(words) => escape(words),
-        Cell::Estimate(e) => {
-            let mean = if e.is_none() { "not estimated".into() } else { significant(average(e).0, 4) };
-            format!("{mean}</td><td>{}", error(e))
-        }
-        Cell::Ratio(ratio) if ratio.is_finite() => significant(*ratio, 3),
-        Cell::Ratio(_) => dash(),
-        Cell::Share(share) => percent(*share),
-        Cell::Rays(rays) => rays.map_or_else(dash, count),
-        Cell::Difference(effect) => signed(*effect),
-        Cell::Interval(low, high) => format!("[{}, {}]", signed(*low), signed(*high)),
-        Cell::P(p) => p_value(*p),
-        Cell::Size(size) => known(*size),
-        Cell::Outcome(found) => {
-            let word = outcome(*found);
-            return format!("<td class=\"word {word}\">{} {word}</td>", mark(*found));
-        }
-    };
-    format!("<td>{words}</td>")
-}
-
-/// A dot with its interval on a logarithmic axis from `lo` to `hi`, 180 pixels wide.
-fn dot(cell: &Cell, (lo, hi): (f64, f64)) -> String {
-    let Cell::Estimate(estimate) = cell else { return String::new() };
-    let (mean, half) = average(estimate);
-    let half = if half.is_nan() { 0.0 } else { half };
-    if !(lo > 0.0 && hi > lo && mean > 0.0) {
-        return String::new();
-    }
-    let place = |v: f64| (180.0 * (v / lo).ln() / (hi / lo).ln()).clamp(0.0, 180.0);
-    let (left, right) = (place((mean - half).max(lo)), place(mean + half));
-    let arrow = if mean - half <= 0.0 { "<path class=\"dot\" d=\"M0 7l6 -4v8z\"/>" } else { "" };
-    format!(
-        "<svg class=\"bar\" width=\"180\" height=\"14\" aria-hidden=\"true\"><line x1=\"{left:.1}\" x2=\"{right:.1}\" \
-         y1=\"7\" y2=\"7\"/>{arrow}<circle class=\"dot\" cx=\"{:.1}\" cy=\"7\" r=\"3.5\"/></svg>",
-        place(mean)
-    )
-}
-
-fn file_section(files: &[(String, String)]) -> String {
+fn file_list(files: &[(String, String)]) -> String {
     if files.is_empty() {
         return String::new();
     }
@@ -275,11 +235,11 @@ fn file_section(files: &[(String, String)]) -> String {
         format!("<li><a href=\"{}\"><code>{}</code></a> {meaning}</li>\n", address(name), escape(name))
     };
     let items: String = files.iter().map(item).collect();
-    format!("<section>\n<h2>Files</h2>\n<ul>\n{items}</ul>\n</section>\n")
+    format!("<details>\n<summary>{} files in this folder</summary>\n<ul>\n{items}</ul>\n</details>\n", files.len())
 }
 
-/// A relative file name as an address: everything but letters, digits and `-._~/` in percent form. The leading `./`
-/// keeps a colon in the name from being read as a scheme.
+/// A relative file name as an address. All bytes but letters, digits and `-._~/` are percent-encoded. The leading `./` prevents
+/// a colon in the name from being read as a scheme.
 fn address(name: &str) -> String {
     name.bytes().fold(String::from("./"), |mut out, b| {
         if b.is_ascii_alphanumeric() || b"-._~/".contains(&b) {
@@ -291,49 +251,4 @@ fn address(name: &str) -> String {
     })
 }
 
-const STYLE: &str = "
-:root { --paper: #ffffff; --ink: #1b1b1b; --soft: #5c5c5c; --line: #dcdcdc; --card: #f6f6f4; --blue: #0072b2;
-  --good: #00734f; --bad: #b33c00; --open: #7a5c00; }
-@media (prefers-color-scheme: dark) {
-  :root { --paper: #17181a; --ink: #e8e8e6; --soft: #a9a9a6; --line: #3a3b3e; --card: #202124; --blue: #6cb8e6;
-    --good: #4cc9a0; --bad: #ff8f57; --open: #e6b84c; }
-  figure svg [fill=\"#FFFFFF\"] { fill: var(--paper); }
-  figure svg [fill=\"#000000\"] { fill: var(--ink); }
-  figure svg [stroke=\"#000000\"] { stroke: var(--ink); }
-  figure svg [fill=\"#555555\"] { fill: var(--soft); }
-  figure svg [stroke=\"#555555\"] { stroke: var(--soft); }
-  figure svg [stroke=\"#DEDEDE\"] { stroke: #3a3b3e; }
-  figure svg [stroke=\"#F0F0F0\"] { stroke: #26272a; }
-  figure svg [stroke=\"#0072B2\"] { stroke: #4aa8e0; }
-  figure svg [fill=\"#0072B2\"] { fill: #4aa8e0; }
-}
-* { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 66rem; padding: 1.5rem 1.25rem 4rem; background: var(--paper); color: var(--ink);
-  font: 1rem/1.55 system-ui, sans-serif; }
-h1 { margin: 0; font-size: 2rem; line-height: 1.2; }
-h2 { margin: 3rem 0 .4rem; font-size: 1.35rem; }
-h3 { margin: 1.6rem 0 .4rem; font-size: 1.05rem; }
-p { max-width: 46rem; }
-.equation { margin: .3rem 0 1.2rem; color: var(--soft); font-family: Georgia, serif; font-style: italic;
-  font-size: 1.15rem; }
-pre { margin: 0; padding: .7rem .9rem; background: var(--card); border: 1px solid var(--line); border-radius: 6px;
-  white-space: pre-wrap; overflow-wrap: anywhere; }
-code { font-family: ui-monospace, \"DejaVu Sans Mono\", monospace; font-size: .92em; }
-dl { display: flex; flex-wrap: wrap; gap: .5rem 2rem; margin: 1rem 0 0; }
-dt { color: var(--soft); font-size: .82rem; }
-dd { margin: 0; font-variant-numeric: tabular-nums; }
-figure { margin: 1rem 0 0; }
-figure img, figure svg { display: block; max-width: 100%; height: auto; border: 1px solid var(--line);
-  border-radius: 6px; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th, td { padding: .28rem .8rem; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
-thead th { color: var(--soft); font-weight: 600; font-size: .88rem; }
-tbody th { font-weight: 400; text-align: left; }
-thead th:first-child { text-align: left; }
-.word, thead th.word { text-align: left; font-weight: 600; }
-.agrees { color: var(--good); } .differs { color: var(--bad); } .inconclusive { color: var(--open); }
-.bar { display: block; } .bar line { stroke: var(--blue); stroke-width: 2; } .dot { fill: var(--blue); }
-a { color: var(--blue); }
-@media print { body { max-width: none; } section { break-inside: avoid; } }
-";
+const STYLE: &str = include_str!("page.css");

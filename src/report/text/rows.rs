@@ -1,7 +1,7 @@
-//! The rows of a table before they are text: the terms of a series with their shares, the verdicts of a comparison.
+//! The rows of a table before they become text: the terms of a series with their shares, or the verdicts of a comparison.
 //!
-//! They are made once here. [`table`](super::table) writes them for the terminal, [`markdown`](super::markdown) for the book,
-//! [`html`](crate::report::page::html) for the page; which columns, in which words and with how many digits, each says for itself.
+//! Three writers use them: [`table`](super::table) for the terminal, [`markdown`](super::markdown) for the book and
+//! [`html`](crate::report::page::html) for the page. Each writer chooses its columns, their headings and the number of digits.
 
 use std::fmt;
 
@@ -19,14 +19,14 @@ pub(crate) struct Rows {
     rows: Vec<(Name, Vec<Cell>)>,
 }
 
-/// What a column holds.
+/// The kind of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Column {
-    /// Terms of the i-th series.
+    /// The estimates of the i-th series.
     World(usize),
-    /// Each term over the term before, in the first series.
+    /// Each term divided by the term before, in the first series.
     Ratio,
-    /// Each term over the whole, in the first series.
+    /// Each term divided by the whole, in the first series.
     Share,
     Rays,
     Difference,
@@ -35,11 +35,11 @@ pub(crate) enum Column {
     Detectable,
     Margin,
     Outcome,
-    /// What would decide what is undecided.
+    /// What would decide an inconclusive verdict.
     Cure,
 }
 
-/// What a row speaks of.
+/// The name of a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Name {
     Words(String),
@@ -49,7 +49,7 @@ pub(crate) enum Name {
     /// All terms up to the last.
     Sum(usize),
     Whole,
-    /// The whole without a tail.
+    /// The sum of a series that is cut at K and has no tail.
     Cut,
 }
 
@@ -66,7 +66,7 @@ impl fmt::Display for Name {
     }
 }
 
-/// What a cell holds.
+/// The content of a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Cell {
     Blank,
@@ -80,14 +80,14 @@ pub(crate) enum Cell {
     Difference(f64),
     Interval(f64, f64),
     P(f64),
-    /// Of a margin, or of what could have been found.
+    /// A margin, or the smallest difference that would have been found.
     Size(f64),
     Outcome(Outcome),
 }
 
 impl Rows {
-    /// A row for every term of some series, then tail, sum and whole; a path tracer has a whole only. `rays` are those of the
-    /// first.
+    /// A row for every term of some series, then tail, sum and whole. A path tracer has only the whole. `rays` are the rays of
+    /// the first series.
     pub(crate) fn series(worlds: &[&Functional], rays: &[u64]) -> Self {
         let columns = [Column::Ratio, Column::Share, Column::Rays].into_iter();
         let mut out = Self { columns: columns.chain((0..worlds.len()).map(Column::World)).collect(), rows: Vec::new() };
@@ -114,7 +114,7 @@ impl Rows {
         out
     }
 
-    /// Without the whole where it has no tail: then it is the sum, which stands there already.
+    /// Removes the row of the whole if the series has no tail, because then it equals the sum.
     pub(crate) fn without_repetition(mut self) -> Self {
         if self.rows.len() > 1 {
             self.rows.retain(|(name, _)| *name != Name::Cut);
@@ -122,13 +122,13 @@ impl Rows {
         self
     }
 
-    /// Without the sums: tail and terms add up to the whole.
+    /// Removes the sums; the terms and the tail add up to the whole.
     pub(crate) fn without_sums(mut self) -> Self {
         self.rows.retain(|(name, _)| !matches!(name, Name::Sum(_)));
         self
     }
 
-    /// A row for every verdict.
+    /// A row for each verdict.
     pub(crate) fn verdicts(verdicts: &[VerdictRecord]) -> Self {
         let row = |v: &VerdictRecord| {
             let interval = Cell::Interval(v.interval.0, v.interval.1);
@@ -139,7 +139,7 @@ impl Rows {
         Self { columns, rows: verdicts.iter().map(row).collect() }
     }
 
-    /// A row for every verdict, with its margin, and with what would decide it.
+    /// A row for each verdict with its margin, and with what would decide it if it is open.
     pub(crate) fn comparison(comparison: &Comparison) -> Self {
         let records: Vec<_> = comparison.rows.iter().map(|v| VerdictRecord::of(v.name.clone(), v)).collect();
         let mut out = Self::verdicts(&records);
@@ -150,7 +150,7 @@ impl Rows {
         out
     }
 
-    /// The cells of some columns, row by row.
+    /// The cells of the given columns, row by row.
     pub(crate) fn pick(&self, columns: &[Column]) -> impl Iterator<Item = (&Name, Vec<&Cell>)> {
         let places: Vec<_> = columns.iter().filter_map(|c| self.columns.iter().position(|own| own == c)).collect();
         self.rows.iter().map(move |(name, cells)| (name, places.iter().map(|&i| &cells[i]).collect()))

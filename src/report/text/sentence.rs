@@ -59,6 +59,9 @@ fn differences(found: &Comparison) -> String {
     format!("{} differs by {by} ({}, p = {}){others}", worst.name, worst.functional, p_value(worst.p))
 }
 
+/// Undecided parts that are listed by name at most.
+const NAMED: usize = 4;
+
 /// What is not decided, and what would decide it.
 fn open(found: &Comparison) -> String {
     if let Some(why) = &found.undecided {
@@ -68,7 +71,10 @@ fn open(found: &Comparison) -> String {
     if open.is_empty() {
         return "they have nothing in common to compare".into();
     }
-    let names = open.iter().map(|row| row.name.as_str()).collect::<Vec<_>>().join(", ");
+    let names = match open.len() {
+        n if n > NAMED => format!("{n} of {} parts", found.rows.len()),
+        _ => open.iter().map(|row| row.name.as_str()).collect::<Vec<_>>().join(", "),
+    };
     let factor = open.iter().filter_map(|row| row.needed_factor).fold(0.0, f64::max);
     let remedy = match open.iter().find_map(|row| row.reason.as_deref()) {
         Some(reason) => reason.to_owned(),

@@ -20,8 +20,10 @@
 //! | `tail` | estimate: everything longer than K; all `null` with `replicates` 0 where paths are cut at K (`--roulette none`) |
 //! | `sum` | estimate: Σ_{k≤K} of the terms |
 //! | `path` | estimate of the whole image by the path tracer, or `null` |
-//! | `radiosity` | results of the matrix, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solution of the linear system), `spectral_radius` per channel, `spectral_radius_limit` and its `…_error` (h → 0, from three meshes), `norms` (k, 1-, 2- and 1/ρ-weighted norm of T_h^k E over the patches), `unlit_sides` (never reached by light, left out of T), `discretisation` (absolute difference to a mesh of half as many patches) |
-//! | `bounds` | `max_albedo` per channel (the guarantee ‖T‖₁ ≤ max albedo), `observed_rate` and `observed_rate_error` (fitted, no guarantee), `tail_bound` (a-posteriori bound of the surface norm beyond K) |
+//! | `radiosity` | results of the matrix, or `null`: `patches`, `terms` (triples), `sum`, `full` (the solution of the linear system), `spectral_radius` per channel, `spectral_radius_limit` and its `…_error` (h → 0, from three meshes), `norms` (k, 1-, 2- and 1/ρ-weighted norm of T_h^k E over the patches), `unlit_sides` (never reached by light, left out of T), `discretisation` (absolute difference to a mesh of a quarter as many patches) |
+//! | `bounds` | `max_albedo` per channel (the guarantee ‖T‖₁ ≤ max albedo), `observed_rate` and `observed_rate_error` (fitted, no guarantee; `observed_rates`, `observed_rate_errors` per channel), `tail_bound` (a-posteriori bound of the surface norm beyond K) |
+//! | `bounces` | how many bounces are enough: per `light` (`all`, `indirect`) and fraction `missing`, the smallest and largest K by measurement in the `picture` and over the `surfaces`, and the K that the albedo has `guaranteed` |
+//! | `surfaces` | per surface `name`, `area` (m²) and `shares` of k = 1, …, 5 and of longer paths in the light that it reflects |
 //! | `cross_moments` | of paths without roulette up to vertex K, or `null` where none were recorded: `max_bounces` (their own K), `paths`, `beyond` (q from vertex K on), `slots` (per slot `vertex`, `kind` `hit`, `connect` or `tail`, and `term`), `second` and `product` (per channel M_ab and m_ab, rows of numbers), `rays` (per path, by slot); see [`crate::stats::schedule`] for what they predict |
 //! | `pixel_errors` | per layer of `terms.exr` with a `_se`: `layer`, `trusted`, `events` (half the pixels have fewer), `why` |
 //! | `verdicts` | list of `name`, `effect`, `interval`, `p`, `min_detectable`, `outcome` (`agrees`, `differs`, `inconclusive`) |
@@ -70,6 +72,12 @@ pub struct Summary {
     pub path: Option<Estimate>,
     pub radiosity: Option<Radiosity>,
     pub bounds: Bounds,
+    /// How many bounces are enough.
+    #[serde(default)]
+    pub bounces: Vec<Bounces>,
+    /// Which bounce lights which surface.
+    #[serde(default)]
+    pub surfaces: Vec<Surface>,
     pub cross_moments: Option<serde_json::Value>,
     #[serde(default)]
     pub pixel_errors: Vec<PixelErrors>,
@@ -99,6 +107,8 @@ impl Default for Summary {
             path: None,
             radiosity: None,
             bounds: Bounds::default(),
+            bounces: Vec::new(),
+            surfaces: Vec::new(),
             cross_moments: None,
             pixel_errors: Vec::new(),
             verdicts: Vec::new(),
@@ -212,6 +222,12 @@ pub struct Bounds {
     pub observed_rate: f64,
     /// Standard error of `observed_rate`.
     pub observed_rate_error: f64,
+    /// The same rate per channel; NaN if not fitted.
+    #[serde(default = "not_known")]
+    pub observed_rates: DVec3,
+    /// Their standard errors.
+    #[serde(default = "not_known")]
+    pub observed_rate_errors: DVec3,
     /// Bound of the tail: g/(1−g) ‖T^K E‖₁ with g = max albedo; NaN if g = 1.
     pub tail_bound: DVec3,
 }
@@ -219,8 +235,41 @@ pub struct Bounds {
 impl Default for Bounds {
     fn default() -> Self {
         let unknown = f64::NAN;
-        Self { max_albedo: DVec3::NAN, observed_rate: unknown, observed_rate_error: unknown, tail_bound: DVec3::NAN }
+        Self {
+            max_albedo: DVec3::NAN,
+            observed_rate: unknown,
+            observed_rate_error: unknown,
+            observed_rates: DVec3::NAN,
+            observed_rate_errors: DVec3::NAN,
+            tail_bound: DVec3::NAN,
+        }
     }
+}
+
+/// How many bounces are enough for one fraction of the light.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bounces {
+    /// `all` light or `indirect` light (k ≥ 2).
+    pub light: String,
+    /// The fraction that may be missing.
+    pub missing: f64,
+    /// Smallest and largest K that the noise allows, in the picture; `null`: more than 100.
+    pub picture: [Option<usize>; 2],
+    /// The same over all surfaces.
+    pub surfaces: [Option<usize>; 2],
+    /// The K that the largest albedo guarantees over all surfaces; `null`: it guarantees nothing.
+    pub guaranteed: Option<usize>,
+}
+
+/// The light that one surface reflects.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Surface {
+    /// Its name.
+    pub name: String,
+    /// Area of its sides that take part in light transport, m².
+    pub area: f64,
+    /// Shares of k = 1, …, 5 and of everything longer in the light that it reflects; NaN if not known.
+    pub shares: Vec<f64>,
 }
 
 /// The moments of [`Vertices`] as the value of the key `cross_moments`. `beyond` is q from vertex K on.

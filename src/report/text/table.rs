@@ -1,4 +1,4 @@
-//! Tables for the terminal: aligned, at most 100 columns wide, made of text only.
+//! Tables for the terminal: aligned text, at most 100 columns wide.
 
 pub use super::number::{average, count, error, mark, outcome, plus_minus, significant};
 
@@ -9,9 +9,9 @@ use super::{
 };
 use crate::terms::Functional;
 
-/// The series of one world: a row per term, then the tail and the sums.
+/// The table of one result: a row for each term, then the tail and the sums.
 ///
-/// `rays` counts the rays spent on each k; with an empty slice the column is left out.
+/// `rays` is the number of rays traced for each k. If it is empty, the table has no such column.
 ///
 /// ```
 /// use fredholm::{report::text::table::series, terms::{Estimate, Functional}};
@@ -31,7 +31,7 @@ pub fn series(label: &str, functional: &Functional, rays: &[u64]) -> String {
     format!("{label}\n{}", aligned(&lines("k", &columns, &rows), &[Side::Right; 6]))
 }
 
-/// The verdicts of a comparison.
+/// The table of a comparison: a row for each part that was compared.
 pub fn verdicts(verdicts: &[VerdictRecord]) -> String {
     let columns = [
         (Column::Difference, "difference"),
@@ -44,7 +44,7 @@ pub fn verdicts(verdicts: &[VerdictRecord]) -> String {
     aligned(&lines, &[Side::Left, Side::Right, Side::Right, Side::Right, Side::Right, Side::Left])
 }
 
-/// Header and rows in words; an estimate takes two columns, its mean and its error.
+/// The header and the rows as text. An estimate takes two columns, its mean and its error.
 fn lines(first: &str, columns: &[(Column, &str)], rows: &Rows) -> Vec<Vec<String>> {
     let mut head = vec![first.to_owned()];
     for (column, words) in columns {
@@ -89,7 +89,7 @@ pub(crate) enum Side {
     Right,
 }
 
-/// Rows as lines, two blanks between columns, a rule under the header.
+/// Aligns rows of text: two blanks between columns, a line under the header.
 pub(crate) fn aligned(rows: &[Vec<String>], sides: &[Side]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |c: usize| rows.iter().map(|row| row[c].chars().count()).max().unwrap_or(0);

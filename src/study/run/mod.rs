@@ -1,4 +1,4 @@
-//! One scene, solved in every way that is asked for, and what the ways say of each other.
+//! One scene, solved in several ways, and the comparisons of the results.
 //!
 //! ```text
 //! guide → terms → strategies → path tracer → matrix → norms over all surfaces → moments → radii, verdicts
@@ -6,11 +6,11 @@
 //!
 //! | | place |
 //! |---|---|
-//! | what to do | [`Asked`], [`Settings`] |
-//! | the work, in that order | [`Run::solve`] |
-//! | what was found | the fields of [`Run`] |
-//! | one world held against another | [`RunVerdict`] |
-//! | what follows from it: rates, bounds, orders | [`facts`] |
+//! | settings of the run | [`Asked`], [`Settings`] |
+//! | the work, in the order above | [`Run::solve`] |
+//! | results | the fields of [`Run`] |
+//! | comparison of two results | [`RunVerdict`] |
+//! | rates, bounds and orders that follow | [`facts`] |
 
 pub mod facts;
 mod verdicts;
@@ -29,36 +29,36 @@ use crate::study::roulette::{self, Radii};
 use crate::study::strategies::{self, Strategy};
 use crate::study::surface;
 use crate::terms::functional::Replicates;
-use crate::terms::{Recorded, Series, Variance, World};
+use crate::terms::{Recorded, Variance, World};
 pub use verdicts::RunVerdict;
 
-/// What a run is asked for.
+/// The results that a run computes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
-    /// Which realisations of T.
+    /// The realisations of T: rays for the terms, rays for the path tracer, a matrix.
     pub worlds: Vec<World>,
-    /// Estimators of the terms; the first is the one that is compared with the other worlds.
+    /// Estimators of the terms. The first one is compared with the path tracer and the matrix.
     pub estimators: Vec<Estimator>,
-    /// The schedule with the most efficiency, in place of those of the settings.
+    /// Use the most efficient roulette schedule instead of the one in the settings.
     pub optimal_roulette: bool,
-    /// A guide of about so many patches.
+    /// Guide the paths by a radiosity solution with about this number of patches.
     pub guide: Option<usize>,
-    /// Every strategy of the bidirectional estimator.
+    /// Also render each strategy of the bidirectional estimator separately.
     pub strategies: bool,
-    /// So many stored rays a row on the patches of the matrix, to see how far they are from it.
+    /// Also solve on the patches of the matrix with this number of stored rays per patch, and compare.
     pub against_rays: Option<u32>,
-    /// A third mesh, for the order of convergence.
+    /// Also solve on a third mesh, for the order of convergence.
     pub orders: bool,
-    /// Estimators of the norms of the terms over all surfaces.
+    /// The estimators that measure the norms of the terms over all surfaces.
     pub surface: Vec<Estimator>,
-    /// How many bounces are enough, and which bounce lights which surface.
+    /// Also measure how many bounces are enough, and which bounce lights which surface.
     pub bounces: bool,
-    /// Moments of paths without roulette, where the terms are estimated by prefixes.
+    /// Also record the moments of paths without roulette, if the terms are estimated by prefixes.
     pub moments: bool,
 }
 
 impl Default for Asked {
-    /// All worlds, the terms by prefixes.
+    /// All three results, the terms by prefixes.
     fn default() -> Self {
         Self {
             worlds: World::ALL.to_vec(),
@@ -75,7 +75,7 @@ impl Default for Asked {
     }
 }
 
-/// A scene, how it is solved, and everything that was found.
+/// A scene, its settings and all results.
 ///
 /// ```
 /// use fredholm::engine::Settings;
@@ -97,44 +97,44 @@ impl Default for Asked {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Run {
-    /// The scene as data, for the mesh.
+    /// The scene as plain data; the mesh is made from it.
     pub description: Description,
-    /// The scene for rays.
+    /// The scene that rays are traced in.
     pub scene: Scene,
-    /// How it is solved; with an optimal roulette as found.
+    /// The settings. If an optimal roulette was asked for, they hold the one that was found.
     pub settings: Settings,
-    /// What is found out.
+    /// The results to compute.
     pub asked: Asked,
-    /// The terms by every estimator asked for, in that order.
+    /// The terms, one result for each estimator, in the order of [`Asked::estimators`].
     pub terms: Vec<Sampled>,
-    /// The path tracer.
+    /// The result of the path tracer.
     pub path: Option<Sampled>,
-    /// What guided both, if anything did.
+    /// The guide of the paths, if there is one.
     pub guide: Option<Prepared>,
-    /// The matrix.
+    /// The result of the matrix.
     pub radiosity: Option<Discrete>,
-    /// How far stored rays are from it.
+    /// The difference between stored rays and the matrix.
     pub against_rays: Option<Difference>,
-    /// Three meshes, coarse to fine, for the order of convergence.
-    pub meshes: Vec<Series>,
-    /// Every strategy of the bidirectional estimator.
+    /// The pictures of three meshes, coarse to fine, for the order of convergence; otherwise empty.
+    pub meshes: Vec<Sampled>,
+    /// Each strategy of the bidirectional estimator.
     pub strategies: Vec<Strategy>,
-    /// ‖T^k E‖₁ by estimator.
+    /// ‖T^k E‖₁ over all surfaces, by estimator.
     pub surface: Vec<(Estimator, Replicates)>,
-    /// The terms of long paths, from which follows how many bounces are enough.
+    /// The terms up to k = 100, which tell how many bounces are enough.
     pub bounces: Option<Bounces>,
-    /// Which bounce lights which surface.
+    /// The terms of each surface, which tell which bounce lights it.
     pub lit: Vec<Lit>,
-    /// Whether the moments of the path tracer are finite, where its roulette is constant.
+    /// Spectral radii that tell whether the variance of the path tracer is finite, if its roulette is constant.
     pub radii: Option<Radii>,
     /// Moments of paths without roulette.
     pub moments: Option<Recorded>,
-    /// What the worlds say of each other.
+    /// The comparisons of the results.
     pub verdicts: Vec<RunVerdict>,
 }
 
 impl Run {
-    /// Nothing is solved yet.
+    /// A run that is not solved yet.
     pub fn new(description: Description, scene: Scene, settings: Settings, asked: Asked) -> Self {
         Self {
             description,
@@ -157,7 +157,7 @@ impl Run {
         }
     }
 
-    /// Finds out everything that was asked for. Stopped early, it holds what there is by then.
+    /// Computes everything that was asked for. If it is stopped early, it holds the results so far.
     ///
     /// # Errors
     /// If the scene has no matrix, or no mesh for a guide.
@@ -169,7 +169,7 @@ impl Run {
         }
         if let Some(patches) = self.asked.guide {
             self.guide = guided::prepare(&self.description, patches, &self.settings, progress)?;
-            // without its guide the run would not be the one that was asked for
+            // the guide was stopped, and without it the result would be another one
             if self.guide.is_none() {
                 return Ok(());
             }
@@ -185,16 +185,16 @@ impl Run {
         Ok(())
     }
 
-    /// Whether a world is asked for.
+    /// Returns true if this realisation of T is asked for.
     pub fn wants(&self, world: World) -> bool {
         self.asked.worlds.contains(&world)
     }
 
-    /// Terms, strategies and the path tracer.
+    /// Computes the terms, the strategies and the path tracer.
     fn by_rays(&mut self, progress: Progress<'_>) {
         let (scene, settings) = (&self.scene, &self.settings);
         let estimators = if self.wants(World::Terms) { self.asked.estimators.as_slice() } else { &[] };
-        // the quick estimator first, so that there is something to see
+        // the last estimator is the fastest, so the first preview appears early
         for &estimator in estimators.iter().rev() {
             if !progress.stopped() {
                 let guided = self.guide.as_ref().and_then(|g| g.terms(scene, estimator, settings, progress));
@@ -213,7 +213,7 @@ impl Run {
         }
     }
 
-    /// The matrix, stored rays on its patches, and a coarser mesh.
+    /// Computes the matrix, stored rays on its patches, and a coarser mesh.
     fn by_matrix(&mut self, progress: Progress<'_>) -> Result<(), MatrixError> {
         let (description, scene, settings) = (&self.description, &self.scene, &self.settings);
         let Some(found) = unless_stopped(by_matrix::radiosity(description, scene, settings, progress))? else {
@@ -226,14 +226,14 @@ impl Run {
             let patches = (settings.patches / 16).max(1);
             let coarsest = unless_stopped(by_matrix::matrix(description, scene, patches, settings, progress))?;
             if let Some(coarsest) = coarsest.map(|m| m.through_camera(scene, settings, progress)) {
-                self.meshes = vec![coarsest.series, found.coarse.series.clone(), found.fine.series.clone()];
+                self.meshes = vec![coarsest, found.coarse.clone(), found.fine.clone()];
             }
         }
         self.radiosity = Some(found);
         Ok(())
     }
 
-    /// What the terms look like without a camera, and without roulette.
+    /// Computes the results without images: norms over surfaces, long terms, light by surface, moments.
     fn aside(&mut self, progress: Progress<'_>) {
         if !self.wants(World::Terms) {
             return;
@@ -248,20 +248,20 @@ impl Run {
             }
         }
         if self.asked.bounces && !progress.stopped() {
-            self.bounces = bounces(&self.scene, paths, &self.settings, progress);
+            self.bounces = bounces(&self.scene, paths.saturating_mul(4), &self.settings, progress);
             self.lit = lit(&self.description, &self.scene, paths / 4, &self.settings, progress);
         }
-        // 3 % of the run; none where that is less than two samples, or where moments of so many slots would fill the memory
+        // 3 % of the run; left out if that is less than two samples, or if the moments of that many terms would fill the memory
         let prefixes = self.asked.moments && self.asked.estimators.contains(&Estimator::Prefix);
         if prefixes && spp >= 64 && max_bounces <= 64 && !progress.stopped() {
             self.moments = roulette::pilot(&self.scene, &self.settings, (spp / 32).min(16), progress);
         }
     }
 
-    /// What the results say of each other, and of their own errors.
+    /// Compares the results, and removes error bars whose variance is infinite.
     fn judge(&mut self) {
         self.radii = self.moments_of_path();
-        // a matrix knows more than walkers that may have missed where light is trapped
+        // the matrix sees every place where light is trapped; random walks may have missed it
         if self.radii.and_then(|r| r.variance()) == Some(Variance::Infinite) {
             let alike = self.settings.roulette == self.settings.path_roulette;
             let terms = self.terms.iter_mut().filter(|_| alike);
@@ -270,11 +270,11 @@ impl Run {
         self.verdicts = verdicts::verdicts(&self.terms, self.path.as_ref(), self.radiosity.as_ref());
     }
 
-    /// Whether the variance of the path tracer is finite can be known from the matrix; a coarse one will do. Where there is
-    /// none, the largest albedo gives a bound.
+    /// Spectral radii that decide whether the variance of the path tracer is finite. They come from the matrix; a coarse one
+    /// is enough. Without a matrix the largest albedo gives a bound.
     fn moments_of_path(&self) -> Option<Radii> {
         let q = roulette::constant(&self.settings.path_roulette)?;
-        // both speak of directions drawn by the cosine, without a guide
+        // the matrix and the bound assume cosine-distributed directions and no guide
         if self.path.is_none() || self.guide.is_some() || self.settings.sampling == Sampling::Uniform {
             return None;
         }
@@ -286,7 +286,7 @@ impl Run {
     }
 }
 
-/// Work that was stopped is no error.
+/// Turns the error "stopped" into no result.
 fn unless_stopped<T>(result: Result<T, MatrixError>) -> Result<Option<T>, MatrixError> {
     match result {
         Ok(found) => Ok(Some(found)),

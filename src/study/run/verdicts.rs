@@ -1,26 +1,26 @@
-//! One world held against another.
+//! Comparisons of the first estimator of the terms with the other results.
 
 use crate::engine::by_matrix::Discrete;
 use crate::engine::by_rays::Sampled;
 use crate::stats::{Comparison, Criterion, compare, discretisation};
 use crate::terms::{Functional, Series};
 
-/// One result held against another.
+/// The comparison of two results.
 #[derive(Clone, Debug)]
 pub struct RunVerdict {
-    /// Which of them: `terms − path`.
+    /// The two results: `terms − path`.
     pub name: &'static str,
-    /// Both sides in words: the series, the path tracer.
+    /// The names of the two results in a sentence: `series`, `path tracer`.
     pub sides: [&'static str; 2],
-    /// Every part of both, compared.
+    /// The comparison, part by part: every term, the tail, the sum, the whole.
     pub comparison: Comparison,
 }
 
-/// The first estimator of the terms against everything else.
+/// Compares the first estimator of the terms with the second one, the path tracer and the matrix.
 pub(super) fn verdicts(terms: &[Sampled], path: Option<&Sampled>, radiosity: Option<&Discrete>) -> Vec<RunVerdict> {
     let criterion = Criterion::default();
     let judge = |name, sides, a: &Series, b: &Series, allowance: &[Functional]| {
-        // terms that one of them does not see in full are not compared
+        // terms that one estimator cannot find completely are not compared
         let comparison = match a.gap(b) {
             None => compare(a, b, &criterion, allowance),
             Some((from, _)) => compare(&a.before(from), b, &criterion, allowance),

@@ -1,0 +1,155 @@
+//! The answer of a run, and the small tables behind it: for the terminal and for the page.
+
+use fredholm::engine::by_rays::Sampled;
+use fredholm::engine::radius::radius_limit;
+use fredholm::math::CHANNELS;
+use fredholm::report::figures::{bounces, lit};
+use fredholm::report::text::grid::Grid;
+use fredholm::report::text::number::{average, error, percent, plus_minus, significant};
+use fredholm::report::text::sentence::{bound, sentence};
+use fredholm::report::text::summary;
+use fredholm::stats::Outcome;
+use fredholm::study::run::Run;
+use fredholm::terms::{Estimate, Functional};
+
+/// Terms in the short table at most; longer series are cut there, and `--verbose` prints all.
+const SHORT: usize = 13;
+
+/// The answer: do the ways agree, and to which accuracy; or what was found, where there is one way only.
+pub fn head(run: &Run) -> String {
+    let name = &run.description.name;
+    if run.verdicts.is_empty() {
+        return run.results().next().map_or(String::new(), |only| alone(name, only, run));
+    }
+    let all = |o: Outcome| run.verdicts.iter().all(|v| v.comparison.outcome == o);
+    let any = |o: Outcome| run.verdicts.iter().any(|v| v.comparison.outcome == o);
+    let ways = run.results().count();
+    if any(Outcome::Differs) {
+        format!("{name}, solved in {ways} ways: they do not agree.")
+    } else if all(Outcome::Agrees) {
+        let largest = run.verdicts.iter().filter_map(|v| bound(&v.comparison)).fold(0.0, f64::max);
+        format!(
+            "{name}, solved in {ways} ways: all agree, the whole picture to ± {} %.",
+            significant(100.0 * largest, 2)
+        )
+    } else {
+        format!("{name}, solved in {ways} ways: no difference found, but not everything is decided.")
+    }
+}
+
+/// A sentence for each comparison.
+pub fn comparisons(run: &Run) -> String {
+    let lines = run.verdicts.iter().map(|v| wrapped(&sentence(v.sides, &v.comparison), WIDTH));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Columns of a sentence.
+const WIDTH: usize = 96;
+
+/// A sentence in lines of at most `width` columns where its words allow it, indented by two columns, then by four.
+fn wrapped(sentence: &str, width: usize) -> String {
+    let mut lines = vec!["  ".to_owned()];
+    for word in sentence.split(' ') {
+        let line = lines.last().map_or(0, |line| line.chars().count());
+        if line + word.chars().count() >= width {
+            lines.push("    ".into());
+        }
+        if let Some(line) = lines.last_mut() {
+            let gap = if line.trim().is_empty() { "" } else { " " };
+            *line += gap;
+            *line += word;
+        }
+    }
+    lines.join("\n")
+}
+
+/// One result and nothing to compare it with.
+fn alone(name: &str, only: &Sampled, run: &Run) -> String {
+    let image = only.series.image();
+    let (mean, half) = average(&image.total);
+    let mut out =
+        format!("{name}, by {}: the picture has the mean radiance {}", only.series.label, plus_minus(mean, half, 2));
+    out += if half > 0.0 { " (95 %).".into() } else { ".".to_owned() }.as_str();
+    if image.terms.len() > 1 {
+        let share = |k: usize| percent(average(&image.terms[k]).0 / mean);
+        out += &format!("\n{} of it is seen directly, {} after one reflection.", share(0), share(1));
+    }
+    if let Some(r) = &run.radiosity {
+        let rho = r.matrix.spectral.each_ref().map(|s| format!("{:.4}", s.radius)).join(", ");
+        out += &format!("\nThe spectral radius of the matrix is ({rho}) in red, green and blue.");
+    }
+    out
+}
+
+/// The terms: means, shares, and the ratios of successive terms in the picture and in the norm of the matrix.
+pub fn terms(run: &Run) -> Option<Grid> {
+    let first = run.results().find(|s| !s.series.image().terms.is_empty())?;
+    let image: &Functional = first.series.image();
+    let c = run.slowest_channel();
+    let colour = CHANNELS[c];
+    let norms = run.radiosity.as_ref().map(|r| summary::bounce_norms(r.matrix.radiosity.patches(), &r.matrix.terms));
+    let mut head = vec!["k".to_owned(), "mean".into(), "± 95 %".into(), "share".into(), "ratio: picture".into()];
+    head.extend(norms.is_some().then(|| "norm of the matrix".into()));
+    let sentence = format!("The terms T^k E: light reflected k times. Ratio: to the term before, in {colour}.");
+    let mut grid = Grid::new(sentence, head);
+    let whole = average(&image.total).0;
+    let ratio = |of: &dyn Fn(usize) -> f64, k: usize| match k {
+        0 => "–".to_owned(),
+        k => significant(of(k) / of(k - 1), 3),
+    };
+    let mut row = |name: String, e: &Estimate, k: Option<usize>| {
+        let mean = average(e).0;
+        let mut cells = vec![name, significant(mean, 4), error(e), percent(mean / whole)];
+        let blank = String::new;
+        cells.push(k.map_or_else(blank, |k| ratio(&|k| image.terms[k].mean[c], k)));
+        if let Some(norms) = &norms {
+            cells.push(k.map_or_else(blank, |k| ratio(&|k| norms[k].norm_w[c], k)));
+        }
+        grid.push(cells);
+    };
+    let shown = image.terms.len().min(SHORT);
+    for (k, term) in image.terms.iter().take(shown).enumerate() {
+        row(k.to_string(), term, Some(k));
+    }
+    if shown < image.terms.len() {
+        row("…".into(), &image.terms[image.terms.len() - 1], None);
+    }
+    if !image.tail.is_none() {
+        row(format!("k > {}", image.terms.len() - 1), &image.tail, None);
+        row("all".into(), &image.total, None);
+    }
+    Some(grid)
+}
+
+/// The observed rate beside the spectral radius of the same channel.
+pub fn decay(run: &Run) -> String {
+    let c = run.slowest_channel();
+    let colour = CHANNELS[c];
+    let mut out = String::new();
+    if let Some(Ok(fit)) = run.observed_rate_in(c) {
+        let (first, last) = (fit.window.start, fit.window.end - 1);
+        out += &format!(
+            "Over all surfaces {colour} falls by the factor {} per bounce (k = {first} to {last}).\n",
+            plus_minus(fit.rate, fit.std_error, 2)
+        );
+    }
+    let Some(r) = &run.radiosity else { return out };
+    let (radius, bound) = (r.matrix.spectral[c].radius, run.guaranteed_rate()[c]);
+    let limit = radius_limit(&r.radii).map(|l| l[c].clone());
+    let limit = limit.map_or(String::new(), |l| format!(", {} for h → 0", plus_minus(l.value, l.half_width, 1)));
+    out += &format!(
+        "The spectral radius of T in {colour} is {radius:.4} on this mesh{limit}; the albedos\n\
+         guarantee only ≤ {bound:.3}. The ratios of the norm rise to it, because T is self-adjoint in\n\
+         that norm. The ratios of the picture wander, because each bounce lights other\n\
+         surfaces and the camera sees only some of them.\n"
+    );
+    out
+}
+
+/// Which bounce lights what, and how many bounces are enough.
+pub fn grids(run: &Run) -> Vec<Grid> {
+    let lit = (!run.lit.is_empty()).then(|| lit::grid(&run.lit));
+    let albedo = run.guaranteed_rate().max_element();
+    let enough = run.bounces.as_ref().map(|found| bounces::grid(found, albedo, run.bounds_from()));
+    lit.into_iter().chain(enough).collect()
+}
