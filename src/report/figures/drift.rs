@@ -1,12 +1,12 @@
-//! Eigenvalues on finer and finer meshes: which belong to the scene, and which to the mesh.
+//! Eigenvalues on finer and finer meshes: some converge and belong to the scene, the others belong to the mesh.
 //!
 //! | shown | meaning |
 //! |---|---|
 //! | λ | the largest and the most negative eigenvalues of T_h, by the number of patches |
-//! | band | ±0.42361 √(ρ₁ρ₂), the essential spectrum of right-angled edges: filled ever more densely, by whatever mesh |
-//! | step | change from the mesh before: it falls where there is a limit |
+//! | band | ±0.42361 √(ρ₁ρ₂), the essential spectrum of right-angled edges: every mesh fills it, a finer one more densely |
+//! | step | change of λ from the previous mesh: it falls if λ has a limit |
 //!
-//! Corners where three faces meet widen the band further (not computed): an eigenvalue just outside the band may drift too.
+//! Corners where three faces meet widen the band further (not computed), so an eigenvalue just outside the band may drift too.
 
 use crate::report::{
     ReportError,
@@ -20,17 +20,17 @@ use crate::report::{
 use crate::study::refinement::{Ends, Mesh, Refinement};
 use plotters::style::RGBColor;
 
-/// The meshes whose spectrum is known.
+/// The meshes whose eigenvalues were computed.
 fn known(r: &Refinement) -> Vec<(&Mesh, &Ends)> {
     r.meshes.iter().filter_map(|m| Some((m, m.spectrum.as_ref()?))).collect()
 }
 
-/// One eigenvalue from mesh to mesh.
+/// One eigenvalue on all meshes.
 struct Track {
     name: String,
-    /// Patches and λ; meshes that have fewer of them are left out.
+    /// Number of patches and λ, for the meshes that have this eigenvalue.
     values: Vec<(usize, f64)>,
-    /// The band of the finest mesh.
+    /// Half width of the band on the finest mesh.
     band: f64,
 }
 
@@ -56,15 +56,25 @@ fn tracks(r: &Refinement) -> Vec<Track> {
     [0, 1].into_iter().flat_map(|side| (0..count(side)).map(move |i| (side, i))).map(|(s, i)| track(s, i)).collect()
 }
 
-/// A line per eigenvalue, a column per mesh.
-pub fn table(r: &Refinement, channel: &str) -> String {
+/// How many of the leading eigenvalues lie outside the band on the finest mesh, how many there are, and half the band's width.
+pub fn outside(r: &Refinement) -> (usize, usize, f64) {
+    let all = tracks(r);
+    (all.iter().filter(|t| t.outside()).count(), all.len(), all.first().map_or(0.0, |t| t.band))
+}
+
+/// A row for each of the `most` largest eigenvalues, a column per mesh, and the last step with its ratio to the one before.
+pub fn table(r: &Refinement, most: usize) -> String {
     let known = known(r);
     let mut header = vec!["λ".to_string()];
-    header.extend(known.iter().map(|(m, _)| m.patches.to_string()));
-    header.extend(["last step", "over the one before", ""].map(String::from));
+    header.extend(known.iter().map(|(m, _)| format!("{} patches", m.patches)));
+    header.extend(["last step", "step ratio", ""].map(String::from));
     let mut rows = vec![header];
     let all = tracks(r);
-    for t in &all {
+    let mut chosen: Vec<usize> = (0..all.len()).collect();
+    chosen.sort_by(|&a, &b| all[b].last().abs().total_cmp(&all[a].last().abs()));
+    chosen.truncate(most);
+    chosen.sort_unstable();
+    for t in chosen.iter().map(|&i| &all[i]) {
         let mut row = vec![t.name.clone()];
         row.extend(
             known.iter().map(|(m, _)| {
@@ -77,17 +87,10 @@ pub fn table(r: &Refinement, channel: &str) -> String {
         row.extend([step, ratio, if t.outside() { String::new() } else { "in the band".into() }]);
         rows.push(row);
     }
-    let sides = [vec![Side::Left], vec![Side::Right; known.len() + 2], vec![Side::Left]].concat();
-    let band = all.first().map_or(0.0, |t| t.band);
-    format!(
-        "{channel}: leading eigenvalues by patches; band of the edges ±{band:.5}\n{}\n\
-         Well outside, where h halves, a step is less than half of the one before: a limit, the scene's.\n\
-         Inside, and just outside (corners widen the band), eigenvalues drift on: they are the mesh's.",
-        aligned(&rows, &sides)
-    )
+    aligned(&rows, &[vec![Side::Left], vec![Side::Right; known.len() + 2], vec![Side::Left]].concat())
 }
 
-/// A line per eigenvalue and mesh.
+/// All eigenvalues as CSV, a line per eigenvalue and mesh.
 pub fn csv(r: &Refinement) -> String {
     let mut csv = Csv::new("patches,h,channel,eigenvalue,value,residual,band");
     for (m, e) in known(r) {
