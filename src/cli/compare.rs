@@ -108,7 +108,7 @@ fn line(name: char, path: &Path, world: &Series, s: &Summary) -> String {
 }
 
 /// Rows that are printed; all of them are in `summary.json`.
-const SHOWN: usize = 12;
+const SHOWN: usize = 10;
 
 /// The verdicts as a table with a sentence above it; of many, first those that do not agree.
 fn rows(comparison: &Comparison, verdicts: &[VerdictRecord]) -> String {

@@ -8,7 +8,7 @@ use clap::Args;
 use fredholm::engine::known::resort::with_last_resort;
 use fredholm::scene::Scene;
 
-/// What every check takes.
+/// Options that every check has.
 #[derive(Clone, Debug, Args)]
 pub struct Common {
     /// Seed: same seed and same number of samples, same bits, for any number of threads

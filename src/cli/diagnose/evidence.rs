@@ -5,7 +5,7 @@ use fredholm::diagnosis::{Conclusion, Diagnosis};
 use fredholm::report::text::table::significant;
 
 /// Rows of the table of ratios that are printed without `--verbose`.
-pub const ROWS: usize = 10;
+pub const ROWS: usize = 8;
 
 /// A share in percent with two digits.
 pub fn percent(x: f64) -> String {

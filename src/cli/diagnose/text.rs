@@ -21,7 +21,7 @@ pub struct Text<'a> {
 }
 
 /// Suspects that are described without `--verbose`.
-const SHOWN: usize = 2;
+const SHOWN: usize = 1;
 
 /// The name of a file without its folders.
 pub fn short(name: &str) -> String {
@@ -90,7 +90,9 @@ impl Text<'_> {
         match found {
             [one] => {
                 let (answer, mut tables, mut details) = page(one);
-                tables.push(below);
+                if let Some(ratios) = tables.first_mut() {
+                    *ratios = format!("{}\n{below}", ratios.trim_end());
+                }
                 details.insert(0, session.command().into());
                 session.text(&answer, &tables, &details, files)
             }

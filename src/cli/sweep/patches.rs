@@ -151,7 +151,7 @@ fn radius(found: &Refinement) -> String {
     let Some(limit) = radius_limit(&meshes) else { return String::new() };
     let [value, half] = [
         limit.each_ref().map(|l| format!("{:.4}", l.value)).join(", "),
-        limit.each_ref().map(|l| format!("{:.4}", l.half_width)).join(", "),
+        limit.each_ref().map(|l| format!("{:.0e}", l.half_width)).join(", "),
     ];
     format!("For h → 0 the spectral radius tends to ({value}) ± ({half}), an estimate and no bound.")
 }

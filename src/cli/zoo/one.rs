@@ -2,7 +2,7 @@
 
 use super::args::Zoo;
 use super::folder::{self, MARK, mark, write};
-use super::words::{brief, facts, whole};
+use super::words::{self, brief, whole};
 use crate::cli::base::{Ending, Failure, print, usage, wrapped};
 use fredholm::engine::by_rays::Sampled;
 use fredholm::report::figures::signature::{self, Signature};
@@ -49,7 +49,7 @@ pub fn run(args: &Zoo, bug: &'static Bug) -> Result<Ending, Failure> {
     let files: Vec<String> = ["exr", "png"].map(|e| format!("{n}.{e}")).into();
     let more = ["png", "svg"].map(|e| format!("{n}-ratios.{e}"));
     let files: Vec<String> = files.into_iter().chain(more).chain(["correct.exr".into(), MARK.into()]).collect();
-    let tables = [table(bug, &shown, blind.as_ref(), theory), facts(bug)];
+    let tables = [table(bug, &shown, blind.as_ref(), theory), words::signature(bug)];
     print(&session.text(&wrapped(&answer(bug, &shown)), &tables, &[], &files))?;
     Ok(session.ending(false))
 }
@@ -61,23 +61,30 @@ struct Pair {
     right: Sampled,
 }
 
-/// The answer: the mistake, by how much it changes the whole image, and how sure that is.
+/// The answer: by how much the mistake changes the whole image, and how sure it is that there is a mistake.
 fn answer(bug: &Bug, shown: &Pair) -> String {
     let r = whole(shown.wrong.series.image(), shown.right.series.image());
-    let judged = zoo::judge::judge(&shown.wrong, &shown.right);
-    let (p, what) = (judged.p, judged.what);
-    let sure = match p {
-        0.0 => format!("The right renderer cannot give this; judged by: {what}."),
-        p if p <= 1e-3 => format!("The right renderer gives this with a probability of {p:.0e}; judged by: {what}."),
-        p => format!("This cannot be told from noise (p = {p:.2}; judged by: {what}), so raise --spp."),
-    };
+    let zoo::judge::Judgement { p, what } = zoo::judge::judge(&shown.wrong, &shown.right);
+    let scene = shown.stage.label;
+    if p > 1e-3 {
+        return format!(
+            "In {scene} the mistake of {} cannot be told from noise (p = {p:.2}; judged by: {what}), so raise --spp.\n\
+             The mistake: {}.",
+            bug.name, bug.what
+        );
+    }
     let half = half_width_95(r.std_error, r.replicates);
     let by = match (r.value.is_finite(), half.is_finite() && half > 0.0) {
         (false, _) => "makes the mean of the whole image no number".into(),
         (true, true) => format!("multiplies the mean of the whole image by {}", plus_minus(r.value, half, 2)),
         (true, false) => format!("multiplies the mean of the whole image by {}", significant(r.value, 4)),
     };
-    format!("In {} the mistake of {} {by}: {}.\n{sure}", shown.stage.label, bug.name, bug.what)
+    let sure = if p > 0.0 {
+        format!("The right renderer gives this with a probability of {p:.0e}; judged by: {what}.")
+    } else {
+        format!("The right renderer cannot give this; judged by: {what}.")
+    };
+    format!("In {scene} the mistake of {} {by}: {}.\n{sure}", bug.name, bug.what)
 }
 
 /// The scene of `--scene`, or else the one that shows the mistake.
@@ -103,13 +110,11 @@ fn table(bug: &Bug, shown: &Pair, blind: Option<&Pair>, theory: bool) -> String 
         line.trim_end().to_string()
     };
     let mut above = format!(
-        "The mean of every term in {}, right and wrong, and their ratio rₖ: measured, the 95 % interval of the last digits in \
-         brackets, and predicted where theory gives it.",
+        "Means of the terms in {}, right and wrong, and the ratio rₖ, measured (in brackets the 95 % interval of the last \
+         digits) and predicted by theory",
         shown.stage.label
     );
-    if let Some(b) = blind {
-        above += &format!(" In {}, which is blind to the mistake, the ratio stays 1.", b.stage.label);
-    }
+    above += &blind.map_or(".".into(), |b| format!("; {} is blind to the mistake.", b.stage.label));
     let elsewhere = blind.map_or(String::new(), |b| b.stage.label.to_owned());
     let head = format!("{:6} {:>10} {:>10} {:>12} {:>10} {elsewhere:>16}", "k", "right", "wrong", "rₖ", "predicted");
     let mut lines = vec![wrapped(&above), head.trim_end().to_owned(), "─".repeat(head.trim_end().chars().count())];

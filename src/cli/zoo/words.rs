@@ -32,23 +32,24 @@ pub fn mistake(bug: &Bug) -> String {
     wrapped(&format!("{}: {}.", bug.name, bug.what))
 }
 
-/// Facts about a member: the wrong formula, its result, its signature, and scenes that show and hide it.
+/// Facts about a member: those of [`signature`], and scenes that show and hide the mistake.
 pub fn facts(bug: &Bug) -> String {
     let blind = bug.blind.map_or("the whole image of any scene: its sum is right", |s| s.label);
     let seen = format!("{}, from {} samples per pixel at {p}x{p}", bug.exposed_by.label, bug.spp, p = zoo::PIXELS);
-    let line = |(what, text): (&str, &str)| {
-        let indent = " ".repeat(13);
-        // blanks that wrapping keeps
-        wrapped_after(&format!("\u{a0}\u{a0}{what:\u{a0}<10} {text}"), &indent)
-    };
-    let all = [
-        ("where", bug.place),
-        ("gives", bug.expected),
-        ("signature", bug.signature),
-        ("seen in", seen.as_str()),
-        ("not in", blind),
-    ];
-    all.map(line).join("\n")
+    format!("{}\n{}\n{}", signature(bug), fact("seen in", &seen), fact("not in", blind))
+}
+
+/// The wrong formula of a member, its result, and its signature.
+pub fn signature(bug: &Bug) -> String {
+    [("where", bug.place), ("gives", bug.expected), ("signature", bug.signature)]
+        .map(|(what, text)| fact(what, text))
+        .join("\n")
+}
+
+/// A fact in indented lines after its name.
+fn fact(what: &str, text: &str) -> String {
+    // blanks that wrapping keeps
+    wrapped_after(&format!("\u{a0}\u{a0}{what:\u{a0}<10} {text}"), &" ".repeat(13))
 }
 
 /// The ratio of the whole images; where the wrong paths are cut at K, its image is compared with the right sum of the terms

@@ -56,7 +56,8 @@ fn tracks(r: &Refinement) -> Vec<Track> {
     [0, 1].into_iter().flat_map(|side| (0..count(side)).map(move |i| (side, i))).map(|(s, i)| track(s, i)).collect()
 }
 
-/// How many of the leading eigenvalues lie outside the band on the finest mesh, how many there are, and half the band's width.
+/// The number of leading eigenvalues outside the band on the finest mesh, the number of all leading eigenvalues, and the half
+/// width of the band.
 pub fn outside(r: &Refinement) -> (usize, usize, f64) {
     let all = tracks(r);
     (all.iter().filter(|t| t.outside()).count(), all.len(), all.first().map_or(0.0, |t| t.band))
@@ -105,10 +106,10 @@ pub fn csv(r: &Refinement) -> String {
 }
 
 const BAND: Stroke = Stroke { color: GREY, width: 1.6, dash: Some((7.0, 5.0)) };
-/// What stands inside the band.
+/// Mark of the eigenvalues inside the band.
 const INSIDE: Look = Look { color: RGBColor(165, 165, 165), mark: Mark::Ring };
 
-/// Eigenvalues, and their steps from mesh to mesh, against the number of patches.
+/// Draws the eigenvalues, and their steps from mesh to mesh, against the number of patches.
 ///
 /// # Errors
 /// If the plot crate fails, which is a defect.

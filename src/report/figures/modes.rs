@@ -107,7 +107,7 @@ pub fn table(s: &Spectrum, most: usize) -> String {
             match outside {
                 true => String::new(),
                 false if m.value.abs() <= ROUNDING => "zero to rounding".into(),
-                false => "in the band: belongs to the mesh".into(),
+                false => "in the band".into(),
             },
         ]);
     }

@@ -1,4 +1,4 @@
-//! A difference that is watched while it accumulates: the interval narrowing around 0, and where every term stands at the end.
+//! The text and the figure of `check bias`: the interval of the bias as samples accumulate, and every term at the end.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
@@ -20,7 +20,7 @@ use crate::report::{
 };
 use crate::stats::{Finding, Outcome};
 
-/// How far a watch had come at one moment.
+/// The state of the test after some batches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Glimpse {
     /// Batches so far.
