@@ -37,7 +37,7 @@ fn json(text: &str) -> serde_json::Value {
 fn equal_estimators_have_no_bias_for_any_number_of_threads() {
     let desk = Desk::new();
     let line = "check bias --scene furnace --against single --max-bounces 3 --size 8x8 --spp 4096 -q";
-    let said = desk.run(&format!("{line} -o a"));
+    let said = desk.run(&format!("{line} -v -o a"));
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
     assert!(said.out.contains("comparisons share α") && said.out.contains("could have missed"), "{}", said.out);
     for file in ["bias.png", "bias.svg", "summary.json"] {

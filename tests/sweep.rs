@@ -179,7 +179,9 @@ impl Swept {
 fn every_figure_is_made() {
     let desk = TempDir::new().unwrap();
     let listed = run(desk.path(), "figure --list");
-    let ids: Vec<&str> = listed.out.lines().filter_map(|l| l.split_whitespace().next()).collect();
+    // the list comes after the first blank line
+    let list = listed.out.lines().skip_while(|l| !l.is_empty());
+    let ids: Vec<&str> = list.filter_map(|l| l.split_whitespace().next()).collect();
     assert!(["kajiya-series", "noise-paths", "variance-cornell", "split-cornell"].iter().all(|id| ids.contains(id)));
     let said = run(desk.path(), "figure --all --size 8x8 -q -o all");
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);

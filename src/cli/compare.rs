@@ -1,14 +1,14 @@
-//! `fredholm compare A B`: two results, verdict per term, z map.
+//! `fredholm compare A B`: compares two results, with a verdict for every term and a map of z = difference/standard error.
 
-use super::base::{Ending, Failure, paragraphs};
+use super::base::{Ending, Failure, wrapped, wrapped_after};
 use super::options::{Manner, fraction, probability};
 use super::session::Session;
-use super::{notes, write};
+use super::{notes, verdict, write};
 use clap::Args;
 use fredholm::report::image::exr;
 use fredholm::report::image::typeset::Caption;
 use fredholm::report::image::zmap;
-use fredholm::report::text::summary::{self, Summary};
+use fredholm::report::text::summary::{self, Summary, VerdictRecord};
 use fredholm::report::text::table;
 use fredholm::stats::{Comparison, Criterion, Outcome, compare, discretisation};
 use fredholm::terms::{Functional, Series, World};
@@ -52,12 +52,15 @@ pub fn run(args: &Compare) -> Result<Ending, Failure> {
         )));
     }
     let Some((x, y)) = pair(&a.1, &b.1) else {
-        return Err(Failure::Input("error: one of the results holds no world\nhelp: render it again".into()));
+        return Err(Failure::Input(
+            "error: one of the results holds no world (terms, path or radiosity)\nhelp: render it again".into(),
+        ));
     };
-    // terms that one of them does not see in full are not compared
+    // a term that one of the results does not see in full is not compared
     let gap = x.gap(y);
     let whole = gap.as_ref().map_or(Cow::Borrowed(x), |(from, _)| Cow::Owned(x.before(*from)));
-    let comparison = compare(&whole, y, &criterion(args), &allowance((&a.1, &whole), (&b.1, y)));
+    let criterion = criterion(args);
+    let comparison = compare(&whole, y, &criterion, &allowance((&a.1, &whole), (&b.1, y)));
     let verdicts = summary::verdicts("", &comparison);
 
     let manner = Manner { out: args.out.clone(), force: args.force, json: args.json, ..Manner::default() };
@@ -67,16 +70,16 @@ pub fn run(args: &Compare) -> Result<Ending, Failure> {
     session.make_folder("compare")?;
     let map = z_map((&a, x.world), (&b, y.world), &session)?;
     let files = map.iter().map(|_| "z.png".to_string()).chain(["summary.json".to_string()]).collect();
-    session.sign(&Summary { verdicts: verdicts.clone(), files, ..session.record() })?;
+    let record = Summary { verdicts: verdicts.clone(), files, ..session.record() };
+    session.sign(&record)?;
     session.show(&comparison, || {
-        let head = format!("{}\n{}", line('A', &args.a, &whole, &a.1), line('B', &args.b, y, &b.1));
-        let head = if a.1.command == b.1.command {
-            head + "\nwarning: both were made by the same command with the same seed: equal bits prove nothing"
-        } else {
-            head
-        };
-        let foot = foot(&comparison, [&whole, y], gap.as_ref(), map, &session.folder);
-        paragraphs(&[head, table::verdicts(&verdicts), foot])
+        let mut answer = verdict::sentence("The two results", &comparison, &criterion);
+        if let Some((from, why)) = &gap {
+            answer += &format!("\nT{from} and everything longer is not compared: {why}.");
+        }
+        let sides = [('A', &args.a, &*whole, &a.1), ('B', &args.b, y, &b.1)].map(|(n, path, s, r)| line(n, path, s, r));
+        let blocks = [sides.join("\n"), rows(&comparison, &verdicts), remarks([&whole, y], [&a.1, &b.1], map)];
+        session.text(&wrapped(&answer), &blocks, &[], &record.files)
     })?;
     let agrees = comparison.outcome == Outcome::Agrees && gap.is_none();
     Ok(if agrees { Ending::Ok } else { Ending::Failed })
@@ -86,7 +89,7 @@ fn criterion(args: &Compare) -> Criterion {
     Criterion { of_term: args.of_term, of_total: args.of_total, alpha: args.alpha, ..Criterion::default() }
 }
 
-/// What the mesh may matter, where one side is a matrix and the other is not.
+/// The error of the mesh, where one side is a radiosity matrix and the other is not; empty otherwise.
 fn allowance((a, x): (&Summary, &Series), (b, y): (&Summary, &Series)) -> Vec<Functional> {
     match (x.world, y.world) {
         (World::Radiosity, World::Radiosity) => vec![],
@@ -96,39 +99,59 @@ fn allowance((a, x): (&Summary, &Series), (b, y): (&Summary, &Series)) -> Vec<Fu
     }
 }
 
+/// One line about a side: its folder, its world, scene, seed and samples.
 fn line(name: char, path: &Path, world: &Series, s: &Summary) -> String {
     let (path, world) = (path.display(), &world.label);
-    format!("{name}  {path}: {world}\n   scene {} ({}), seed {}, {} spp", s.scene, s.scene_hash, s.seed, s.spp)
+    let text =
+        format!("{name} = {path}: {world}; scene {} ({}), seed {}, {} spp", s.scene, s.scene_hash, s.seed, s.spp);
+    wrapped_after(&text, "    ")
 }
 
-/// The judgement, what was not compared, doubts, and what the z map shows.
-fn foot(
-    comparison: &Comparison,
-    results: [&Series; 2],
-    gap: Option<&(usize, String)>,
-    map: Option<(f64, f64)>,
-    folder: &Path,
-) -> String {
-    let mut foot = notes::judgement(comparison);
-    if let Some((from, why)) = gap {
-        foot += &format!("\nT{from} and everything longer: not supported, {why}");
+/// Rows that are printed; all of them are in `summary.json`.
+const SHOWN: usize = 10;
+
+/// The verdicts as a table with a sentence above it; of many, first those that do not agree.
+fn rows(comparison: &Comparison, verdicts: &[VerdictRecord]) -> String {
+    if verdicts.is_empty() {
+        return String::new();
     }
-    for doubt in notes::doubts(results.into_iter()) {
-        foot += &format!("\nwarning: {doubt}");
+    let above = format!(
+        "A − B for each term, in the functional and channel closest to failing: the difference, where it lies at 1 − α for all \
+         {} comparisons together, and the smallest difference that would have been found.",
+        comparison.family
+    );
+    let mut chosen: Vec<usize> = (0..verdicts.len()).collect();
+    chosen.sort_by_key(|&i| verdicts[i].outcome == Outcome::Agrees);
+    chosen.truncate(SHOWN);
+    chosen.sort_unstable();
+    let shown: Vec<VerdictRecord> = chosen.iter().map(|&i| verdicts[i].clone()).collect();
+    let left = verdicts.len() - shown.len();
+    let below = if left > 0 { format!("{left} more terms in summary.json") } else { String::new() };
+    format!("{}\n{}{below}", wrapped(&above), table::verdicts(&shown))
+}
+
+/// Doubts about the results, and the share of pixels of the z map beyond 2 and 3.
+fn remarks(results: [&Series; 2], summaries: [&Summary; 2], map: Option<(f64, f64)>) -> String {
+    let mut lines: Vec<String> = vec![];
+    if summaries[0].command == summaries[1].command {
+        lines.push("warning: both were made by the same command with the same seed: equal bits prove nothing".into());
     }
+    lines.extend(notes::doubts(results.into_iter()).iter().map(|doubt| format!("warning: {doubt}")));
     if let Some((two, three)) = map {
-        foot += "\nz map: ";
-        foot += &if two.is_finite() {
+        lines.push(if two.is_finite() {
             let (two, three) = (100.0 * two, 100.0 * three);
-            format!("{two:.1} % of the pixels beyond 2 (4.6 % if equal and normal), {three:.2} % beyond 3 (0.27 %)")
+            format!(
+                "z map: {two:.1} % of the pixels lie beyond 2 standard errors (4.6 % if equal and normal), {three:.2} % beyond \
+                 3 (0.27 %)."
+            )
         } else {
-            "no pixel has a known error".into()
-        };
-        foot += &format!("\n       {}", folder.join("z.png").display());
+            "z map: no pixel has a known error.".into()
+        });
     }
-    foot
+    wrapped(&lines.join("\n"))
 }
 
+/// The folder of a result, and its summary.
 type Result2 = (PathBuf, Summary);
 
 fn read(path: &Path) -> Result<Result2, Failure> {
@@ -140,7 +163,8 @@ fn read(path: &Path) -> Result<Result2, Failure> {
     Ok((folder, summary::read(&file)?))
 }
 
-/// The same world on both sides if there is one, terms before path before radiosity; else the best of each.
+/// The pair that is compared: the same world of both results if they share one, terms before path before radiosity; else the
+/// first of these worlds that each result has.
 fn pair<'a>(a: &'a Summary, b: &'a Summary) -> Option<(&'a Series, &'a Series)> {
     let of = |s: &'a Summary, w: World| s.series.iter().find(|s| s.world == w);
     let order = [World::Terms, World::Path, World::Radiosity];
@@ -148,12 +172,12 @@ fn pair<'a>(a: &'a Summary, b: &'a Summary) -> Option<(&'a Series, &'a Series)> 
     same.or_else(|| Some((order.iter().find_map(|&w| of(a, w))?, order.iter().find_map(|&w| of(b, w))?)))
 }
 
-/// The coarse mesh is written after the fine one.
+/// The radiosity on the coarse mesh, which a summary lists after the one on the fine mesh.
 fn coarse(s: &Summary) -> Option<&Series> {
     s.series.iter().filter(|s| s.world == World::Radiosity).nth(1)
 }
 
-/// The z map of the whole images of the worlds compared, if both runs left theirs; the fractions beyond 2 and 3.
+/// Writes the z map of the whole images, if both runs left `terms.exr`; returns the fractions of pixels beyond 2 and 3.
 fn z_map(
     (a, x): (&Result2, World),
     (b, y): (&Result2, World),

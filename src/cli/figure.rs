@@ -1,6 +1,6 @@
-//! `fredholm figure ID`: a registry of figures, each a recipe or a command that leaves data, pictures and a caption.
+//! `fredholm figure ID`: makes a figure by its name. Each is a recipe here, or another command that writes it.
 
-use super::base::{Ending, Failure, names, paragraphs, print, usage};
+use super::base::{Ending, Failure, names, paragraphs, print, usage, wrapped};
 use super::options::{Changes, Manner, size};
 use super::progress::stop_flag;
 use super::session::Session;
@@ -10,7 +10,7 @@ use fredholm::engine::Settings;
 use fredholm::report::figures::stages as report;
 use fredholm::report::text::summary::Summary;
 use fredholm::report::write_atomically;
-use fredholm::study::stages::{Grown, KAJIYA, NOISE, Recipe, reference_seed, render_stages};
+use fredholm::study::stages::{Grown, KAJIYA, NOISE, Recipe, Stage, reference_seed, render_stages};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -54,11 +54,11 @@ pub struct Figure {
     pub quiet: bool,
 }
 
-/// How a figure is made.
+/// The way in which a figure is made.
 enum Kind {
-    /// One image as it grows.
+    /// One image at growing numbers of paths per pixel.
     Stages(&'static Recipe),
-    /// The figure of another command: id, what it shows, the command's words.
+    /// The figure of another command: id, title, and the words of that command.
     Command(&'static str, &'static str, &'static [&'static str]),
 }
 
@@ -139,12 +139,16 @@ impl Kind {
     }
 }
 
-/// Names the figures, or makes one or all.
+/// Lists the figures, or makes one or all.
 pub fn run(args: &Figure) -> Result<Ending, Failure> {
     if args.list {
         let widest = FIGURES.iter().map(|f| f.id().len()).max().unwrap_or(0);
         let lines: Vec<String> = FIGURES.iter().map(|f| format!("{:widest$}  {}", f.id(), f.title())).collect();
-        return print(&lines.join("\n")).map(|()| Ending::Ok);
+        let answer = format!(
+            "{} figures can be made: `fredholm figure ID` makes one, `fredholm figure --all` makes them all.",
+            FIGURES.len()
+        );
+        return print(&paragraphs(&[wrapped(&answer), lines.join("\n")])).map(|()| Ending::Ok);
     }
     if args.id.is_none() && !args.all {
         return Err(usage("which figure?", "`fredholm figure --list` names them, --all makes them all"));
@@ -183,7 +187,7 @@ fn command(args: &Figure, id: &str, words: &[&str], folder: Option<PathBuf>) -> 
     line.extend(["--seed".into(), seed, "--out".into(), folder]);
     line.extend(args.force.then(|| "--force".into()));
     line.extend(args.quiet.then(|| "--quiet".into()));
-    // the words stand in this file, so that a mistake in them is one of the program; the tests make every figure
+    // the words are constants of this file, so a mistake in them is a defect; the tests make every figure
     let wrong = |e: clap::Error| usage(&format!("this is a defect of the program: {e}"), "please report it");
     match Words::try_parse_from(line).map_err(wrong)? {
         Words::Sweep(args) => sweep::run(&args),
@@ -198,7 +202,7 @@ enum Words {
     Sweep(sweep::Sweep),
 }
 
-/// One image as it grows.
+/// Makes a figure of one image at growing numbers of paths per pixel.
 fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Ending, Failure> {
     let manner =
         Manner { out: folder.map(Path::to_path_buf), force: args.force, quiet: args.quiet, ..Manner::default() };
@@ -227,17 +231,31 @@ fn stages(args: &Figure, recipe: &Recipe, folder: Option<&Path>) -> Result<Endin
     Ok(session.ending(false))
 }
 
+/// The text: how far the error falls, and a row per stage.
 fn people(session: &Session, recipe: &Recipe, grown: &Grown, record: &Summary) -> String {
-    let Summary { command, scene, seed, width, height, .. } = record;
-    let head = format!(
-        "{command}\n{}\nscene {scene}, seed {seed}, {width}×{height} pixels, path tracer, one render\n\
-         reference: {}, {} spp, seed {}; its variance is subtracted",
+    let Summary { scene, seed, width, height, .. } = record;
+    let error = |s: &Stage| report::rmse(s.scatter.squared_error().unwrap_or(f64::NAN));
+    let answer = match (grown.stages.first(), grown.stages.last()) {
+        (Some(few), Some(many)) => format!(
+            "With {} paths per pixel the root-mean-square error of a pixel of {scene} is {}; with {} it is {}.",
+            few.paths,
+            error(few),
+            many.paths,
+            error(many)
+        ),
+        _ => "No stage was rendered.".into(),
+    };
+    let above = format!(
+        "{}, by the path tracer: the mean of the samples, the mean shown, with everything above white cut off as on a \
+         screen, the light lost by that, the share of clipped pixels, and the error from the reference ({}, {} spp, seed {}; \
+         its variance is subtracted). Seed {seed}, {width}×{height} pixels.",
         recipe.title,
         grown.reference.label,
         recipe.reference_spp,
         reference_seed(*seed)
     );
-    let foot = "mean: what the samples say; mean shown: with everything above white cut off, as the screen does.\n\
-                The reference loses lamps and bright light, too; what an image loses beyond that is noise";
-    paragraphs(&[head, format!("{}{foot}", report::table(grown)), session.written(&record.files)])
+    let below =
+        "The reference loses lamps and bright light on a screen, too; what an image loses beyond that is noise.";
+    let table = format!("{}\n{}{}", wrapped(&above), report::table(grown).trim_start(), wrapped(below));
+    session.text(&wrapped(&answer), &[table], &[], &record.files)
 }

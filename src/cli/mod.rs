@@ -28,6 +28,7 @@ mod roulette;
 mod session;
 mod solve;
 mod sweep;
+mod verdict;
 mod walk;
 mod write;
 mod zoo;

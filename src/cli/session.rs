@@ -5,7 +5,7 @@
 //! new → open → make_folder → progress … → sign → show → ending
 //! ```
 
-use super::base::{Ending, Failure, note, paragraphs, print};
+use super::base::{Ending, Failure, note, paragraphs, print, wrapped_after};
 use super::open::{self, Opened};
 use super::options::{Changes, Manner};
 use super::output;
@@ -166,7 +166,7 @@ impl Session {
 
     /// The last line of a result: the folder and the names of its files.
     pub fn written(&self, files: &[String]) -> String {
-        format!("written to {}: {}", self.folder.display(), files.join(", "))
+        wrapped_after(&format!("written to {}: {}", self.folder.display(), files.join(", ")), "  ")
     }
 
     /// The ending of the command: interrupted, failed or well.

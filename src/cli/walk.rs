@@ -1,10 +1,10 @@
-//! `fredholm walk [SCENE]`: the estimators on the radiosity matrix, where the terms are known to rounding.
+//! `fredholm walk [SCENE]`: runs the estimators on the radiosity matrix, where every term is known to rounding.
 
-use super::base::{Ending, Failure, names, paragraphs};
+use super::base::{Ending, Failure, names, wrapped};
 use super::open::Opened;
 use super::options::{Shared, among, one_of};
 use super::session::Session;
-use super::{notes, preflight};
+use super::{notes, preflight, verdict};
 use clap::Args;
 use fredholm::engine::Settings;
 use fredholm::engine::by_matrix::{self, Matrix, MatrixError};
@@ -13,13 +13,14 @@ use fredholm::estimator::{Roulette, Technique};
 use fredholm::progress::Progress;
 use fredholm::report::figures::walk as report;
 use fredholm::report::text::summary::{self, Summary};
-use fredholm::report::text::table;
+use fredholm::report::text::table::{self, significant};
 use fredholm::report::write_atomically;
 use fredholm::scene::Description;
 use fredholm::solver::Radiosity;
 use fredholm::stats::{Criterion, Outcome, compare};
 use fredholm::study::walk::{self, Study, Walked, Walker};
-use fredholm::study::zero_variance::{self, ZeroVariance};
+use fredholm::study::zero_variance::{self, Guide, ZeroVariance};
+use fredholm::terms::Channel;
 
 /// Arguments of `walk`.
 #[derive(Clone, Debug, Args)]
@@ -62,7 +63,7 @@ fn walkers() -> impl Iterator<Item = &'static str> {
     Study::all().into_iter().map(Study::name)
 }
 
-/// Builds the matrix, walks on it, and says whether the walk gives its powers.
+/// Builds the matrix, walks on it, and compares the walks with the powers of the matrix.
 pub fn run(args: &Walk) -> Result<Ending, Failure> {
     let mut session = Session::new(&args.shared, args.seed)?;
     let opened = session.open(&args.scene, &args.shared.changes, None)?;
@@ -79,12 +80,12 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
     };
     let patches = matrix.radiosity.patches.len();
     session.sized([patches as u32, 1]);
-    let (text, record, failed) = match study {
+    let Told { answer, table, details, record, failed } = match study {
         Study::Walk(walker) => {
             let walked = walk::walk(&matrix, walker, &settings, session.progress());
-            beside_the_powers(&walked, session.record())
+            beside_the_powers(&walked, args, patches, session.record())
         }
-        Study::ZeroVariance => led(&session, &opened, &matrix, &settings)?,
+        Study::ZeroVariance => guided(&session, &opened, &matrix, &settings)?,
     };
     let mut record = Summary { spp: args.spp.into(), max_bounces: settings.max_bounces, ..record };
     record.files.push("summary.json".into());
@@ -97,9 +98,19 @@ pub fn run(args: &Walk) -> Result<Ending, Failure> {
             args.spp,
             matrix.spectral.each_ref().map(|s| format!("{:.5}", s.radius)).join(", ")
         );
-        paragraphs(&[head, text, session.written(&record.files)])
+        let details: Vec<String> = std::iter::once(head).chain(details).collect();
+        session.text(&wrapped(&answer), &[table], &details, &record.files)
     })?;
     Ok(session.ending(failed))
+}
+
+/// The text about a study, its record, and whether a comparison failed.
+struct Told {
+    answer: String,
+    table: String,
+    details: Vec<String>,
+    record: Summary,
+    failed: bool,
 }
 
 fn settings(args: &Walk) -> Settings {
@@ -116,7 +127,7 @@ fn settings(args: &Walk) -> Settings {
     }
 }
 
-/// A matrix of about so many patches; nothing when stopped.
+/// The matrix of a mesh of about `patches` patches; `None` if interrupted.
 fn mesh(
     opened: &Opened,
     patches: usize,
@@ -131,23 +142,48 @@ fn mesh(
     }
 }
 
-/// The table and the verdicts of an estimator against the powers.
-fn beside_the_powers(walked: &Walked, record: Summary) -> (String, Summary, bool) {
-    let comparison = compare(&walked.sampled.series, &walked.exact, &Criterion::default(), &[]);
+/// Terms in the table that is printed without `--verbose`.
+const SHOWN: usize = 10;
+
+/// The estimator compared with the powers of the matrix.
+fn beside_the_powers(walked: &Walked, args: &Walk, patches: usize, record: Summary) -> Told {
+    let criterion = Criterion::default();
+    let comparison = compare(&walked.sampled.series, &walked.exact, &criterion, &[]);
     let verdicts = summary::verdicts("walk − powers", &comparison);
-    let text = [report::table(walked), table::verdicts(&verdicts), notes::judgement(&comparison)];
-    let series = vec![walked.sampled.series.clone(), walked.exact.clone()];
-    (paragraphs(&text), Summary { verdicts, series, ..record }, comparison.outcome == Outcome::Differs)
+    let label = &walked.sampled.series.label;
+    let who = format!("The walks of `{}` and the powers of the matrix", args.estimator.name());
+    let above = format!(
+        "The mean of every term TᵏE over {patches} patches: by {} walks from each patch ({label}) with the 95 % interval, and \
+         exactly, as a power of the matrix. A verdict holds for all three channels; ✓ means proved smaller than {}.",
+        args.spp,
+        verdict::delta(&criterion)
+    );
+    let left = walked.exact.image().terms.len().saturating_sub(SHOWN);
+    let below = if left > 0 { format!("{left} more terms in summary.json") } else { String::new() };
+    Told {
+        answer: verdict::sentence(&who, &comparison, &criterion),
+        table: format!("{}\n{}{below}", wrapped(&above), report::table(walked, &comparison, SHOWN)),
+        details: vec![
+            format!(
+                "Every term with its difference; z is the difference in standard errors, patch by patch.\n{}",
+                report::full_table(walked)
+            ),
+            format!("Every comparison, in the channel where it is closest to failing.\n{}", table::verdicts(&verdicts)),
+            notes::judgement(&comparison),
+        ],
+        failed: comparison.outcome == Outcome::Differs,
+        record: Summary { verdicts, series: vec![walked.sampled.series.clone(), walked.exact.clone()], ..record },
+    }
 }
 
-/// The tables and the figure of the zero-variance study.
-fn led(
+/// The zero-variance study: walks that are guided by approximations of the solution, with tables and a figure.
+fn guided(
     session: &Session,
     opened: &Opened,
     matrix: &Matrix<Radiosity>,
     settings: &Settings,
-) -> Result<(String, Summary, bool), Failure> {
-    // meshes a third as fine at each step, the coarsest first
+) -> Result<Told, Failure> {
+    // the coarsest mesh first; every next one has three times as many patches
     let mut coarse = vec![];
     for patches in [81, 27, 9, 3].map(|f| settings.patches / f).into_iter().filter(|&n| n > 0) {
         coarse.extend(mesh(opened, patches, settings, session.progress())?);
@@ -157,23 +193,50 @@ fn led(
     let found: Vec<ZeroVariance> = (0..3).map(study).collect();
     write_atomically(&session.folder.join("walk.csv"), report::csv(&found).as_bytes())?;
     report::draw(&found, &session.caption())?.write(&session.folder, "walk")?;
-    let text = [
-        "the whole series: absorbed with q = E/(E + T v), led by p ∝ T v".to_string(),
-        report::guides(&found),
-        "one term at a time: k steps, led by the lower terms".to_string(),
-        report::terms(&found),
+    let above = "The variance of one walk divided by B², by channel, for guides v of growing quality; the error of v is \
+                 ‖v − B‖/‖B − E‖ in the first channel. A guide chooses the steps, p ∝ T v, and the end of a walk.";
+    let details = vec![
+        format!(
+            "The whole series: walks are absorbed with probability q = E/(E + T v) and guided by p ∝ T v.\n{}",
+            report::guides(&found)
+        ),
+        format!("One term at a time: walks of k steps, guided by the lower terms.\n{}", report::terms(&found)),
     ];
-    let files = names(["walk.csv", "walk.png", "walk.svg"]);
-    Ok((paragraphs(&text), Summary { files, ..session.record() }, false))
+    Ok(Told {
+        answer: without_variance(&found),
+        table: format!("{}\n{}", wrapped(above), report::variances(&found)),
+        details,
+        record: Summary { files: names(["walk.csv", "walk.png", "walk.svg"]), ..session.record() },
+        failed: false,
+    })
 }
 
-/// Absorption scores where walks end; where nothing is absorbed, what is emitted would be lost.
+/// The answer of the zero-variance study: the variance without a guide and with the solution as the guide.
+fn without_variance(found: &[ZeroVariance]) -> String {
+    let of = |z: &ZeroVariance, guide: Guide| {
+        z.guides.iter().find(|l| l.guide == guide).map_or(f64::NAN, |l| l.spread.variance)
+    };
+    let worst = found.iter().max_by(|a, b| of(a, Guide::Analog).total_cmp(&of(b, Guide::Analog)));
+    let Some(worst) = worst else { return "No walk was made.".into() };
+    let channel = Channel::ALL[worst.channel];
+    let [analog, exact] = [Guide::Analog, Guide::Exact].map(|g| of(worst, g));
+    let zero = if exact < 1e-10 { ", which is zero to rounding" } else { "" };
+    format!(
+        "The better the guide, the smaller the variance: without one a walk has {} B² in the {channel} channel, and guided by the \
+         solution B itself it has {} B²{zero}.",
+        significant(analog, 3),
+        significant(exact, 2)
+    )
+}
+
+/// Refuses a scene in which an emitter absorbs nothing: the absorption estimator scores where walks are absorbed, so it would
+/// lose the emitted light.
 fn refuse_lost_light(d: &Description, study: Study) -> Result<(), Failure> {
     let analog = matches!(study, Study::Walk(Walker::Absorption) | Study::ZeroVariance);
     let bright = |m: usize| d.materials[m].lambertian().is_some_and(|r| r.max_element() >= 1.0);
     if analog && d.shapes.iter().any(|s| s.emission.max_element() > 0.0 && bright(s.material)) {
         return Err(Failure::Usage(
-            "error: a surface that shines absorbs nothing, and the absorption estimator scores where walks are absorbed\n\
+            "error: an emitter of this scene absorbs nothing, and the absorption estimator scores where walks are absorbed\n\
              help: lower its reflectance below 1, or use --estimator prefix"
                 .into(),
         ));

@@ -196,7 +196,7 @@ mod tests {
     #[test]
     fn a_geometric_series_needs_what_its_rate_says() {
         for rate in [0.3f64, 0.5, 0.8] {
-            for (from, part) in [(0, 0.1), (0, 0.01), (2, 0.1), (2, 0.001)] {
+            for (from, part) in [(0, 0.1f64), (0, 0.01), (2, 0.1), (2, 0.001)] {
                 let exact = from + ((part.ln() / rate.ln()) - 1.0).ceil().max(0.0) as usize;
                 let both = Enough { least: Some(exact), most: Some(exact) };
                 assert_eq!(enough(&geometric(rate, 0.0), from, part), both, "{rate} {from} {part}");

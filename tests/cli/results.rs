@@ -150,7 +150,7 @@ fn one_sample_has_no_known_error() {
     let said = desk.run("compare a b");
     assert_eq!(said.code, 1);
     assert!(!said.out.contains("NaN"), "{}", said.out);
-    let reason = "Inconclusive: one replicate gives no standard error: raise the samples per pixel.";
+    let reason = "one replicate gives no standard error";
     assert!(said.out.contains(reason), "{}", said.out);
     assert!(said.out.contains("z map: no pixel has a known error"), "{}", said.out);
 }
@@ -196,7 +196,7 @@ fn a_tail_that_is_not_estimated_is_not_zero() {
 fn walks_on_the_matrix_are_held_against_its_powers() {
     let desk = Desk::new();
     let said = desk.ok("walk furnace --patches 24 --spp 64 -q -o walk");
-    assert!(said.out.contains("power of the matrix") && said.out.contains("agrees"), "{}", said.out);
+    assert!(said.out.contains("the powers of the matrix") && said.out.contains("✓ agrees"), "{}", said.out);
     let s = desk.summary("walk");
     assert_eq!((s.series.len(), s.series[1].world), (2, World::Radiosity));
     let said = desk.ok("walk furnace --patches 96 --estimator zero-variance --spp 16 -q -o led");

@@ -32,16 +32,16 @@ fn the_command_says_correct_or_names_the_mistake() {
     }
     let said = run(&desk, &format!("diagnose good.exr --against cornell -o a {QUICK}"));
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    assert!(said.out.starts_with("good.exr: correct, as far as this data can tell"), "{}", said.out);
+    assert!(said.out.starts_with("good.exr is correct, as far as this data can tell"), "{}", said.out);
     assert!(
-        said.out.contains("A uniform bias") && said.out.contains("cannot show samples that repeat"),
+        said.out.contains("a uniform bias") && said.out.contains("cannot show samples that repeat"),
         "{}",
         said.out
     );
 
     let said = run(&desk, &format!("diagnose bad.exr --against cornell -o b {QUICK}"));
     assert_eq!(said.code, 1, "{}{}", said.out, said.err);
-    assert!(said.out.starts_with("bad.exr: wrong: missing-pi-connection"), "{}", said.out);
+    assert!(said.out.starts_with("bad.exr is wrong: missing-pi-connection"), "{}", said.out);
     for file in ["diagnosis.png", "diagnosis.svg", "diagnosis.json", "summary.json"] {
         assert!(desk.path().join("b").join(file).is_file(), "{file}");
     }
@@ -52,7 +52,11 @@ fn the_command_says_correct_or_names_the_mistake() {
     let line = format!("diagnose good.exr bad.exr --against cornell {QUICK}");
     let said = run(&desk, &format!("{line} -o c -t 1"));
     assert_eq!(said.code, 1);
-    assert!(said.out.contains("1 of 2 are wrong") && said.out.contains("data can tell: bias < "), "{}", said.out);
+    assert!(
+        said.out.contains("1 of 2 pictures is wrong") && said.out.contains("data can tell: bias < "),
+        "{}",
+        said.out
+    );
     let json = run(&desk, &format!("{line} --json -o c -t 2"));
     let json: serde_json::Value = serde_json::from_str(&json.out).unwrap();
     assert_eq!(json[1]["diagnosis"]["suspects"][0]["name"], "missing-pi-connection");
@@ -71,7 +75,7 @@ fn the_command_says_correct_or_names_the_mistake() {
     developed.picture.write(&desk.path().join("good.png")).unwrap();
     let said = run(&desk, &format!("diagnose good.png --against cornell -o e {QUICK}"));
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    assert!(said.out.contains("exposure unknown") && said.out.contains("end of 8 bits"), "{}", said.out);
+    assert!(said.out.contains("The exposure is unknown") && said.out.contains("end of 8 bits"), "{}", said.out);
 }
 
 #[test]

@@ -1,12 +1,13 @@
-//! `fredholm check bias`: the difference of two estimators, watched while it accumulates.
+//! `fredholm check bias`: tests the difference of two estimators while samples accumulate.
 //!
-//! Both sides are rendered in batches from streams of their own. After every batch an anytime-valid test looks at all terms,
-//! the whole and the regions; whatever ends the watch (a decision, the time, Ctrl-C), the chance of a false alarm stays below α.
+//! Both sides are rendered in batches, from separate random numbers. After every batch an anytime-valid test looks at all terms,
+//! the whole image and the regions. Whatever ends the watch (a decision, the time, Ctrl-C), the probability of a false alarm
+//! stays below α.
 
 use super::bias_args::Bias;
 use super::common::Common;
 use super::sides::{Against, FinishedRun, check_sides, finished, side};
-use crate::cli::base::{Ending, Failure, names, note, paragraphs, usage};
+use crate::cli::base::{Ending, Failure, names, note, usage, wrapped};
 use crate::cli::notes;
 use crate::cli::session::Session;
 use fredholm::engine::batches::Side;
@@ -19,10 +20,10 @@ use fredholm::terms::{Functional, Series, World};
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
-/// Width and height of a batch: means need samples, not pixels.
+/// Largest width and height of the image of a batch: a mean needs samples, not pixels.
 const SMALL: u32 = 64;
 
-/// What a watch came to, for programs.
+/// The result of a watch, as `--json` prints it.
 #[derive(Serialize)]
 struct Record<'a> {
     command: &'a str,
@@ -38,11 +39,11 @@ struct Record<'a> {
     findings: &'a [Finding],
 }
 
-/// Watches.
+/// Renders batches until the watch ends, writes the files and prints the verdict.
 pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
     let mut session = Session::new(&args.common.shared, args.common.seed)?;
     let finished = finished(args)?;
-    // regions are parts of an image of one size
+    // the regions of both sides are the same only if their images have the same size
     let same = Common { size: finished.as_ref().map(|f| f.1).or(args.common.size), ..args.common.clone() };
     let loaded = same.load(&mut session, &args.scene, SMALL)?;
     let [w, h] = loaded.description.camera.size;
@@ -88,7 +89,7 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
         if let Some((from, why)) = &gap {
             foot += &format!("\nT{from} and everything longer: not compared, {why}");
         }
-        people(&session, args, &record, foot, u64::from(spp * w * h))
+        people(&session, args, &record, &foot, u64::from(spp * w * h))
     })?;
     Ok(match outcome {
         Outcome::Differs => Ending::Failed,
@@ -96,7 +97,7 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
     })
 }
 
-/// Both sides.
+/// The two sides: the estimator that is checked, and another estimator or a finished run.
 fn sides(args: &Bias, finished: Option<FinishedRun>, spp: u32) -> Result<(Side, Against), Failure> {
     let first = side(args, &args.estimator, args.technique, args.sampling, args.roulette.clone(), spp)?;
     let against = match finished {
@@ -110,15 +111,15 @@ fn sides(args: &Bias, finished: Option<FinishedRun>, spp: u32) -> Result<(Side, 
     Ok((first, against))
 }
 
-/// What was seen while it accumulated.
+/// The result of a watch.
 struct Watched {
     detector: Detector,
     curve: Vec<Glimpse>,
-    /// Paths, rays, samples that are not finite.
+    /// Numbers of paths, of rays, and of samples that are not finite.
     cost: [u64; 3],
 }
 
-/// Batch after batch, until it is decided, the time is over, or Ctrl-C.
+/// Renders batch after batch, until the test decides, the time is over, or Ctrl-C is pressed.
 fn watch(
     session: &Session,
     args: &Bias,
@@ -138,7 +139,7 @@ fn watch(
     let time = args.time.or(args.spp.is_none().then_some(Duration::from_secs(60)));
     let (mut curve, mut cost, mut found) = (vec![], [0u64; 3], None);
     let mut said = Instant::now();
-    // batches are short: one that is begun is finished, so that all are alike
+    // batches are short: a batch that has begun is finished, so that all have the same size
     for i in 0..most {
         let a = first.batch(scene, "first", i);
         cost = [cost[0] + a.paths, cost[1] + a.rays, cost[2] + a.non_finite];
@@ -152,7 +153,7 @@ fn watch(
             Against::Finished(series) => detector.push(&a, &series.functionals),
         }
         let n = detector.batches();
-        // a bias that has been found is followed for as long again, so that one sees how large it is
+        // after a bias is found, the watch goes on for as many batches again, to measure how large the bias is
         let decided = match detector.outcome() {
             Outcome::Inconclusive => false,
             Outcome::Agrees => true,
@@ -174,20 +175,35 @@ fn watch(
     Watched { detector, curve, cost }
 }
 
-fn people(session: &Session, args: &Bias, record: &Record<'_>, foot: String, paths: u64) -> String {
-    let Record { command, first, second, batches, comparisons, non_finite, .. } = record;
-    let foot = if *non_finite > 0 {
-        foot + &format!("\nwarning: {non_finite} samples were not finite; they are left in the sums")
-    } else {
-        foot
-    };
+/// Rows that are printed without `--verbose`.
+const SHOWN: usize = 12;
+
+/// The text: the verdict, the terms, and with `--verbose` e-values and p-values.
+fn people(session: &Session, args: &Bias, record: &Record<'_>, answer: &str, paths: u64) -> String {
+    let Record { command, first, second, batches, comparisons, non_finite, findings, .. } = record;
+    let mut above = format!(
+        "First ({first}) − second ({second}), in percent of the value: the bias, the interval it lies in, and the smallest bias \
+         that would have been found. The intervals hold all at once and at every moment."
+    );
+    if *non_finite > 0 {
+        above += &format!("\nwarning: {non_finite} samples were not finite; they are left in the sums");
+    }
+    let mut chosen: Vec<usize> = (0..findings.len()).collect();
+    chosen.sort_by_key(|&i| (findings[i].outcome == Outcome::Agrees, i + 1 < findings.len()));
+    chosen.truncate(SHOWN);
+    chosen.sort_unstable();
+    let shown: Vec<&Finding> = chosen.iter().map(|&i| &findings[i]).collect();
+    let left = findings.len() - shown.len();
+    let below = if left > 0 { format!("{left} more terms in summary.json") } else { String::new() };
     let head = format!(
-        "{command}\nfirst   {first}\nsecond  {second}\n{batches} batches of {} paths a side, seed {}; {comparisons} comparisons share α = {}",
+        "{command}\nfirst   {first}\nsecond  {second}\n{batches} batches of {} paths on each side, seed {}; {comparisons} comparisons share α = {}",
         table::count(paths),
         args.common.seed,
         args.alpha
     );
-    paragraphs(&[head, watch::table(record.findings), foot, session.written(&names(FILES))])
+    let full = format!("All terms with their e-values and p-values.\n{}", watch::full_table(findings));
+    let tables = [format!("{}\n{}{below}", wrapped(&above), watch::table(&shown))];
+    session.text(&wrapped(answer), &tables, &[head, full], &names(FILES))
 }
 
 /// The terms that both sides see in full.
@@ -206,7 +222,7 @@ fn cut(functionals: Vec<Functional>, gap: Option<&(usize, String)>) -> Vec<Funct
     series.before(*from).functionals
 }
 
-/// One line: how far, the bias of the whole with its interval, the evidence.
+/// The progress line: time, batches, the bias of the whole image with its interval, and the e-value.
 fn progress(detector: &Detector, started: Instant) -> String {
     let image = detector.image();
     let widest = image.iter().max_by(|a, b| (a.effect / a.scale).abs().total_cmp(&(b.effect / b.scale).abs()));

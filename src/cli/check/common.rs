@@ -1,4 +1,4 @@
-//! What every check takes.
+//! Options that every check has, and the scene they load.
 
 use crate::cli::base::Failure;
 use crate::cli::open::Opened;
@@ -8,7 +8,7 @@ use clap::Args;
 use fredholm::engine::known::resort::with_last_resort;
 use fredholm::scene::Scene;
 
-/// What every check takes.
+/// Options that every check has.
 #[derive(Clone, Debug, Args)]
 pub struct Common {
     /// Seed: same seed and same number of samples, same bits, for any number of threads
@@ -23,7 +23,7 @@ pub struct Common {
 }
 
 impl Common {
-    /// The scene, in a small picture unless a size was asked for.
+    /// Loads the scene; without `--size` the image has at most `most` pixels on each side.
     pub fn load(&self, session: &mut Session, name: &str, most: u32) -> Result<Opened, Failure> {
         let mut opened = session.open(name, &self.shared.changes, None)?;
         let size = self.size.unwrap_or_else(|| small(opened.description.camera.size, most));
@@ -33,7 +33,7 @@ impl Common {
     }
 }
 
-/// The same shape with at most so many pixels on each side.
+/// A size of the same aspect ratio with at most `most` pixels on each side.
 fn small([w, h]: [u32; 2], most: u32) -> [u32; 2] {
     let largest = w.max(h);
     if largest <= most {

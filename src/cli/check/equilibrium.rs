@@ -1,7 +1,7 @@
-//! `fredholm check equilibrium SCENE`: the rendering equation itself as a test.
+//! `fredholm check equilibrium SCENE`: tests whether L = E + T L holds at points of the scene.
 
 use super::common::Common;
-use crate::cli::base::{Ending, Failure, names, note, paragraphs, usage};
+use crate::cli::base::{Ending, Failure, counted, names, note, usage, wrapped};
 use crate::cli::options::{among, probability};
 use crate::cli::session::Session;
 use crate::cli::{notes, preflight, write};
@@ -20,7 +20,7 @@ use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::stats::{Evidence, Outcome, estimate, min_detectable};
 use fredholm::study::equilibrium::{self, Balance, Group, Judgement, Origin, judge};
-use fredholm::terms::{Channel, TermImage, World};
+use fredholm::terms::{TermImage, World};
 use serde_json::json;
 
 pub(super) const EXAMPLES: &str = "Examples:
@@ -35,7 +35,7 @@ half, and whether the p-values of all points are uniform.
 
 Blind to an error in T that both sides share: L' = E + 1.02 T L' holds, too.";
 
-/// Pixels of the picture on each side: few, with many samples each, so that the rare hits of a lamp make no pattern of their own.
+/// Width and height of the picture: few pixels with many samples each, so that rare hits of a lamp do not show as a pattern.
 const PICTURE: u32 = 32;
 
 /// Arguments of `check equilibrium`.
@@ -72,7 +72,7 @@ pub struct Equilibrium {
     common: Common,
 }
 
-/// Everything that was found.
+/// The estimates of both sides, and the judgement.
 struct Checked<'a> {
     args: &'a Equilibrium,
     groups: [(&'static str, Vec<Balance>); 2],
@@ -108,7 +108,7 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
     Ok(session.ending(found.judgement.outcome == Outcome::Differs))
 }
 
-/// Refuses what is no solution of the equation, or cannot be found by a step.
+/// Refuses settings under which L does not solve the equation, and lights that one step cannot hit.
 fn can_be_tested(args: &Equilibrium, scene: &Scene, settings: &Settings) -> Result<(), Failure> {
     if !args.roulette.ends() {
         let help = "use a schedule that ends paths, such as albedo";
@@ -124,12 +124,12 @@ fn can_be_tested(args: &Equilibrium, scene: &Scene, settings: &Settings) -> Resu
     preflight::light_is_lost(scene, settings, &[World::Path])
 }
 
-/// Both sides at points and through the camera, and what they say.
+/// Estimates both sides at points and through the camera, and judges their difference.
 fn balance<'a>(args: &'a Equilibrium, scene: &Scene, settings: &Settings, session: &Session) -> Checked<'a> {
     let half = (args.points / 2).max(1);
     let at = |from| {
         let points = equilibrium::points(scene, from, half, args.common.seed);
-        // streams of the two halves must not be the same
+        // the two halves must not use the same random numbers
         let seed = settings.seed ^ ((from as u64) << 63);
         let settings = Settings { seed, ..settings.clone() };
         equilibrium::at_points(scene, &points, &settings, args.factor, session.progress())
@@ -147,83 +147,75 @@ fn balance<'a>(args: &'a Equilibrium, scene: &Scene, settings: &Settings, sessio
     Checked { args, groups, judgement, undecided, images, spp: seen.spp }
 }
 
+/// The text: the verdict, the two groups of points, and with `--verbose` the settings and the p-values.
 fn people(session: &Session, found: &Checked<'_>, files: &[String]) -> String {
     let (args, j) = (found.args, &found.judgement);
     let all = found.groups.iter().map(|g| g.1.len()).sum::<usize>();
-    let mut head = format!(
-        "{}\nL: path tracer, {}, roulette {}; E + T L: one step, then the same with other numbers\n\
-         {all} points, {} samples of each side at every point, seed {}, α = {}",
+    let mut answer = verdict(found);
+    if args.factor != 1.0 {
+        answer += &format!("\nIt was broken on purpose: the step by hand weighs {} times what it should.", args.factor);
+    }
+    let above = format!(
+        "Means over points, in the channel with the widest bound: T L, then the difference of both sides in percent of it \
+         ({} samples of each side at every point). ✓ means proved smaller than δ = {} % of T L.",
+        table::count(args.spp.into()),
+        100.0 * args.delta
+    );
+    let below = match j.judged {
+        0 => format!("None of the {all} points has enough events to be judged by itself."),
+        n => format!(
+            "Of {all} points {n} have enough events to be judged by themselves; {} rejected.",
+            if j.rejected.len() == 1 { "1 is".into() } else { format!("{} are", j.rejected.len()) }
+        ),
+    };
+    let head = format!(
+        "{}\nL: path tracer, {}, roulette {}; E + T L: one step, then the same with other random numbers\n\
+         {}, seed {}, α = {}",
         session.command(),
         args.technique,
         args.roulette,
-        table::count(args.spp.into()),
+        counted(all, "point"),
         args.common.seed,
         args.alpha
     );
-    if args.factor != 1.0 {
-        head += &format!("\nbroken on purpose: the step by hand weighs {} times what it should", args.factor);
-    }
-    let mut lines: Vec<String> = j.groups.iter().map(|g| mean_of(g, args.delta)).collect();
-    lines.push(format!(
-        "point by point: {} of {all} have events enough to be judged, {} rejected; smallest p = {} (Holm)",
-        j.judged,
-        j.rejected.len(),
-        significant(j.smallest, 2)
-    ));
-    lines.push(format!(
-        "their p-values: at most {} away from uniform ones, p = {}",
+    let p_values = format!(
+        "smallest p-value of a point: {} (Holm)\ndistance of all p-values from uniform ones: {}, p = {}",
+        significant(j.smallest, 2),
         significant(j.uniformity.distance, 2),
         significant(j.uniformity.p, 2)
-    ));
-    paragraphs(&[head, lines.join("\n"), verdict(found), session.written(files)])
+    );
+    let tables = [format!("{}\n{}{}", wrapped(&above), figure::table(&j.groups), wrapped(&below))];
+    session.text(&wrapped(&answer), &tables, &[head, p_values], files)
 }
 
-/// One line: how far both sides are apart in the mean over a group of points.
-fn mean_of(g: &Group, delta: f64) -> String {
-    let c = worst(g);
-    let (value, difference, half) = (g.value[c], g.difference.mean[c], g.half[c]);
-    let apart = match g.evidence.no_error {
-        None => {
-            let (apart, half, delta) = (100.0 * difference / value, 100.0 * half / value, 100.0 * delta);
-            format!("{apart:+.2} ± {half:.2} % of it (δ {delta} %), p = {}", significant(g.p, 2))
-        }
-        Some(why) => format!("{}, which has no error ({})", significant(difference, 3), why.short()),
-    };
-    format!(
-        "mean over {} {} points: T L {} ({}), L − (E + T L) {apart}: {}",
-        g.points,
-        g.name,
-        significant(value, 4),
-        Channel::ALL[c],
-        table::outcome(g.outcome)
-    )
-}
-
-/// The verdict in words.
+/// The verdict in one sentence, with the reason or the remedy where nothing is decided.
 fn verdict(found: &Checked<'_>) -> String {
     if let Some(why) = &found.undecided {
         return notes::undecided(why);
     }
     if let Some(why) = found.groups.iter().find_map(|g| Evidence::of_variance(g.1.first()?.variance).no_verdict) {
-        return format!("Nothing is decided: {why}.");
+        return format!("Nothing is decided about L = E + T L.\nThe reason: {why}.");
     }
-    let words = match found.judgement.outcome {
-        Outcome::Agrees => "The equation holds, as closely as was asked for.",
-        Outcome::Differs => "The equation does not hold.",
-        Outcome::Inconclusive if found.judgement.groups.iter().all(|g| g.value == glam::DVec3::ZERO) => {
-            "No light was found at any of the points: nothing was tested."
+    let (j, delta) = (&found.judgement, 100.0 * found.args.delta);
+    match j.outcome {
+        Outcome::Agrees => {
+            format!(
+                "The equation L = E + T L holds: the mean difference of its sides is proved smaller than {delta} % of T L."
+            )
         }
-        Outcome::Inconclusive => {
-            "Nothing speaks against the equation; the noise hides differences as large as δ: raise --spp."
+        Outcome::Differs => format!(
+            "The equation L = E + T L does not hold: if it did, this would happen with a probability of at most {}.",
+            found.args.alpha
+        ),
+        Outcome::Inconclusive if j.groups.iter().all(|g| g.value == glam::DVec3::ZERO) => {
+            "Nothing was tested: no light was found at any of the points.".into()
         }
-    };
-    words.into()
-}
-
-/// The channel whose difference is bounded worst.
-fn worst(g: &Group) -> usize {
-    let reach = (g.difference.mean.abs() + g.half) / g.value;
-    (0..3).filter(|&c| reach[c].is_finite()).max_by(|&a, &b| reach[a].total_cmp(&reach[b])).unwrap_or(0)
+        Outcome::Inconclusive => format!(
+            "Nothing contradicts L = E + T L, but the noise hides differences as large as {delta} % of T L.\n\
+             A larger --spp than {} lowers the noise.",
+            found.args.spp
+        ),
+    }
 }
 
 fn record(found: &Checked<'_>, command: &str) -> serde_json::Value {
@@ -250,7 +242,7 @@ fn record(found: &Checked<'_>, command: &str) -> serde_json::Value {
     })
 }
 
-/// The points as they are drawn.
+/// The points of both groups as the figure draws them.
 fn dots(found: &Checked<'_>) -> Vec<(String, Vec<Dot>)> {
     let mut number = 0..;
     let mut dot = |b: &Balance| {
@@ -270,7 +262,7 @@ fn dots(found: &Checked<'_>) -> Vec<(String, Vec<Dot>)> {
     found.groups.iter().map(|(name, b)| (words(name).to_owned(), b.iter().map(&mut dot).collect())).collect()
 }
 
-/// Writes plot, pictures, points and the record; the names of the files.
+/// Writes plot, pictures, points and the record; returns the names of the files.
 fn write_all(session: &Session, found: &Checked<'_>) -> Result<Vec<String>, Failure> {
     let (folder, caption, common) = (&session.folder, session.caption(), session.record());
     figure::draw(&dots(found), &caption)?.write(folder, "equilibrium")?;
@@ -290,9 +282,9 @@ fn write_all(session: &Session, found: &Checked<'_>) -> Result<Vec<String>, Fail
     Ok(files)
 }
 
-/// A group as a row of the record.
+/// A group as a verdict of `summary.json`.
 fn verdict_of(g: &Group, alpha: f64) -> summary::VerdictRecord {
-    let c = worst(g);
+    let c = g.worst_channel();
     let (effect, half) = (g.difference.mean[c], g.half[c]);
     let (error, freedom) = (g.difference.std_error[c], g.difference.replicates as f64 - 1.0);
     summary::VerdictRecord {

@@ -1,4 +1,4 @@
-//! `fredholm check …`: tests of the equation and of the estimators, each with its false-alarm rate.
+//! `fredholm check …`: tests of the rendering equation and of the estimators, each with a known false-alarm rate.
 
 mod bias;
 mod bias_args;

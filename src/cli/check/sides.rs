@@ -1,4 +1,4 @@
-//! The two sides of `check bias`: what is asked for by name, and what is refused.
+//! The two sides of `check bias`: estimators by name or a finished run, and the combinations that are refused.
 
 use super::bias_args::Bias;
 use crate::cli::base::{Failure, usage};
@@ -14,13 +14,13 @@ use fredholm::scene::bsdf::Sampling;
 use fredholm::terms::{Series, World};
 use std::path::PathBuf;
 
-/// What the first side is held against.
+/// The side with which the first one is compared: an estimator, or a finished run.
 pub(super) enum Against {
     Rendered(Side),
     Finished(Box<Series>),
 }
 
-/// One way of rendering, by name.
+/// A side by the name of its estimator, with `spp` samples per pixel in a batch.
 pub(super) fn side(
     args: &Bias,
     name: &str,
@@ -57,10 +57,10 @@ pub(super) fn side(
     Ok(Side { estimator, settings })
 }
 
-/// A result and the size of its image.
+/// The series of a finished run and the size of its image.
 pub(super) type FinishedRun = (Box<Series>, [u32; 2]);
 
-/// The finished run that the other side is, if it is one, and the size of its image.
+/// The finished run that `--against` names; `None` if it names an estimator.
 pub(super) fn finished(args: &Bias) -> Result<Option<FinishedRun>, Failure> {
     let path = PathBuf::from(&args.against);
     let file = if path.is_dir() { path.join("summary.json") } else { path };
@@ -74,12 +74,13 @@ pub(super) fn finished(args: &Bias) -> Result<Option<FinishedRun>, Failure> {
         return Err(usage(&format!("the finished run has {w}×{h} pixels"), "leave --size out"));
     }
     let mut series = run.series;
-    // terms if there are any, for they say more
+    // the terms first, because they allow a verdict on each of them
     series.sort_by_key(|s| [World::Terms, World::Path, World::Radiosity].iter().position(|w| *w == s.world));
     match series.into_iter().next() {
         Some(series) if series.world != World::Radiosity => Ok(Some((Box::new(series), size))),
         _ => {
-            let help = "a matrix has a discretisation error that no number of batches knows: use `fredholm compare`";
+            let help =
+                "a radiosity matrix has a discretisation error, which batches do not measure: use `fredholm compare`";
             Err(usage(&format!("{} holds no sampled result", file.display()), help))
         }
     }
@@ -101,7 +102,7 @@ impl Against {
     }
 }
 
-/// Refuses what could only end badly.
+/// Refuses estimators that cannot find the light of the scene.
 pub(super) fn check_sides(scene: &Scene, first: &Side, against: &Against) -> Result<(), Failure> {
     preflight::can_be_sampled(scene, first.estimator, &first.settings)?;
     match against {

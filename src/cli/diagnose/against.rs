@@ -1,4 +1,4 @@
-//! What a suspect is held against: terms rendered here, or those of an existing run.
+//! The reference with which a picture is compared: terms rendered here, or those of an existing run.
 
 use super::args::Diagnose;
 use super::suspects::size_mismatch;
@@ -20,7 +20,7 @@ use fredholm::scene::{Description, Scene};
 use fredholm::terms::World;
 use std::path::Path;
 
-/// Where the reference comes from.
+/// The scene or the run that `--against` names.
 pub struct Source {
     /// Name of the scene.
     pub name: String,
@@ -34,21 +34,21 @@ pub struct Source {
 pub struct Right {
     /// Its pictures, averaged down.
     pub pictures: Pictures,
-    /// By which factor.
+    /// Factor by which width and height are averaged down.
     pub factor: usize,
     /// Its samples per pixel of the averaged picture; NaN if not known.
     pub spp: f64,
-    /// What the camera sees.
+    /// Regions of the image by the surfaces that the camera sees.
     pub seen: Vec<Region>,
-    /// The scene at that size, for the candidates.
+    /// The scene at that size, in which mistakes are simulated.
     pub scene: Option<Scene>,
-    /// How it was made.
+    /// Scene, estimator, K, samples per pixel and size, in words.
     pub label: String,
-    /// What is found by rare and bright events only.
+    /// Light that the reference finds only by rare paths, in words.
     pub rare_paths: Option<String>,
 }
 
-/// Loads what `--against` names.
+/// Loads the scene or the run that `--against` names.
 pub fn source(args: &Diagnose) -> Result<Source, Failure> {
     let path = Path::new(&args.against);
     if path.is_dir() || path.file_name().is_some_and(|n| n == "summary.json") {
@@ -62,7 +62,7 @@ pub fn source(args: &Diagnose) -> Result<Source, Failure> {
     Ok(Source { name: description.name.clone(), hash, description: Some(description), run: None })
 }
 
-/// A run of this program: its terms, and the scene that its command names.
+/// Reads a run of this program: its terms, and the scene that its command names.
 fn finished(path: &Path) -> Result<Source, Failure> {
     let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new(".")) };
     let record = summary::read(&folder.join("summary.json"))?;
@@ -115,7 +115,7 @@ enum Renders {
     Render(RunArgs),
 }
 
-/// The scene that a command of this program renders.
+/// The scene that a command of this program renders, or `None` if it renders none or the scene cannot be loaded.
 fn scene_of(command: &str) -> Option<Description> {
     let Rendered { command, tour } = Rendered::try_parse_from(shlex::split(command)?).ok()?;
     let args = match command {
@@ -126,7 +126,7 @@ fn scene_of(command: &str) -> Option<Description> {
 }
 
 impl Source {
-    /// Refuses pictures that cannot show the same.
+    /// Refuses a picture that has too few pixels, or another size or shape than the reference.
     pub fn suits(&self, name: &str, size: [usize; 2]) -> Result<(), Failure> {
         let fewest = regions::FEWEST;
         if size[0] * size[1] < fewest {

@@ -1,21 +1,21 @@
-//! What came out for one suspect.
+//! The result for one picture.
 
 use fredholm::diagnosis::Diagnosis;
 
-/// What came out for one suspect.
+/// The diagnosis of one picture, with facts about its file.
 pub struct Diagnosed {
-    /// File, or files.
+    /// Name of the file, or of the first of several files that belong together.
     pub name: String,
-    /// Its pictures hold terms.
+    /// True if the file has terms.
     pub terms: bool,
-    /// Exposure unknown.
+    /// True if the exposure is unknown.
     pub any_gain: bool,
-    /// Layers that were not understood.
+    /// Names of layers that are neither a term nor a whole image.
     pub ignored: Vec<String>,
-    /// Samples per pixel as the file tells them.
+    /// Samples per pixel according to the file.
     pub told: Option<f64>,
-    /// Factor by which pictures were averaged down.
+    /// Factor by which width and height were averaged down.
     pub factor: usize,
-    /// The rest.
+    /// The verdict, the evidence and the suspects.
     pub diagnosis: Diagnosis,
 }

@@ -1,7 +1,8 @@
-//! `fredholm diagnose RENDER… --against SCENE|RUN`: what is wrong with somebody else's pictures.
+//! `fredholm diagnose RENDER… --against SCENE|RUN`: names the mistake in another renderer's pictures.
 
 mod against;
 mod args;
+mod evidence;
 mod found;
 mod read;
 mod suspects;
@@ -14,7 +15,7 @@ pub use args::Diagnose;
 use found::Diagnosed;
 use fredholm::diagnosis::candidates::Members;
 use fredholm::diagnosis::picture::{Code, Pictures};
-use fredholm::diagnosis::{self, Case, Conclusion, Effort, evidence};
+use fredholm::diagnosis::{self, Case, Conclusion, Effort, evidence as counting};
 use fredholm::engine::known::coplanar;
 use fredholm::progress::Progress;
 use fredholm::report::figures::diagnosis as figure;
@@ -25,7 +26,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use suspects::{Suspect, size_mismatch, suspects};
 
-/// Diagnoses every suspect.
+/// Diagnoses every picture, writes the figures and prints the text.
 pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     let mut session = Session::new(&args.shared, args.seed)?;
     let (suspects, how) = suspects(args)?;
@@ -44,23 +45,23 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     let judged = judge(args, &suspects, scaled.as_ref(), &source, session.progress())?;
     session.clear();
     let Judged { found, label, rare_paths } = judged;
-    let page = text::Text { args, how, label: &label, rare_paths: rare_paths.as_deref(), folder: &session.folder };
+    let page = text::Text { how, label: &label, rare_paths: rare_paths.as_deref() };
     let files = write(&session, &found)?;
-    session.show(&text::json(&found), || page.people(&found, &files))?;
+    session.show(&text::json(&found), || page.people(&session, &found, &files))?;
     Ok(session.ending(found.iter().any(|f| f.diagnosis.verdict == Conclusion::Wrong)))
 }
 
-/// All suspects, and what they were held against.
+/// The diagnoses of all pictures, and the reference.
 struct Judged {
     found: Vec<Diagnosed>,
     label: String,
     rare_paths: Option<String>,
 }
 
-/// Suspects with their places, by size and K.
+/// Pictures with their positions on the command line, by size and K.
 type Groups<'a> = BTreeMap<([usize; 2], usize), Vec<(usize, &'a Suspect)>>;
 
-/// Suspects of one size and one K share a reference and the pictures of the candidates.
+/// Diagnoses every picture. Pictures of one size and one K share a reference and the simulated mistakes.
 fn judge(
     args: &Diagnose,
     suspects: &[Suspect],
@@ -99,14 +100,14 @@ fn judge(
     Ok(Judged { found: found.into_values().collect(), label, rare_paths })
 }
 
-/// K of the reference: that of the suspect.
+/// K of the reference: the last term of the picture, else `--max-bounces`, else the file's attribute, else 8.
 fn last_term(args: &Diagnose, file: &File) -> usize {
     let told = || file.attribute("max_bounces").and_then(|k| k.parse().ok());
     let asked = args.max_bounces.map(usize::from);
     file.pictures.last_term().or(asked).or_else(told).unwrap_or(8)
 }
 
-/// One suspect, brought to the size of the reference.
+/// Diagnoses one picture, averaged down to the size of the reference.
 fn one(
     args: &Diagnose,
     suspect: &Suspect,
@@ -131,7 +132,7 @@ fn one(
         reference: &right.pictures,
         reference_spp: right.spp,
         seen: &right.seen,
-        counts: evidence::count(&file.pictures, &right.pictures, file.clipped),
+        counts: counting::count(&file.pictures, &right.pictures, file.clipped),
         mask: &mask,
         by_samples: &by_samples,
         scaled: large.as_ref().map(|(s, p)| (*s, p)),
@@ -146,8 +147,8 @@ fn one(
     Diagnosed { name, terms, any_gain, ignored, told, factor: right.factor, diagnosis }
 }
 
-/// A pixel of the small picture is masked if any of its own or of its neighbours' pixels is: noise decides which of them
-/// are clipped, and must not decide which count.
+/// Shrinks a mask. A pixel of the small picture is masked if one of its own or of its neighbours' large pixels is masked: noise
+/// decides which of them are clipped, and must not decide which are compared.
 fn shrink_mask(mask: &[bool], width: usize, factor: usize) -> Vec<bool> {
     let height = mask.len() / width;
     let (w, h) = (width / factor, height / factor);
@@ -160,7 +161,7 @@ fn shrink_mask(mask: &[bool], width: usize, factor: usize) -> Vec<bool> {
     (0..w * h).map(at).collect()
 }
 
-/// Writes the figures, `diagnosis.json` and `summary.json`; the names of the files.
+/// Writes the figures, `diagnosis.json` and `summary.json`; returns the names of the files.
 fn write(session: &Session, found: &[Diagnosed]) -> Result<Vec<String>, Failure> {
     let caption = session.caption();
     let mut files = vec!["summary.json".to_owned(), "diagnosis.json".to_owned()];

@@ -1,4 +1,4 @@
-//! Somebody else's pictures: which layers are terms, which is the whole image, and which files belong together.
+//! Reads another renderer's pictures: which layers are terms, which is the whole image, and which files belong together.
 //!
 //! | layer name | taken for |
 //! |---|---|
@@ -14,22 +14,22 @@ use fredholm::report::image::exr;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What a file holds.
+/// The content of a file.
 pub struct File {
     /// Its pictures.
     pub pictures: Pictures,
     /// Fraction of pixels at the upper end of 8 bits.
     pub clipped: f64,
-    /// Pixels that tell nothing because 8 bits end there, or nothing.
+    /// For 8-bit files, true where a pixel is clipped and so not compared.
     pub mask: Option<Vec<bool>>,
     /// Text attributes.
     pub attributes: BTreeMap<String, String>,
-    /// Layers that were not understood.
+    /// Names of layers that are neither a term nor a whole image.
     pub ignored: Vec<String>,
 }
 
 impl File {
-    /// What the file says of itself under a name, ours or anybody's.
+    /// A text attribute by its name, or by that name after `fredholm.`.
     pub fn attribute(&self, name: &str) -> Option<&str> {
         let ours = format!("fredholm.{name}");
         self.attributes.get(&ours).or_else(|| self.attributes.get(name)).map(String::as_str)
@@ -51,7 +51,7 @@ type Pixels = Vec<[f32; 3]>;
 fn layered(path: &Path) -> Result<File, Failure> {
     let image = exr::read(path)?;
     let (mut means, mut errors, mut ignored) = (BTreeMap::<Slot, Pixels>::new(), BTreeMap::new(), vec![]);
-    // the first layers of the list win: the unnamed one is what a viewer shows
+    // the first layer of a kind is taken, and the unnamed one comes first, because it is the one that a viewer shows
     let rank = |name: &str| usize::from(!name.is_empty());
     let mut order: Vec<&(String, Pixels)> = image.layers.iter().collect();
     order.sort_by_key(|l| rank(&l.0));
@@ -70,7 +70,7 @@ fn layered(path: &Path) -> Result<File, Failure> {
             _ => ignored.push(name.clone()),
         }
     }
-    // the whole image may stand in the file a second time, under a name that has an error
+    // the whole image may be in the file a second time, under a name that has an error layer
     if let Some(whole) = means.get(&Slot::Whole) {
         let twin =
             image.layers.iter().find(|(n, p)| !n.is_empty() && p == whole && image.layer(&format!("{n}_se")).is_some());
@@ -105,7 +105,7 @@ fn layered(path: &Path) -> Result<File, Failure> {
     })
 }
 
-/// 8-bit pictures by the inverse of the sRGB curve; `.hdr` as it is.
+/// Reads an image without layers: 8-bit values by the inverse of the sRGB curve, `.hdr` values unchanged.
 fn plain(path: &Path, bytes: &[u8]) -> Result<File, Failure> {
     let help = "give an .exr, .png, .jpg or .hdr file";
     let image = image::load_from_memory(bytes).map_err(|e| wrong(path, &format!("not a readable image: {e}"), help))?;
@@ -139,12 +139,12 @@ enum Part {
     Variance,
 }
 
-/// Names of the error of the unnamed layer.
+/// Names of the layer that holds the error of the unnamed layer.
 const ALONE: [&str; 3] = ["se", "stderr", "std_error"];
 
-/// What a layer is, by its name.
+/// The meaning of a layer by its name, or `None`.
 fn meaning(name: &str) -> Option<(Slot, Part)> {
-    // `ViewLayer.Combined`: what counts is the last word
+    // of `ViewLayer.Combined` only the last word counts
     let lower = name.rsplit('.').next()?.to_lowercase();
     if ALONE.contains(&lower.as_str()) {
         return Some((Slot::Whole, Part::Error));
@@ -167,7 +167,7 @@ fn meaning(name: &str) -> Option<(Slot, Part)> {
     Some((slot, part))
 }
 
-/// The common beginning of the names and the number each ends in.
+/// The common beginning of the file names, and the number at the end of each; `None` if they have neither.
 fn numbered(paths: &[PathBuf]) -> Option<(String, Vec<u32>)> {
     let split = |p: &PathBuf| {
         let stem = p.file_stem()?.to_string_lossy().into_owned();
@@ -181,7 +181,7 @@ fn numbered(paths: &[PathBuf]) -> Option<(String, Vec<u32>)> {
     all.iter().all(|a| a.0 == word).then(|| (word, all.iter().map(|a| a.1).collect()))
 }
 
-/// How the files belong together, and the number of each.
+/// How the files belong together, with the number of each file.
 pub fn grouping(asked: Grouping, paths: &[PathBuf]) -> Result<(Grouping, Vec<u32>), Failure> {
     let found = numbered(paths);
     let need = || {

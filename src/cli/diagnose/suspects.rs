@@ -1,4 +1,4 @@
-//! The suspects: files, put together where they belong together.
+//! The pictures to diagnose: each is a file, or several files that belong together.
 
 use super::args::{Diagnose, Grouping};
 use super::read::{self, File};
@@ -6,21 +6,24 @@ use crate::cli::base::{Failure, usage};
 use fredholm::diagnosis::picture::{Pictures, Slot};
 use std::path::{Path, PathBuf};
 
-/// One suspect: a file, or several that belong together.
+/// A picture to diagnose.
 pub struct Suspect {
+    /// Name of the file, or of the first of several.
     pub name: String,
+    /// Its layers.
     pub file: File,
+    /// The same picture at growing samples per pixel, if there are several.
     pub by_samples: Vec<(u32, Pictures)>,
 }
 
-/// Pictures that should be of one size, and are not.
+/// The error for pictures that differ in size.
 pub fn size_mismatch(name: &str, [a, b]: [usize; 2], [w, h]: [usize; 2]) -> Failure {
     Failure::Input(format!(
         "error: the pictures have different sizes, {a}×{b} and {w}×{h}\n  --> {name}\nhelp: give pictures of one size and one camera"
     ))
 }
 
-/// The files, put together.
+/// Reads the files of the command line and puts those together that belong together.
 pub fn suspects(args: &Diagnose) -> Result<(Vec<Suspect>, Grouping), Failure> {
     let (how, numbers) = read::grouping(args.grouping, &args.renders)?;
     let files = args.renders.iter().map(|p| read::file(p)).collect::<Result<Vec<File>, Failure>>()?;

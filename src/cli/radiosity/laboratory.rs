@@ -1,4 +1,4 @@
-//! A scene and its matrix, for what takes it apart.
+//! The scene, its mesh with T, and the output folder: what `--solver` and `--modes` start from.
 
 use crate::cli::base::{Failure, note};
 use crate::cli::open::Opened;
@@ -14,17 +14,18 @@ use fredholm::solver;
 use fredholm::terms::Channel;
 use glam::DVec3;
 
-/// A scene, its matrix and where the results go.
+/// A scene, its mesh with T, and the session with the output folder.
 pub struct Laboratory<R = solver::Radiosity> {
     pub session: Session,
     pub opened: Opened,
     pub matrix: Matrix<R>,
-    /// Patches of the mesh, in whatever form T is held.
+    /// Number of patches of the mesh, whether T is a matrix or stored rays.
     pub patches: usize,
 }
 
 impl Laboratory {
-    /// Loads, meshes and computes form factors as a matrix; `None` if interrupted.
+    /// Loads the scene, meshes it and computes the form factors as a matrix; `what` ends the name of the output folder. `None` if
+    /// interrupted.
     pub fn new(args: &RunArgs, what: &str) -> Result<Option<Self>, Failure> {
         Laboratory::prepare(args, what, Factors::Dense, |opened, s, progress| {
             let Opened { description, scene, .. } = opened;
@@ -35,7 +36,7 @@ impl Laboratory {
 }
 
 impl Laboratory<Stored> {
-    /// The same as stored rays.
+    /// Loads the scene, meshes it and stores `per_row` rays for every patch. `None` if interrupted.
     pub fn sampled(args: &RunArgs, what: &str, per_row: u32) -> Result<Option<Self>, Failure> {
         Laboratory::prepare(args, what, Factors::Rays(per_row), |opened, s, progress| {
             let Opened { description, scene, .. } = opened;
@@ -80,13 +81,13 @@ impl<R> Laboratory<R> {
         }
     }
 
-    /// The channel asked for, or the slowest.
+    /// The channel asked for, or else the one with the largest spectral radius, which converges slowest.
     pub fn channel(&self, asked: Option<Channel>) -> Channel {
         let radii = DVec3::from_array(self.matrix.spectral.each_ref().map(|s| s.radius));
         asked.unwrap_or(Channel::ALL[radii.max_position()])
     }
 
-    /// Writes the record that owns the folder: of no picture, so without a size.
+    /// Writes `summary.json`. It has no width and height, because there is no image.
     pub fn sign(&self, files: &[String]) -> Result<(), Failure> {
         let record = Summary { width: 0, height: 0, files: files.to_vec(), ..self.session.record() };
         self.session.sign(&record)

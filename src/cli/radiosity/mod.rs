@@ -1,5 +1,5 @@
-//! `fredholm radiosity [SCENE]`: the matrix through the camera; with `--solver` all ways to solve it, with `--modes` its
-//! spectrum.
+//! `fredholm radiosity [SCENE]`: the radiosity solution through the camera; with `--solver` a comparison of the solvers, with
+//! `--modes` the spectrum of T.
 
 mod args;
 mod laboratory;
@@ -10,7 +10,7 @@ use super::base::{Ending, Failure, usage};
 use super::solve;
 pub use args::Radiosity;
 
-/// Shows the matrix, solves it in every way, or takes it apart.
+/// Renders the radiosity solution, compares solvers, or finds the spectrum of T.
 pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
     match (args.solver, args.modes) {
         (Some(name), _) => solvers::run(args, name),

@@ -1,23 +1,27 @@
-//! `--modes`: the spectrum of T, what bounds it, and its modes through the camera.
+//! `radiosity --modes`: the spectrum of T, bounds on it, and its modes as images.
 
 use super::args::Radiosity;
 use super::laboratory::Laboratory;
-use crate::cli::base::{Ending, Failure, names, paragraphs};
+use crate::cli::base::{Ending, Failure, and, names, wrapped};
 use crate::cli::preflight;
 use fredholm::engine::Settings;
 use fredholm::operator::edges::{Band, essential_band};
 use fredholm::operator::matrix::LinearOperator;
 use fredholm::operator::modes::{Modes, norm_2, radius_bounds};
 use fredholm::report::figures::modes::{self, Painted, Row, Spectrum};
+use fredholm::report::text::table::plus_minus;
 use fredholm::report::write_atomically;
 use fredholm::solver::Neumann;
 use fredholm::terms::{Channel, TermImage};
 use serde_json::json;
 
-/// Bounces over which modes are seen to die.
+/// Number of bounces over which the decay of the modes is shown.
 const BOUNCES: usize = 12;
 
-/// Takes T apart, writes and prints.
+/// Modes in the table that is printed without `--verbose`.
+const SHOWN: usize = 10;
+
+/// Finds the spectrum of T in every channel, writes the files and prints the text.
 pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     let run = &args.run;
     let Some(lab) = Laboratory::new(run, "modes")? else { return Ok(Ending::Interrupted) };
@@ -29,7 +33,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     };
     preflight::fits_in_memory(&settings, lab.opened.description.camera.size)?;
 
-    // eigenvalues, channel by channel
+    // eigenvalues of every channel
     let progress = lab.session.progress();
     progress.begin(&format!("eigenvalues, {} patches", lab.patches), 3);
     let mut found: Vec<(Modes, Spectrum, Band)> = vec![];
@@ -60,7 +64,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
     Ok(lab.session.ending(false))
 }
 
-/// The modes of one channel, as the camera sees them.
+/// Images of the modes of one channel, without those whose eigenvalue is zero to rounding.
 fn painted(
     lab: &Laboratory,
     (all, spectrum, _): &(Modes, Spectrum, Band),
@@ -82,7 +86,7 @@ fn painted(
     shown.iter().zip(&images).map(paint).collect()
 }
 
-/// Writes the pictures; the names of all files.
+/// Writes the pictures; returns the names of all files.
 fn write(lab: &Laboratory, spectrum: &Spectrum, painted: &[Painted]) -> Result<Vec<String>, Failure> {
     let (folder, caption, patches) = (&lab.session.folder, lab.session.caption(), lab.patches);
     let (name, channel) = (&lab.opened.description.name, &spectrum.channel);
@@ -98,31 +102,73 @@ fn write(lab: &Laboratory, spectrum: &Spectrum, painted: &[Painted]) -> Result<V
     Ok(files)
 }
 
+/// The text: the spectral radius, the leading modes, and with `--verbose` all channels and norms.
 fn people(lab: &Laboratory, spectra: &[Spectrum], bands: &[Band], channel: Channel, files: &[String]) -> String {
-    let mut blocks = vec![
-        format!(
-            "{}\n{} patches; eigenvalues inside the band of the edges belong to the mesh",
-            lab.session.command(),
+    let s = &spectra[channel as usize];
+    let mut above = format!(
+        "The leading modes u of T in the {channel} channel: the eigenvalue λ, the residual ‖T u − λ u‖, the share of the \
+         first bounce TE that the mode carries, and its size at bounces 4 and 8 relative to ‖TE‖. Modes in the band, \
+         |λ| ≤ {:.3}, belong to the mesh: they change with every refinement.",
+        s.band
+    );
+    if bands.iter().any(|b| b.other > 0) {
+        above += " Some patches meet at another angle than 90°, where the band is not known.";
+    }
+    let left = s.modes.len().saturating_sub(SHOWN);
+    let below = if left > 0 { format!("… and {left} more in modes.json") } else { String::new() };
+    let table = format!("{}\n{}{below}", wrapped(&above), modes::table(s, SHOWN));
+    let mut details = vec![format!(
+        "{}\n{}\n{}",
+        lab.session.command(),
+        wrapped(&format!(
+            "Bounds of the spectral radius r(T), norms of T, the half width of the band, and how many of the eigenvalues lie \
+             outside it; {} patches.",
             lab.patches
-        ),
-        modes::norms(spectra),
-    ];
+        )),
+        modes::norms(spectra)
+    )];
     if let Some(band) = bands.iter().find(|b| b.other > 0) {
-        blocks.push(format!(
-            "note: {} pairs of patches meet at another angle than 90°: their band is not known",
-            band.other
-        ));
+        details.push(format!("note: {} pairs of patches meet at another angle than 90°", band.other));
     }
     for s in spectra {
-        blocks.push(format!("{}: leading modes, and |⟨u, TᵏE⟩|/‖TE‖ at two bounces\n{}", s.channel, modes::table(s)));
+        details.push(format!(
+            "The leading modes in the {} channel, with |⟨u, TᵏE⟩|/‖TE‖ at k = 4 and 8.\n{}",
+            s.channel,
+            modes::table(s, usize::MAX)
+        ));
     }
-    let s = &spectra[channel as usize];
-    blocks.push(format!("{}: ‖Tᵏ⁺¹E‖/‖TᵏE‖ in two norms\n{}", s.channel, modes::ratio_table(s)));
-    blocks.push(format!("written to {}:\n{}", lab.session.folder.display(), files.join(", ")));
-    paragraphs(&blocks)
+    details.push(format!(
+        "Ratios ‖Tᵏ⁺¹E‖/‖TᵏE‖ in the {channel} channel: in the weight A/ρ they never fall.\n{}",
+        modes::ratio_table(s)
+    ));
+    lab.session.text(&answer(lab, spectra, channel), &[table], &details, files)
 }
 
-/// Everything about one channel.
+/// The answer: the spectral radius of the channel, its meaning, its bounds, and the other channels.
+fn answer(lab: &Laboratory, spectra: &[Spectrum], channel: Channel) -> String {
+    let s = &spectra[channel as usize];
+    let [low, high] = s.radius;
+    let (radius, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let value =
+        if half < 5e-6 { format!("{radius:.5} (bounded to all digits shown)") } else { plus_minus(radius, half, 1) };
+    let [one, two, infinity] = s.norms;
+    let others: Vec<String> = Channel::ALL
+        .iter()
+        .filter(|c| **c != channel)
+        .map(|c| format!("{:.5} ({c})", spectra[*c as usize].radius[1]))
+        .collect();
+    let (name, patches) = (&lab.opened.description.name, lab.patches);
+    wrapped(&format!(
+        "The spectral radius of the {channel} channel is {value} on this mesh of {patches} patches.\n\
+         In the long run each bounce keeps {:.1} % of the light of the bounce before. The other channels have {}. The norms \
+         bound the radius: ‖T‖₁ = {one:.4}, ‖T‖₂ = {two:.4}, ‖T‖∞ = {infinity:.4}. \
+         `fredholm radiosity {name}` estimates the radius for ever finer meshes.",
+        100.0 * radius,
+        and(&others)
+    ))
+}
+
+/// Eigenvalues, modes, bounds and norms of one channel.
 fn spectrum(lab: &Laboratory, channel: Channel, count: usize) -> (Modes, Spectrum, Band) {
     let radiosity = &lab.matrix.radiosity;
     let t = radiosity.operator(channel as usize);

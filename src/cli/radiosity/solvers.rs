@@ -1,13 +1,13 @@
-//! `--solver`: all ways to solve (I − T) L = E, step by step.
+//! `radiosity --solver`: runs the solvers of (I − T) L = E and compares their work.
 //!
-//! | | a matrix | stored rays |
+//! | | T as a dense matrix | T as stored rays |
 //! |---|---|---|
-//! | solved | (I − T) L = E | (I − T) u = D, u = L − E, D the direct light by pairs of points |
+//! | equation | (I − T) L = E | (I − T) u = D with u = L − E; D is the direct light by pairs of points |
 //! | reference | LU | GMRES to rounding |
 
 use super::args::Radiosity;
 use super::laboratory::Laboratory;
-use crate::cli::base::{Ending, Failure, paragraphs, usage};
+use crate::cli::base::{Ending, Failure, and, usage, wrapped};
 use crate::cli::preflight;
 use fredholm::engine::by_matrix::MatrixError;
 use fredholm::engine::discretisation::{Factors, Form, Stored};
@@ -19,11 +19,12 @@ use fredholm::solver::comparison::{History, Limits, Reference, Solver, Solvers, 
 use fredholm::terms::Channel;
 use serde_json::{Value, json};
 
-/// Good enough, and too many.
+/// A solver stops at this relative error …
 const ERROR: f64 = 1e-12;
+/// … or after this many products with T.
 const APPLICATIONS: f64 = 2000.0;
 
-/// Solves, writes and prints.
+/// Runs the chosen solvers, writes the files and prints the text.
 pub fn run(args: &Radiosity, name: Solvers) -> Result<Ending, Failure> {
     let factors = factors(args, name)?;
     match factors {
@@ -47,7 +48,7 @@ pub fn run(args: &Radiosity, name: Solvers) -> Result<Ending, Failure> {
     }
 }
 
-/// How form factors are held, if the solver can do with it.
+/// How the form factors are stored; a usage error if the solver cannot work on them.
 fn factors(args: &Radiosity, name: Solvers) -> Result<Factors, Failure> {
     let wrong = |what: &str, help: &str| Err(usage(what, help));
     if args.run.factors == Some(Form::Both) {
@@ -66,7 +67,7 @@ fn factors(args: &Radiosity, name: Solvers) -> Result<Factors, Failure> {
     }
 }
 
-/// What was asked for.
+/// The solvers that were asked for, on one channel of one mesh.
 struct Study<'a, R> {
     args: &'a Radiosity,
     lab: &'a Laboratory<R>,
@@ -100,66 +101,101 @@ impl<'a, R> Study<'a, R> {
         }
         session.clear();
         let files = self.write(&histories)?;
-        let series = extrapolations(system, lab.matrix.spectral[self.channel as usize].radius);
+        let series = extrapolations(system, self.radius());
         let record = self.record(system, &histories, &series);
         write_atomically(&session.folder.join("solvers.json"), serde_json::to_string_pretty(&record)?.as_bytes())?;
         session.show(&record, || {
-            let extrapolated = format!(
-                "the series itself, Σ Aᵢ xᵢ/A of the first terms: error ×noise gain,\n\
-                 the latter if the terms had independent errors of equal relative size\n{}",
-                solvers::extrapolations(&series)
-            );
-            let written = format!("written to {}:\n{}", session.folder.display(), files.join(", "));
-            let head = self.head(system, informed(&histories));
-            paragraphs(&[head, solvers::table(&histories), extrapolated, written])
+            let details =
+                [self.head(system, informed(&histories)), full_table(&histories), extrapolated(&series, self.dense())];
+            session.text(&self.answer(&histories), &[self.table(system, &histories)], &details, &files)
         })?;
         Ok(session.ending(false))
     }
 
-    /// What is solved, and what the table counts.
+    /// The answer: which solver needs the fewest products with T, on which mesh.
+    fn answer(&self, histories: &[History]) -> String {
+        let (scene, patches, channel) = (&self.lab.opened.description.name, self.lab.patches, self.channel);
+        let mesh = format!(
+            "The mesh of {scene} has {patches} patches{}; in the {channel} channel the spectral radius of T is {:.4}.",
+            self.held(),
+            self.radius()
+        );
+        wrapped(&format!("{}\n{mesh}", fewest(self.equation(), histories)))
+    }
+
+    /// The small table, with a sentence above it and the reasons for rows that look odd below it.
+    fn table<T: Transposed>(&self, system: &System<'_, T>, histories: &[History]) -> String {
+        let x = self.unknown();
+        let mut above = format!(
+            "Products with T until the relative error ‖x − {x}‖/‖{x}‖ is below 1e-3, 1e-6 and 1e-10, seconds until it is \
+             below 1e-10, and the error of the last step. {x} is "
+        );
+        above += match system.reference {
+            Reference::Lu { .. } => "the solution by LU, whose work is that of n/3 products with T for n patches.",
+            Reference::Gmres { .. } => "the solution by GMRES to rounding.",
+        };
+        let mut below = vec![];
+        if informed(histories) {
+            let spent = system.ends().applications;
+            below.push(format!("The rows of Chebyshev and SOR include {spent} products for the ends of the spectrum."));
+        }
+        if histories.iter().any(|h| h.solver == Solver::Jacobi) && sees_itself_nowhere(system) {
+            below.push("No patch sees itself, so Jacobi is the Neumann series here.".into());
+        }
+        if !self.dense() {
+            below.push(
+                "Stored rays have no CG, because T is self-adjoint only within its noise, and no LU, because there is no \
+                 matrix."
+                    .into(),
+            );
+        }
+        format!("{}\n{}{}", wrapped(&above), solvers::table(histories), wrapped(&below.join("\n")))
+    }
+
+    /// Details: the command, the equation, the reference and the spectrum.
     fn head<T: Transposed>(&self, system: &System<'_, T>, informed: bool) -> String {
-        let (command, patches, channel) = (self.lab.session.command(), self.lab.patches, self.channel);
-        let radius = self.lab.matrix.spectral[self.channel as usize].radius;
-        let mut head = format!("{command}\n{patches} patches{}, {channel} channel: r(T) = {radius:.5}", self.held());
+        let mut head = format!(
+            "equation: {} in the {} channel; r(T) = {:.5}; the error is measured in the weight A/ρ",
+            self.equation(),
+            self.channel,
+            self.radius()
+        );
         if let Reference::Gmres { applications } = system.reference {
             head += &format!(
-                "; (I − T) u = D for u = L − E\n\
-                 held against GMRES to rounding: {applications} products, residual {:.1e} of ‖D‖; no CG, because T is\n\
-                 self-adjoint only within its noise, and no LU, because there is no matrix",
+                "\nreference: GMRES to rounding, {applications} products, residual {:.1e} of ‖D‖",
                 system.residual()
             );
         }
-        head += &format!(
-            "\nproducts with T, then seconds, until ‖x − {x}‖/‖{x}‖ in the weight A/ρ is below 1e-3, 1e-6, 1e-10",
-            x = self.unknown()
-        );
         if informed {
-            let (ends, part) = (system.ends(), if self.dense() { "" } else { " of its symmetric part" });
+            let (ends, part) = (system.ends(), if self.dense() { "" } else { " of the symmetric part" });
             head += &format!(
-                "\nChebyshev and SOR first spend {} on the spectrum{part}: {:.5} to {:.5}",
-                ends.applications, ends.found.smallest, ends.found.largest
+                "\nspectrum{part}: {:.5} to {:.5}, found in {} products",
+                ends.found.smallest, ends.found.largest, ends.applications
             );
         }
-        if self.dense() {
-            head += "\nLU counts as n/3 products";
-        }
-        let t = system.operator;
-        if (0..t.len()).all(|i| t.entry(i, i) == 0.0) {
-            head += "\nno patch sees itself, so Jacobi is the Neumann series here";
-        }
-        head
+        format!("{}\n{}", self.lab.session.command(), wrapped(&head))
     }
 
+    fn radius(&self) -> f64 {
+        self.lab.matrix.spectral[self.channel as usize].radius
+    }
+
+    /// The equation that is solved.
+    fn equation(&self) -> &'static str {
+        if self.dense() { "(I − T) L = E" } else { "(I − T) u = D, u = L − E," }
+    }
+
+    /// Returns true if T is a dense matrix.
     fn dense(&self) -> bool {
         self.lab.matrix.sampling.is_none()
     }
 
-    /// How the rows are held, where it is not as a matrix.
+    /// ` of 256 rays` if T is stored rays, nothing if it is a matrix.
     fn held(&self) -> String {
-        self.lab.matrix.sampling.map_or(String::new(), |s| format!(" of {} rays", s.per_row))
+        self.lab.matrix.sampling.map_or(String::new(), |s| format!(" of {} rays each", s.per_row))
     }
 
-    /// What x tends to.
+    /// The symbol of the unknown: L, or u = L − E for stored rays.
     fn unknown(&self) -> &'static str {
         if self.dense() { "L" } else { "u" }
     }
@@ -182,7 +218,7 @@ impl<'a, R> Study<'a, R> {
             "rays": lab.matrix.sampling.map(|s| s.per_row),
             "unknown": self.unknown(),
             "channel": self.channel.name(),
-            "spectral_radius": lab.matrix.spectral[self.channel as usize].radius,
+            "spectral_radius": self.radius(),
             "eigenvalues": informed(histories).then(|| {
                 let ends = system.ends();
                 json!({
@@ -203,8 +239,8 @@ impl<'a, R> Study<'a, R> {
         let title = format!("Solvers of {equation}: {scene}, {} patches{}, {channel_name}", lab.patches, self.held());
         let mut files = vec!["solvers.json".to_string(), "summary.json".into()];
         if histories.iter().any(|h| h.points.len() > 1) {
-            let radius = lab.matrix.spectral[*channel as usize].radius;
-            solvers::draw(histories, radius, &title, &lab.session.caption())?.write(&lab.session.folder, "solvers")?;
+            solvers::draw(histories, self.radius(), &title, &lab.session.caption())?
+                .write(&lab.session.folder, "solvers")?;
             files.extend(["solvers.png", "solvers.svg"].map(String::from));
         }
         if let Some(name) = &args.history {
@@ -216,12 +252,63 @@ impl<'a, R> Study<'a, R> {
     }
 }
 
-/// Whether one of them had to know the ends of the spectrum.
+/// Returns true if a solver had to find the ends of the spectrum first.
 fn informed(histories: &[History]) -> bool {
     histories.iter().any(|h| matches!(h.solver, Solver::Chebyshev | Solver::Sor))
 }
 
-/// What extrapolation makes of the first terms: their means over all patches.
+/// Returns true if the diagonal of T is zero.
+fn sees_itself_nowhere<T: Transposed>(system: &System<'_, T>) -> bool {
+    let t = system.operator;
+    (0..t.len()).all(|i| t.entry(i, i) == 0.0)
+}
+
+/// One sentence: the solvers that reach the smallest milestone with the fewest products, or that none does.
+fn fewest(equation: &str, histories: &[History]) -> String {
+    let goal = solvers::MILESTONES[2];
+    let iterative: Vec<&History> = histories.iter().filter(|h| h.solver != Solver::Lu).collect();
+    let work = |h: &History| h.reaches(goal).map(|p| p.applications);
+    let least = iterative.iter().filter_map(|h| work(h)).fold(f64::INFINITY, f64::min);
+    let best: Vec<&str> = iterative.iter().filter(|h| work(h) == Some(least)).map(|h| h.solver.name()).collect();
+    if iterative.is_empty() {
+        let residual = histories.first().and_then(|h| h.points.last()).map_or(f64::NAN, |p| p.residual);
+        return format!("LU solves {equation} directly and leaves a residual of {residual:.1e}.");
+    }
+    if best.is_empty() {
+        return format!("No solver solves {equation} to {goal:.0e} within {APPLICATIONS} products with T.");
+    }
+    let (solve, each) = if best.len() == 1 { ("solves", "") } else { ("solve", " each") };
+    let among = match iterative.len() {
+        1 => String::new(),
+        n => format!(", the fewest of the {n} iterative solvers"),
+    };
+    format!("{} {solve} {equation} to {goal:.0e} in {} products with T{each}{among}.", and(&best), number(least))
+}
+
+/// A number of products, with a decimal where there is one.
+fn number(products: f64) -> String {
+    if products.fract() == 0.0 { format!("{products:.0}") } else { format!("{products:.1}") }
+}
+
+/// Details: everything about every solver, with a sentence above the table.
+fn full_table(histories: &[History]) -> String {
+    let above = "Products with T and seconds until the error is below 1e-3, 1e-6 and 1e-10, the error of the last step, and its \
+                 residual ‖E − (I − T) x‖.";
+    format!("{}\n{}", wrapped(above), solvers::full_table(histories))
+}
+
+/// Details: the sum of the series extrapolated from its first terms, with a sentence above the table.
+fn extrapolated(series: &[Extrapolated], dense: bool) -> String {
+    let start = if dense { "E" } else { "D" };
+    let above = format!(
+        "The mean of the solution over all surfaces, extrapolated from the first terms of the series {start} + T{start} + …: \
+         its relative error, and × the noise gain, the noise relative to that of the plain sum S_n if the terms had \
+         independent errors of equal relative size."
+    );
+    format!("{}\n{}", wrapped(&above), solvers::extrapolations(series))
+}
+
+/// Extrapolates the means of the terms over all patches, for several numbers of terms.
 fn extrapolations<T: Transposed>(system: &System<'_, T>, radius: f64) -> Vec<Extrapolated> {
     const TERMS: [usize; 5] = [3, 5, 7, 9, 13];
     let t = system.operator;

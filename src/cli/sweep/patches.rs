@@ -1,22 +1,23 @@
-//! `--over patches`: the matrix on finer and finer meshes against the truth from rays.
+//! `sweep --over patches`: radiosity on finer and finer meshes, compared with rays, which need no mesh.
 
 use super::args::Sweep;
-use crate::cli::base::{Ending, Failure, names, paragraphs, usage};
+use crate::cli::base::{Ending, Failure, names, usage, wrapped};
 use crate::cli::preflight;
 use crate::cli::session::Session;
 use fredholm::engine::Settings;
 use fredholm::engine::discretisation::Factors;
+use fredholm::engine::radius::radius_limit;
 use fredholm::report::figures::drift;
 use fredholm::report::figures::refine as report;
 use fredholm::report::text::summary::Summary;
 use fredholm::report::write_atomically;
-use fredholm::study::refinement::{self, Refinement};
+use fredholm::study::refinement::{self, Quantity, Refinement};
 use fredholm::terms::{Channel, World};
 
-/// Meshes of these sizes unless told otherwise: h halves from one to the next.
+/// The default numbers of patches: h halves from one mesh to the next.
 const USUAL: &str = "38,150,600,2400";
 
-/// Solves on every mesh and holds the terms against rays.
+/// Solves on every mesh and compares the terms with those by rays.
 pub fn run(args: &Sweep) -> Result<Ending, Failure> {
     let mut session = Session::new(&args.shared, args.frame.seed)?;
     let sizes = sizes(args)?;
@@ -47,7 +48,7 @@ pub fn run(args: &Sweep) -> Result<Ending, Failure> {
     Ok(session.ending(false))
 }
 
-/// Numbers of patches, in order.
+/// Numbers of patches in ascending order, without repetition.
 fn sizes(args: &Sweep) -> Result<Vec<usize>, Failure> {
     let number = |v: &str| {
         v.trim().parse().ok().filter(|n| (1..=20_000).contains(n)).ok_or_else(|| {
@@ -62,7 +63,7 @@ fn sizes(args: &Sweep) -> Result<Vec<usize>, Failure> {
     Ok(sizes)
 }
 
-/// The channel whose eigenvalues were found, if any were.
+/// The channel whose eigenvalues were computed, or `None`.
 fn channel(found: &Refinement) -> Option<&'static str> {
     found.meshes.last().and_then(|m| m.spectrum.as_ref()).map(|e| Channel::ALL[e.channel].name())
 }
@@ -82,18 +83,86 @@ fn write(session: &Session, found: &Refinement, max_bounces: usize) -> Result<Ve
     Ok(files)
 }
 
+/// Terms and meshes in the table that is printed without `--verbose`, and rows for eigenvalues.
+const TERMS: usize = 6;
+const MESHES: usize = 3;
+const EIGENVALUES: usize = 6;
+
+/// The text: the order of convergence, the errors of the finest meshes, and with `--verbose` everything.
 fn people(session: &Session, found: &Refinement, record: &Summary) -> String {
     let Summary { command, seed, width, height, spp, max_bounces, .. } = record;
+    let mut answer = vec![order(found), finest(found), radius(found)];
+    let mut tables = vec![errors(found, *max_bounces, *spp)];
     let head = format!(
-        "{command}\nseed {seed}, {width}×{height} pixels, {spp} spp for the truth and for every mesh, k ≤ {max_bounces}"
+        "{command}\nseed {seed}, {width}×{height} pixels, {spp} spp for the rays and for every mesh, k ≤ {max_bounces}"
     );
     let foot = "T0 and T1 are controls: there a mesh reads E itself.\n\
-                An order stands where two or more errors exceed 3 standard errors and have one sign."
-        .to_string();
-    let files: Vec<String> = record.files.chunks(5).map(|line| line.join(", ")).collect();
-    let files = format!("written to {}:\n{}", session.folder.display(), files.join(",\n"));
-    let mut blocks = vec![head, report::table(found, *max_bounces), foot];
-    blocks.extend(channel(found).map(|c| drift::table(found, c)));
-    blocks.push(files);
-    paragraphs(&blocks)
+                An order is given where two or more errors exceed 3 standard errors and have one sign.";
+    let mut details = vec![head, report::full_table(found, *max_bounces) + foot];
+    if let Some(channel) = channel(found) {
+        let (outside, all, band) = drift::outside(found);
+        answer.push(format!(
+            "On the finest mesh {outside} of the {all} leading eigenvalues of the {channel} channel lie outside the band of the \
+             edges, ±{band:.4}; only these can belong to the scene."
+        ));
+        let above = wrapped(
+            "The leading eigenvalues by number of patches. Where h halves, a step ratio below 0.5 shows a limit, which belongs \
+             to the scene. In the band, and just outside it because corners widen it, eigenvalues drift: they belong to the \
+             mesh.",
+        );
+        let with = |rows: usize| format!("{above}\n{}", drift::table(found, rows));
+        tables.push(with(EIGENVALUES));
+        details.push(with(usize::MAX));
+    }
+    answer.retain(|sentence| !sentence.is_empty());
+    session.text(&wrapped(&answer.join("\n")), &tables, &details, &record.files)
+}
+
+/// The first sentence of the answer: the order of convergence of indirect light, or why none is known.
+fn order(found: &Refinement) -> String {
+    match report::order(found, Quantity::Indirect) {
+        Some(o) => format!(
+            "Radiosity converges to the rays with order {:.2} ± {:.2} (standard error): halving the patch width h divides the \
+             error of indirect light by {:.1}.",
+            o.order,
+            o.std_error,
+            2f64.powf(o.order)
+        ),
+        None => {
+            "No order of convergence can be given: fewer than two meshes differ from the rays by more than 3 standard \
+                 errors; more --spp or coarser --values would show one."
+                .into()
+        }
+    }
+}
+
+/// The error of indirect light on the finest mesh.
+fn finest(found: &Refinement) -> String {
+    let Some(mesh) = found.meshes.last() else { return String::new() };
+    let truth = Quantity::Indirect.mean(&found.truth).mean.element_sum() / 3.0;
+    let (e, s) = found.mean_error(mesh, Quantity::Indirect);
+    let off = report::percent(e / truth, s / truth);
+    format!("With {} patches the mean of indirect light (k ≥ 2) is off by {off}.", mesh.patches)
+}
+
+/// The limit of the spectral radius, where the meshes give one.
+fn radius(found: &Refinement) -> String {
+    let meshes: Vec<_> = found.meshes.iter().map(|m| m.radius).collect();
+    let Some(limit) = radius_limit(&meshes) else { return String::new() };
+    let [value, half] = [
+        limit.each_ref().map(|l| format!("{:.4}", l.value)).join(", "),
+        limit.each_ref().map(|l| format!("{:.0e}", l.half_width)).join(", "),
+    ];
+    format!("For h → 0 the spectral radius tends to ({value}) ± ({half}), an estimate and no bound.")
+}
+
+/// The errors of the terms from k = 2 on, with a sentence above the table.
+fn errors(found: &Refinement, max_bounces: usize, spp: u64) -> String {
+    let terms = (2..=max_bounces).take(TERMS).map(Quantity::Term);
+    let quantities: Vec<Quantity> = terms.chain([Quantity::Indirect]).collect();
+    let above = format!(
+        "Image means by rays ({spp} spp), and how far radiosity is off, in percent of them (± standard error), for meshes of \
+         growing numbers of patches."
+    );
+    format!("{}\n{}", wrapped(&above), report::table(found, &quantities, MESHES))
 }

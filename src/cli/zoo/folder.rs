@@ -1,4 +1,5 @@
-//! The folder of a run of the zoo, and what it writes there: nothing that tells a stranger's program what is wrong.
+//! The output folder of the zoo. Its EXR files do not tell which mistake they show, so that `diagnose` and other programs can be
+//! tested on them.
 
 use super::args::Zoo;
 use crate::cli::base::Failure;
@@ -9,7 +10,7 @@ use fredholm::engine::by_rays::Sampled;
 use fredholm::report::image::exr;
 use std::path::{Path, PathBuf};
 
-/// A session in a folder that is absent, empty, or holds what this very command left.
+/// A session whose folder is new, is empty, or was written by the same command.
 pub fn session(args: &Zoo, default: &str) -> Result<Session, Failure> {
     let wanted = args.out.clone().unwrap_or_else(|| PathBuf::from(default));
     let marked = std::fs::read_to_string(wanted.join(MARK)).is_ok_and(|text| text.starts_with(&mark()));
@@ -19,15 +20,15 @@ pub fn session(args: &Zoo, default: &str) -> Result<Session, Failure> {
     Ok(session)
 }
 
-/// The numbers of a run, under a line that says whose folder this is.
+/// Name of the CSV file with the ratios. Its first line is the command, which marks the folder as the zoo's.
 pub const MARK: &str = "ratios.csv";
 
-/// That line.
+/// The first line of that file.
 pub fn mark() -> String {
     format!("# {}\n", output::canonical_command())
 }
 
-/// What a stranger's renderer would leave: the image, its terms, their standard errors; nothing that tells what is wrong.
+/// Writes the image, its terms and their standard errors as another renderer would, without the name of the mistake.
 pub fn write(path: &Path, [w, h]: [u32; 2], result: &Sampled) -> Result<(), Failure> {
     let names: Vec<[String; 2]> = (0..result.terms.len()).map(|k| ["", "_se"].map(|e| format!("T{k:02}{e}"))).collect();
     let layer = |name, pixels| exr::Layer { name, pixels };

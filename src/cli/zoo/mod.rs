@@ -1,4 +1,4 @@
-//! `fredholm zoo`: estimators that are wrong on purpose, each beside the right one.
+//! `fredholm zoo`: a collection of estimators with one deliberate mistake each, compared with the right one.
 
 mod args;
 mod everyone;
@@ -11,7 +11,7 @@ use super::base::{Ending, Failure, print};
 pub use args::Zoo;
 use fredholm::zoo;
 
-/// Lists, renders, or asks.
+/// Lists the members, renders all or one of them, or plays the quiz.
 pub fn run(args: &Zoo) -> Result<Ending, Failure> {
     if args.quiz {
         return quiz::run(args);
@@ -19,7 +19,9 @@ pub fn run(args: &Zoo) -> Result<Ending, Failure> {
     let bug = args.name.as_ref().map(|name| zoo::find(name).ok_or_else(|| words::unknown(name))).transpose()?;
     match bug {
         None if args.list => print(&words::list()).map(|()| Ending::Ok),
-        Some(bug) if args.list => print(&words::introduction(bug)).map(|()| Ending::Ok),
+        Some(bug) if args.list => {
+            print(&format!("{}\n{}", words::mistake(bug), words::facts(bug))).map(|()| Ending::Ok)
+        }
         None => everyone::run(args),
         Some(bug) => one::run(args, bug),
     }

@@ -1,63 +1,93 @@
-//! One member beside the right estimator: table, picture, plot.
+//! One member compared with the right estimator: a table, pictures and a plot.
 
 use super::args::Zoo;
 use super::folder::{self, MARK, mark, write};
-use super::words::{brief, introduction};
-use crate::cli::base::{Ending, Failure, paragraphs, print, usage};
+use super::words::{self, brief, whole};
+use crate::cli::base::{Ending, Failure, print, usage, wrapped};
 use fredholm::engine::by_rays::Sampled;
-use fredholm::report::ReportError;
 use fredholm::report::figures::signature::{self, Signature};
 use fredholm::report::image::contact_sheet::{self, Cell};
 use fredholm::report::image::picture::auto_gain_beside_lamps;
 use fredholm::report::image::typeset::{Caption, superscript};
 use fredholm::report::plot::Point;
 use fredholm::report::text::csv::Csv;
-use fredholm::report::text::table::significant;
+use fredholm::report::text::table::{plus_minus, significant};
 use fredholm::report::write_atomically;
+use fredholm::report::{ReportError, half_width_95};
 use fredholm::scene::{Scene, builtin};
 use fredholm::terms::Estimate;
 use fredholm::zoo::signature::{Ratio, measured};
 use fredholm::zoo::{self, Bug, Stage};
 
-/// One member beside the right estimator, in the scene that shows it and in the one that cannot.
+/// Renders a member and the right estimator, in the scene that shows the mistake and in one that cannot.
 pub fn run(args: &Zoo, bug: &'static Bug) -> Result<Ending, Failure> {
     let settings = args.settings(256);
     let stage = stage(args, bug)?;
     let session = folder::session(args, &format!("zoo-out/{}", bug.name))?;
-    let pair = |stage: Stage| -> Result<(Sampled, Sampled), Failure> {
+    let pair = |stage: Stage| -> Result<Pair, Failure> {
         let scene = Scene::new(&stage.load(args.size)?);
         let right = zoo::render_right(bug, &scene, &settings, session.progress());
-        Ok((zoo::render(bug, &scene, &settings, session.progress()), right))
+        Ok(Pair { stage, wrong: zoo::render(bug, &scene, &settings, session.progress()), right })
     };
-    let (wrong, right) = pair(stage)?;
-    let blind = bug.blind.map(|stage| pair(stage).map(|p| (stage, p))).transpose()?;
+    let shown = pair(stage)?;
+    let blind = bug.blind.map(pair).transpose()?;
     session.clear();
 
-    let judgement = zoo::judge::judge(&wrong, &right);
+    let (wrong, right) = (&shown.wrong, &shown.right);
     let theory = stage == bug.exposed_by;
-    let mut blocks = vec![introduction(bug), format!("{}\n{}", stage.label, rows(bug, &wrong, &right, theory))];
-    blocks.push(format!("p = {:.1e} that the right renderer gives this: judged by {}", judgement.p, judgement.what));
-    if let Some((stage, (wrong, right))) = &blind {
-        blocks.push(format!("{}, which is blind to it\n{}", stage.label, rows(bug, wrong, right, false)));
-    }
-
-    let (folder, caption) = (&session.folder, Caption { scene: stage.label.into(), ..session.caption() });
-    write(&folder.join(format!("{}.exr", bug.name)), args.size, &wrong)?;
-    write(&folder.join("correct.exr"), args.size, &right)?;
-    pictures(bug, args.size, &wrong, &right, &caption)?.picture.write(&folder.join(format!("{}.png", bug.name)))?;
+    let (folder, caption, n) = (&session.folder, Caption { scene: stage.label.into(), ..session.caption() }, bug.name);
+    write(&folder.join(format!("{n}.exr")), args.size, wrong)?;
+    write(&folder.join("correct.exr"), args.size, right)?;
+    pictures(bug, args.size, wrong, right, &caption)?.picture.write(&folder.join(format!("{n}.png")))?;
     let ratios = measured(wrong.series.image(), right.series.image());
-    signature::draw(&plot(&format!("{}: {}", bug.name, bug.what), bug, &ratios, theory), &caption)?
-        .write(folder, &format!("{}-ratios", bug.name))?;
+    signature::draw(&plot(&format!("{n}: {}", bug.what), bug, &ratios, theory), &caption)?
+        .write(folder, &format!("{n}-ratios"))?;
     let mut csv = Csv::new("k,ratio,std_error");
     ratios.iter().enumerate().for_each(|(k, r)| csv.put(k).put(r.value).put(r.std_error).end());
     write_atomically(&folder.join(MARK), (mark() + &csv.text()).as_bytes())?;
-    let (folder, n) = (folder.display(), bug.name);
-    blocks.push(format!("{folder}: {n}.exr, correct.exr, {n}.png, {n}-ratios.svg and .png, {MARK}"));
-    print(&paragraphs(&blocks))?;
+
+    let files: Vec<String> = ["exr", "png"].map(|e| format!("{n}.{e}")).into();
+    let more = ["png", "svg"].map(|e| format!("{n}-ratios.{e}"));
+    let files: Vec<String> = files.into_iter().chain(more).chain(["correct.exr".into(), MARK.into()]).collect();
+    let tables = [table(bug, &shown, blind.as_ref(), theory), words::signature(bug)];
+    print(&session.text(&wrapped(&answer(bug, &shown)), &tables, &[], &files))?;
     Ok(session.ending(false))
 }
 
-/// The scene that shows the mistake, or the one that was asked for.
+/// The wrong and the right result in one scene.
+struct Pair {
+    stage: Stage,
+    wrong: Sampled,
+    right: Sampled,
+}
+
+/// The answer: by how much the mistake changes the whole image, and how sure it is that there is a mistake.
+fn answer(bug: &Bug, shown: &Pair) -> String {
+    let r = whole(shown.wrong.series.image(), shown.right.series.image());
+    let zoo::judge::Judgement { p, what } = zoo::judge::judge(&shown.wrong, &shown.right);
+    let scene = shown.stage.label;
+    if p > 1e-3 {
+        return format!(
+            "In {scene} the mistake of {} cannot be told from noise (p = {p:.2}; judged by: {what}), so raise --spp.\n\
+             The mistake: {}.",
+            bug.name, bug.what
+        );
+    }
+    let half = half_width_95(r.std_error, r.replicates);
+    let by = match (r.value.is_finite(), half.is_finite() && half > 0.0) {
+        (false, _) => "makes the mean of the whole image no number".into(),
+        (true, true) => format!("multiplies the mean of the whole image by {}", plus_minus(r.value, half, 2)),
+        (true, false) => format!("multiplies the mean of the whole image by {}", significant(r.value, 4)),
+    };
+    let sure = if p > 0.0 {
+        format!("The right renderer gives this with a probability of {p:.0e}; judged by: {what}.")
+    } else {
+        format!("The right renderer cannot give this; judged by: {what}.")
+    };
+    format!("In {scene} the mistake of {} {by}: {}.\n{sure}", bug.name, bug.what)
+}
+
+/// The scene of `--scene`, or else the one that shows the mistake.
 fn stage(args: &Zoo, bug: &Bug) -> Result<Stage, Failure> {
     let Some(name) = &args.scene else { return Ok(bug.exposed_by) };
     let scene = builtin::find(name)
@@ -65,33 +95,46 @@ fn stage(args: &Zoo, bug: &Bug) -> Result<Stage, Failure> {
     Ok(Stage { label: scene.name, scene: scene.name, set: &[] })
 }
 
-/// A row per term: right, wrong, r_k measured and predicted.
-fn rows(bug: &Bug, wrong: &Sampled, right: &Sampled, theory: bool) -> String {
-    let (w, r) = (wrong.series.image(), right.series.image());
+/// A row per term: the right and the wrong mean, r_k measured and predicted, and r_k in the scene that cannot show the mistake.
+fn table(bug: &Bug, shown: &Pair, blind: Option<&Pair>, theory: bool) -> String {
+    let [w, r] = [&shown.wrong, &shown.right].map(|s| s.series.image());
+    let other = blind.map(|b| [&b.wrong, &b.right].map(|s| s.series.image()));
     let mean = |e: &Estimate| significant(e.mean.element_sum() / 3.0, 4);
-    let line = |name: &str, w: &Estimate, r: &Estimate, predicted: Option<f64>| {
+    let column = |text: String| if blind.is_some() { text } else { String::new() };
+    let line = |name: &str, w: &Estimate, r: &Estimate, predicted: Option<f64>, blind: Option<[&Estimate; 2]>| {
         let predicted = predicted.map_or(String::new(), |r| significant(r, 4));
+        let (ratio, elsewhere) =
+            (brief(&Ratio::of(w, r)), blind.map_or(String::new(), |[w, r]| brief(&Ratio::of(w, r))));
         let line =
-            format!("{name:6} {:>10}  {:>10}  {:>12}  {predicted:>10}", mean(r), mean(w), brief(&Ratio::of(w, r)));
+            format!("{name:6} {:>10} {:>10} {ratio:>12} {predicted:>10} {:>16}", mean(r), mean(w), column(elsewhere));
         line.trim_end().to_string()
     };
-    let mut lines = vec![format!("{:6} {:>10}  {:>10}  {:>12}  {:>10}", "k", "right", "wrong", "rₖ", "predicted")];
+    let mut above = format!(
+        "Means of the terms in {}, right and wrong, and the ratio rₖ, measured (in brackets the 95 % interval of the last \
+         digits) and predicted by theory",
+        shown.stage.label
+    );
+    above += &blind.map_or(".".into(), |b| format!("; {} is blind to the mistake.", b.stage.label));
+    let elsewhere = blind.map_or(String::new(), |b| b.stage.label.to_owned());
+    let head = format!("{:6} {:>10} {:>10} {:>12} {:>10} {elsewhere:>16}", "k", "right", "wrong", "rₖ", "predicted");
+    let mut lines = vec![wrapped(&above), head.trim_end().to_owned(), "─".repeat(head.trim_end().chars().count())];
     for (k, (a, b)) in w.terms.iter().zip(&r.terms).enumerate() {
-        lines.push(line(&k.to_string(), a, b, if theory { (bug.ratio)(k) } else { None }));
+        let there = other.and_then(|o| Some([o[0].terms.get(k)?, o[1].terms.get(k)?]));
+        lines.push(line(&k.to_string(), a, b, if theory { (bug.ratio)(k) } else { None }, there));
     }
     let last = w.terms.len().saturating_sub(1);
     if !w.tail.is_none() {
-        lines.push(line(&format!("k > {last}"), &w.tail, &r.tail, None));
+        lines.push(line(&format!("k > {last}"), &w.tail, &r.tail, None, other.map(|o| [&o[0].tail, &o[1].tail])));
     }
-    lines.push(line("whole", &w.total, &r.total, None));
-    let bad = wrong.series.cost.non_finite;
+    lines.push(line("whole", &w.total, &r.total, None, other.map(|o| [&o[0].total, &o[1].total])));
+    let bad = shown.wrong.series.cost.non_finite;
     if bad > 0 {
-        lines.push(format!("{bad} samples are no number"));
+        lines.push(format!("{bad} samples of the wrong estimator are no number."));
     }
     lines.join("\n")
 }
 
-/// r_k as a figure.
+/// The data of the figure: r_k measured and, in the scene that shows the mistake, predicted.
 fn plot(title: &str, bug: &Bug, ratios: &[Ratio], theory: bool) -> Signature {
     let point = |(k, r): (usize, &Ratio)| Point {
         x: k as f64,
@@ -107,7 +150,8 @@ fn plot(title: &str, bug: &Bug, ratios: &[Ratio], theory: bool) -> Signature {
     }
 }
 
-/// Right, wrong and how they differ, for the whole and for k = 1 to 3: each row at one exposure, the difference signed.
+/// A sheet with the right image, the wrong one and their signed difference, for the whole and for k = 1 to 3; each row has one
+/// exposure.
 fn pictures(
     bug: &Bug,
     [w, h]: [u32; 2],
@@ -121,7 +165,7 @@ fn pictures(
     for k in 1..4.min(right.terms.len()) {
         shown.push((format!("T{}E", superscript(k)), &right.terms[k].mean, &wrong.terms[k].mean));
     }
-    // what is too bright in red, what is too dark in blue
+    // red where the wrong image is too bright, blue where it is too dark
     let signed = |a: &[[f32; 3]], b: &[[f32; 3]]| -> Vec<[f32; 3]> {
         let mean = |p: &[f32; 3]| (p[0] + p[1] + p[2]) / 3.0;
         let differ = |(a, b): (&[f32; 3], &[f32; 3])| {

@@ -1,8 +1,8 @@
-//! `fredholm zoo --quiz`: a table of r_k without a name; predict, then reveal.
+//! `fredholm zoo --quiz`: shows a table of ratios r_k without the name of the mistake, asks for it, and reveals it.
 
 use super::args::Zoo;
-use super::words::{brief, introduction, whole};
-use crate::cli::base::{Ending, Failure, note, paragraphs, print};
+use super::words::{brief, facts, mistake, whole};
+use crate::cli::base::{Ending, Failure, note, paragraphs, print, wrapped};
 use crate::cli::session::Session;
 use fredholm::engine::by_rays;
 use fredholm::math::{Key, Purpose, Rng};
@@ -11,17 +11,20 @@ use fredholm::zoo::signature::measured;
 use fredholm::zoo::{self, Bug};
 use std::io::BufRead;
 
-/// Names to choose from.
+/// Number of names to choose from.
 const CHOICES: usize = 4;
 
-/// Asks as many rounds as were wanted; answers are lines of stdin, and where it ends the rest is revealed.
+/// Plays the rounds. Answers are lines of stdin; where it ends, the remaining rounds are revealed.
 pub fn run(args: &Zoo) -> Result<Ending, Failure> {
     let mut lines = std::io::stdin().lock().lines();
     let (settings, session) = (args.settings(64), Session::new(args, args.seed)?);
     let progress = session.progress();
     let order = shuffled(args.seed, 0, zoo::all());
     let (mut right, mut answered, mut asked) = (0, 0, 0);
-    print("Which mistake was made? rₖ = Tₖ of the suspect / Tₖ of the right renderer. Answer with a number.")?;
+    print(&wrapped(
+        "Which mistake was made? Answer with a number.\n\
+         A table shows rₖ = mean of the wrong term Tₖ/mean of the right one; in brackets the 95 % interval of the last digits.",
+    ))?;
     for (round, &bug) in order.iter().cycle().take(args.rounds as usize).enumerate() {
         let scene = Scene::new(&bug.exposed_by.load(args.size)?);
         let truth = by_rays::terms(&scene, by_rays::Estimator::Prefix, &settings, progress);
@@ -36,7 +39,7 @@ pub fn run(args: &Zoo) -> Result<Ending, Failure> {
         table.push(format!("  whole  {}", brief(&whole(a, b))));
         let bad = suspect.series.cost.non_finite;
         if bad > 0 {
-            table.push(format!("  {bad} samples are no number"));
+            table.push(format!("  {bad} samples of the wrong estimator are no number"));
         }
         let choices = choices(args.seed, round as u32 + 1, bug);
         let named: Vec<String> =
@@ -54,24 +57,24 @@ pub fn run(args: &Zoo) -> Result<Ending, Failure> {
                 if hit { "right".into() } else { "no".to_string() }
             }
         };
-        print(&format!("\n{verdict}: it is\n{}", introduction(bug)))?;
+        print(&format!("\n{verdict}: it is\n{}\n{}", mistake(bug), facts(bug)))?;
     }
-    print(&format!("\n{right} of {answered} right, {asked} asked"))?;
+    print(&format!("\nScore: {right} of {answered} right, {asked} asked."))?;
     Ok(Ending::Ok)
 }
 
-/// The next line that is a number; other lines are asked for again, and the end of the input is no answer.
+/// The answer on the next line that is a valid number; asks again after other lines. `None` at the end of the input.
 fn answer(lines: &mut impl Iterator<Item = std::io::Result<String>>) -> Result<Option<usize>, Failure> {
     for line in lines.by_ref() {
         match line?.trim().parse() {
             Ok(n) if (1..=CHOICES).contains(&n) => return Ok(Some(n)),
-            _ => note(&format!("a number from 1 to {CHOICES}, please")),
+            _ => note(&format!("please answer with a number from 1 to {CHOICES}")),
         }
     }
     Ok(None)
 }
 
-/// The member and three others, in an order of the seed's.
+/// The member and three others, in a random order that depends on the seed.
 fn choices(seed: u64, round: u32, bug: &'static Bug) -> Vec<&'static Bug> {
     let others = zoo::all().into_iter().filter(|b| !std::ptr::eq(*b, bug)).collect();
     let mut all: Vec<_> = shuffled(seed, 2 * round, others).into_iter().take(CHOICES - 1).collect();
@@ -79,7 +82,7 @@ fn choices(seed: u64, round: u32, bug: &'static Bug) -> Vec<&'static Bug> {
     shuffled(seed, 2 * round + 1, all)
 }
 
-/// Fisher and Yates (1938), by addressed numbers.
+/// A random permutation (Fisher and Yates 1938) that depends only on the seed and the round.
 fn shuffled<T>(seed: u64, round: u32, mut items: Vec<T>) -> Vec<T> {
     for i in (1..items.len()).rev() {
         let u = Rng::at(Key::new(seed, "quiz"), round, i as u32, 0, Purpose::Start).one();

@@ -1,62 +1,59 @@
-//! The members and their ratios in words.
+//! The members of the zoo and their ratios r_k in words.
 
-use crate::cli::base::{Failure, paragraphs, usage};
+use crate::cli::base::{Failure, paragraphs, usage, wrapped, wrapped_after};
 use fredholm::report::half_width_95;
 use fredholm::report::text::table::significant;
 use fredholm::terms::Functional;
 use fredholm::zoo::signature::Ratio;
 use fredholm::zoo::{self, Bug};
 
-/// There is no member of that name.
+/// The usage error for a name that no member has.
 pub fn unknown(name: &str) -> Failure {
     let near = zoo::all().into_iter().map(|b| (strsim::levenshtein(b.name, name), b.name)).min().map_or("", |n| n.1);
     usage(&format!("the zoo has no `{name}`"), &format!("perhaps `{near}`; `fredholm zoo --list` shows all"))
 }
 
-/// Who lives there.
+/// All members, with a sentence above the list.
 pub fn list() -> String {
-    let mut blocks = vec![format!("{} estimators, each wrong in one place", zoo::all().len())];
+    let mut blocks = vec![wrapped(&format!(
+        "The zoo has {} estimators, each with one mistake.\n\
+         Below each name: the mistake, a scene that shows it, and where it cannot be seen. `fredholm zoo NAME` renders one.",
+        zoo::all().len()
+    ))];
     for bug in zoo::all() {
-        let blind = bug.blind.map_or("the whole image of every scene", |s| s.label);
+        let blind = bug.blind.map_or("the whole image of any scene", |s| s.label);
         blocks.push(format!("{}\n  {}\n  seen in {}; not in {blind}", bug.name, bug.what, bug.exposed_by.label));
     }
     paragraphs(&blocks)
 }
 
-/// A member in words.
-pub fn introduction(bug: &Bug) -> String {
-    let blind = bug.blind.map_or("the whole image of every scene: its sum is right", |s| s.label);
-    let mut lines = vec![format!("{}: {}", bug.name, bug.what)];
+/// The name of a member and its mistake as a sentence.
+pub fn mistake(bug: &Bug) -> String {
+    wrapped(&format!("{}: {}.", bug.name, bug.what))
+}
+
+/// Facts about a member: those of [`signature`], and scenes that show and hide the mistake.
+pub fn facts(bug: &Bug) -> String {
+    let blind = bug.blind.map_or("the whole image of any scene: its sum is right", |s| s.label);
     let seen = format!("{}, from {} samples per pixel at {p}x{p}", bug.exposed_by.label, bug.spp, p = zoo::PIXELS);
-    for (what, text) in [
-        ("where", bug.place),
-        ("gives", bug.expected),
-        ("signature", bug.signature),
-        ("seen in", &seen),
-        ("not in", blind),
-    ] {
-        lines.extend(wrapped(&format!("  {what:10} "), text));
-    }
-    lines.join("\n")
+    format!("{}\n{}\n{}", signature(bug), fact("seen in", &seen), fact("not in", blind))
 }
 
-/// Text in lines of at most 96 characters, the later ones indented.
-fn wrapped(head: &str, text: &str) -> Vec<String> {
-    let mut lines = vec![head.to_string()];
-    for word in text.split(' ') {
-        let last = lines.last().map_or(0, |l| l.chars().count());
-        if last + word.chars().count() > 96 {
-            lines.push(format!("  {:10} ", ""));
-        }
-        if let Some(line) = lines.last_mut() {
-            line.push_str(word);
-            line.push(' ');
-        }
-    }
-    lines.into_iter().map(|l| l.trim_end().to_string()).collect()
+/// The wrong formula of a member, its result, and its signature.
+pub fn signature(bug: &Bug) -> String {
+    [("where", bug.place), ("gives", bug.expected), ("signature", bug.signature)]
+        .map(|(what, text)| fact(what, text))
+        .join("\n")
 }
 
-/// The whole against the whole, or the sum where paths are cut at K.
+/// A fact in indented lines after its name.
+fn fact(what: &str, text: &str) -> String {
+    // blanks that wrapping keeps
+    wrapped_after(&format!("\u{a0}\u{a0}{what:\u{a0}<10} {text}"), &" ".repeat(13))
+}
+
+/// The ratio of the whole images; where the wrong paths are cut at K, its image is compared with the right sum of the terms
+/// k ≤ K.
 pub fn whole(wrong: &Functional, right: &Functional) -> Ratio {
     Ratio::of(&wrong.total, if wrong.tail.is_none() { &right.sum } else { &right.total })
 }
@@ -70,7 +67,7 @@ pub fn brief(r: &Ratio) -> String {
     if !(half > 0.0 && half.is_finite()) || half < 1e-4 * r.value.abs() {
         return significant(r.value, 4);
     }
-    // two digits of the error
+    // the error has two digits
     let decimals = (1 - half.log10().floor() as i32).clamp(0, 6) as usize;
     format!("{:.decimals$}({:.0})", r.value, half * 10f64.powi(decimals as i32))
 }

@@ -1,10 +1,10 @@
-//! The figure of a diagnosis: the ratios r_k with the curves that the possible causes predict, and the ratio in each region
-//! of the image.
+//! The figure and the table of a diagnosis: the ratios r_k, the curves that suspects predict, and the ratio in the regions of the
+//! image.
 //!
 //! | panel | shows |
 //! |---|---|
-//! | left | r_k with 95 % error bars, and one line per possible cause; 1 is correct |
-//! | right | the ratio in the regions of the image: of direct light if terms are given, else of the whole image |
+//! | left | r_k = mean of the k-th term of the picture/mean of the right one, with 95 % bars; a line per suspect; 1 is right |
+//! | right | the ratio in the regions of the image: of direct light if the file has terms, else of the whole |
 
 use crate::diagnosis::evidence::Ratio;
 use crate::diagnosis::regions::SIDE;
@@ -13,14 +13,46 @@ use crate::report::{
     ReportError,
     image::{typeset::Caption, zmap},
     plot::{Axis, BLACK, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, Words, figure},
-    text::number::significant,
+    text::{
+        number::significant,
+        table::{Side, aligned},
+    },
 };
 use plotters::{prelude::RGBColor, style::text_anchor::HPos};
 
-/// Largest number of causes drawn; more curves would hide each other.
+/// Number of suspects that are drawn; more curves would hide each other.
 const MOST: usize = 4;
 const RIGHT: Stroke = Stroke { color: GREY, width: 1.6, dash: Some((7.0, 5.0)) };
 const MAP: f64 = 300.0;
+
+/// A row for each of the first `most` terms and the whole image: means, their ratio r with its 95 % interval, and whether r is the
+/// same in all regions.
+pub fn table(d: &Diagnosis, most: usize) -> String {
+    let header = ["", "mean", "right", "r", "± 95 %", "same r everywhere?"];
+    let mut rows = vec![header.map(String::from).to_vec()];
+    let all = &d.evidence.ratios;
+    let terms = all.len().min(most.saturating_sub(1));
+    let shown = all.iter().take(terms).chain(all.last().filter(|_| terms < all.len()));
+    for r in shown {
+        let flat = match r.flat {
+            p if p.is_nan() => "–".into(),
+            p if p < 1e-3 => {
+                let known = || r.regions[1..].iter().copied().filter(|v| v.is_finite());
+                let (lo, hi) = (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
+                format!("no, {} to {}", significant(lo, 3), significant(hi, 3))
+            }
+            p => format!("yes (p = {})", significant(p, 2)),
+        };
+        let [a, b] = r.means.map(|m| significant(m, 4));
+        let (value, half) = if r.value.is_finite() {
+            (significant(r.value, 4), significant(r.half_width, 2))
+        } else {
+            ("–".into(), "–".into())
+        };
+        rows.push(vec![r.slot.to_string(), a, b, value, half, flat]);
+    }
+    aligned(&rows, &[Side::Left, Side::Right, Side::Right, Side::Right, Side::Right, Side::Left])
+}
 
 /// Draws the figure of a diagnosis.
 ///

@@ -1,13 +1,12 @@
-//! Eigenvalues on finer and finer meshes: which of them belong to the scene, and which only to the mesh.
+//! Eigenvalues on finer and finer meshes: some converge and belong to the scene, the others belong to the mesh.
 //!
 //! | quantity | meaning |
 //! |---|---|
-//! | λ | the largest and the most negative eigenvalues of T_h, for each number of patches |
-//! | band | ±0.42361 √(ρ₁ρ₂), the essential spectrum of right-angled edges; on finer meshes more and more eigenvalues lie in it |
-//! | step | change from the previous mesh; it decreases if the eigenvalue has a limit |
+//! | λ | the largest and the most negative eigenvalues of T_h, by the number of patches |
+//! | band | ±0.42361 √(ρ₁ρ₂), the essential spectrum of right-angled edges: every mesh fills it, a finer one more densely |
+//! | step | change of λ from the previous mesh: it falls if λ has a limit |
 //!
-//! Corners where three faces meet widen the band further (this is not computed). An eigenvalue just outside the band may
-//! therefore drift, too.
+//! Corners where three faces meet widen the band further (not computed), so an eigenvalue just outside the band may drift too.
 
 use crate::report::{
     ReportError,
@@ -21,7 +20,7 @@ use crate::report::{
 use crate::study::refinement::{Ends, Mesh, Refinement};
 use plotters::style::RGBColor;
 
-/// The meshes for which eigenvalues were computed.
+/// The meshes whose eigenvalues were computed.
 fn known(r: &Refinement) -> Vec<(&Mesh, &Ends)> {
     r.meshes.iter().filter_map(|m| Some((m, m.spectrum.as_ref()?))).collect()
 }
@@ -29,7 +28,7 @@ fn known(r: &Refinement) -> Vec<(&Mesh, &Ends)> {
 /// One eigenvalue on all meshes.
 struct Track {
     name: String,
-    /// Number of patches and λ; meshes without this eigenvalue are left out.
+    /// Number of patches and λ, for the meshes that have this eigenvalue.
     values: Vec<(usize, f64)>,
     /// Half width of the band on the finest mesh.
     band: f64,
@@ -57,15 +56,26 @@ fn tracks(r: &Refinement) -> Vec<Track> {
     [0, 1].into_iter().flat_map(|side| (0..count(side)).map(move |i| (side, i))).map(|(s, i)| track(s, i)).collect()
 }
 
-/// A table with a row per eigenvalue and a column per mesh.
-pub fn table(r: &Refinement, channel: &str) -> String {
+/// The number of leading eigenvalues outside the band on the finest mesh, the number of all leading eigenvalues, and the half
+/// width of the band.
+pub fn outside(r: &Refinement) -> (usize, usize, f64) {
+    let all = tracks(r);
+    (all.iter().filter(|t| t.outside()).count(), all.len(), all.first().map_or(0.0, |t| t.band))
+}
+
+/// A row for each of the `most` largest eigenvalues, a column per mesh, and the last step with its ratio to the one before.
+pub fn table(r: &Refinement, most: usize) -> String {
     let known = known(r);
     let mut header = vec!["λ".to_string()];
-    header.extend(known.iter().map(|(m, _)| m.patches.to_string()));
-    header.extend(["last step", "ratio to the step before", ""].map(String::from));
+    header.extend(known.iter().map(|(m, _)| format!("{} patches", m.patches)));
+    header.extend(["last step", "step ratio", ""].map(String::from));
     let mut rows = vec![header];
     let all = tracks(r);
-    for t in &all {
+    let mut chosen: Vec<usize> = (0..all.len()).collect();
+    chosen.sort_by(|&a, &b| all[b].last().abs().total_cmp(&all[a].last().abs()));
+    chosen.truncate(most);
+    chosen.sort_unstable();
+    for t in chosen.iter().map(|&i| &all[i]) {
         let mut row = vec![t.name.clone()];
         row.extend(
             known.iter().map(|(m, _)| {
@@ -78,17 +88,10 @@ pub fn table(r: &Refinement, channel: &str) -> String {
         row.extend([step, ratio, if t.outside() { String::new() } else { "in the band".into() }]);
         rows.push(row);
     }
-    let sides = [vec![Side::Left], vec![Side::Right; known.len() + 2], vec![Side::Left]].concat();
-    let band = all.first().map_or(0.0, |t| t.band);
-    format!(
-        "{channel}: leading eigenvalues by number of patches; the band of the edges is ±{band:.5}\n{}\n\
-         Well outside the band, each step is less than half of the previous one if h halves: λ has a limit.\n\
-         Inside, and just outside (corners widen the band), eigenvalues keep changing with the mesh.",
-        aligned(&rows, &sides)
-    )
+    aligned(&rows, &[vec![Side::Left], vec![Side::Right; known.len() + 2], vec![Side::Left]].concat())
 }
 
-/// A CSV file with a line per eigenvalue and mesh.
+/// All eigenvalues as CSV, a line per eigenvalue and mesh.
 pub fn csv(r: &Refinement) -> String {
     let mut csv = Csv::new("patches,h,channel,eigenvalue,value,residual,band");
     for (m, e) in known(r) {
@@ -103,7 +106,7 @@ pub fn csv(r: &Refinement) -> String {
 }
 
 const BAND: Stroke = Stroke { color: GREY, width: 1.6, dash: Some((7.0, 5.0)) };
-/// Appearance of eigenvalues inside the band.
+/// Mark of the eigenvalues inside the band.
 const INSIDE: Look = Look { color: RGBColor(165, 165, 165), mark: Mark::Ring };
 
 /// Draws the eigenvalues, and their steps from mesh to mesh, against the number of patches.

@@ -1,7 +1,7 @@
-//! The rendering equation at points: L against E + T L, and the distribution of the p-values.
+//! The rendering equation at points: a plot of E + T L against L, a plot of the p-values against the uniform law, and a table.
 //!
 //! ```text
-//! L(x) = E(x) + (T L)(x)      every point lies on the diagonal up to noise, and the p-values are uniform
+//! L(x) = E(x) + (T L)(x)      if it holds, points lie on the diagonal and p-values are uniform on [0, 1]
 //! ```
 
 use crate::report::{
@@ -11,10 +11,16 @@ use crate::report::{
         Axis, BLUE, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, VERMILION, Words,
         figure,
     },
+    text::{
+        number::{mark, outcome, p_value, significant},
+        table::{Side, aligned},
+    },
 };
 use crate::stats::uniformity::band;
+use crate::study::equilibrium::Group;
+use crate::terms::Channel;
 
-/// One point of the figure.
+/// The two sides of the equation at a point, with the error of their difference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dot {
     /// L, mean over the channels.
@@ -23,15 +29,40 @@ pub struct Dot {
     pub right: f64,
     /// Standard error of the difference.
     pub std_error: f64,
-    /// Number of replicates from which the error is computed.
+    /// Replicates from which the standard error is estimated.
     pub replicates: u64,
-    /// p-value of no difference; NaN if the point was not tested.
+    /// p-value of the hypothesis that both sides are equal; NaN if the point is not judged.
     pub p: f64,
-    /// True if the test of all points rejects this one.
+    /// True if the test over all points rejects this one.
     pub rejected: bool,
 }
 
-/// Draws groups of points. The text of each group is shown in the legend.
+/// A row per group of points: the mean of T L, the mean difference of both sides in percent of it (± half the interval), p, and
+/// the verdict.
+pub fn table(groups: &[Group]) -> String {
+    let header = ["points", "number", "mean of T L", "L − (E + T L)", "p", "verdict"];
+    let mut rows = vec![header.map(String::from).to_vec()];
+    rows.extend(groups.iter().map(|g| {
+        let c = g.worst_channel();
+        let (value, difference, half) = (g.value[c], g.difference.mean[c], g.half[c]);
+        let apart = match g.evidence.no_error {
+            None => format!("{:+.2} ± {:.2} %", 100.0 * difference / value, 100.0 * half / value),
+            Some(why) => format!("{} ({})", significant(difference, 3), why.short()),
+        };
+        vec![
+            if g.name == "camera" { "seen by pixels" } else { "on all surfaces" }.to_owned(),
+            g.points.to_string(),
+            format!("{} ({})", significant(value, 4), Channel::ALL[c]),
+            apart,
+            p_value(g.p),
+            format!("{} {}", mark(g.outcome), outcome(g.outcome)),
+        ]
+    }));
+    let right = Side::Right;
+    aligned(&rows, &[Side::Left, right, right, right, right, Side::Left])
+}
+
+/// Draws groups of points, each with its label in the legend.
 ///
 /// # Errors
 /// If the plot crate fails, which is a defect of the program.

@@ -2,10 +2,11 @@
 //!
 //! | shown | meaning |
 //! |---|---|
-//! | λ | eigenvalues, by falling magnitude; those within the band of the edges get no name |
-//! | share | ⟨u, T E⟩_w² / ‖T E‖_w²: how much of the first bounce a mode carries |
-//! | decay | \|⟨u, T^k E⟩_w\| = λ^{k−1} \|⟨u, T E⟩_w\|: every mode dies at its own rate |
-//! | ratio | ‖T^{k+1} E‖ / ‖T^k E‖: in the weight A/ρ it never falls and stays below r(T); in another norm it may do either |
+//! | λ | eigenvalues, by falling magnitude; those inside the band of the edges get no number |
+//! | band | ±0.42361 √(ρ₁ρ₂): eigenvalues inside it come from edges where two faces meet, and change with every mesh |
+//! | share | ⟨u, T E⟩_w² / ‖T E‖_w²: the part of the first bounce that mode u carries |
+//! | decay | \|⟨u, T^k E⟩_w\| = λ^{k−1} \|⟨u, T E⟩_w\|: each mode decays at its own rate |
+//! | ratio | ‖T^{k+1} E‖ / ‖T^k E‖: in the weight A/ρ it never falls and stays below r(T); in another norm it may rise and fall |
 
 use crate::report::{
     ReportError,
@@ -23,7 +24,7 @@ use crate::report::{
 };
 use serde_json::{Value, json};
 
-/// One mode of a channel.
+/// One eigenvalue of T with its mode u.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// λ.
@@ -34,20 +35,20 @@ pub struct Row {
     pub decay: Vec<f64>,
 }
 
-/// What is known about the spectrum of one channel.
+/// Eigenvalues, bounds and norms of T in one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     /// red, green or blue.
     pub channel: String,
-    /// Every eigenvalue, by falling magnitude.
+    /// All eigenvalues, by falling magnitude.
     pub values: Vec<f64>,
-    /// Half width of the band of the edges; 0 without edges.
+    /// Half width of the band of the edges; 0 if no two faces meet at an edge.
     pub band: f64,
     /// Lower and upper bound of r(T).
     pub radius: [f64; 2],
     /// ‖T‖₁, ‖T‖₂, ‖T‖∞.
     pub norms: [f64; 3],
-    /// The leading modes.
+    /// The modes of the leading eigenvalues.
     pub modes: Vec<Row>,
     /// ‖T^k E‖_w for k = 1, 2, ….
     pub weighted: Vec<f64>,
@@ -55,11 +56,11 @@ pub struct Spectrum {
     pub unweighted: Vec<f64>,
 }
 
-/// An eigenvalue below this is zero, as far as form factors in single precision can tell.
+/// An eigenvalue smaller than this cannot be told from zero, because form factors are stored in single precision.
 pub const ROUNDING: f64 = 1e-6;
 
 impl Spectrum {
-    /// Whether an eigenvalue stands outside the band, and so belongs to the scene rather than to the mesh.
+    /// Returns true if an eigenvalue lies outside the band, and so belongs to the scene rather than to the mesh.
     pub fn outside(&self, value: f64) -> bool {
         value.abs() > self.band.max(ROUNDING)
     }
@@ -74,7 +75,7 @@ fn ratios(norms: &[f64]) -> Vec<f64> {
     norms.windows(2).map(|w| w[1] / w[0]).collect()
 }
 
-/// Norms and bounds, a line per channel.
+/// A row per channel: bounds of r(T), norms, the band, and how many of the eigenvalues lie outside it.
 pub fn norms(all: &[Spectrum]) -> String {
     let header = ["channel", "r(T) ≥", "r(T) ≤", "‖T‖₁", "‖T‖₂", "‖T‖∞", "band ±", "outside", "of"];
     let mut rows = vec![header.map(String::from).to_vec()];
@@ -88,12 +89,12 @@ pub fn norms(all: &[Spectrum]) -> String {
     aligned(&rows, &[Side::Left].into_iter().chain([Side::Right; 8]).collect::<Vec<_>>())
 }
 
-/// The leading modes of a channel.
-pub fn table(s: &Spectrum) -> String {
-    let header = ["mode", "λ", "residual", "share of TE", "at k = 4", "at k = 8", ""];
+/// A row for each of the first `most` leading modes of a channel.
+pub fn table(s: &Spectrum, most: usize) -> String {
+    let header = ["mode", "λ", "residual", "share of TE", "k = 4", "k = 8", ""];
     let mut rows = vec![header.map(String::from).to_vec()];
     let first = s.weighted.first().copied().unwrap_or(f64::NAN);
-    for (i, m) in s.modes.iter().enumerate() {
+    for (i, m) in s.modes.iter().take(most).enumerate() {
         let at = |k: usize| m.decay.get(k - 1).map_or("–".into(), |d| significant(d / first, 3));
         let outside = s.outside(m.value);
         rows.push(vec![
@@ -106,7 +107,7 @@ pub fn table(s: &Spectrum) -> String {
             match outside {
                 true => String::new(),
                 false if m.value.abs() <= ROUNDING => "zero to rounding".into(),
-                false => "in the band: belongs to the mesh".into(),
+                false => "in the band".into(),
             },
         ]);
     }
@@ -114,7 +115,7 @@ pub fn table(s: &Spectrum) -> String {
     aligned(&rows, &sides)
 }
 
-/// Ratios of consecutive norms, in the weight and without.
+/// Ratios ‖T^{k+1} E‖ / ‖T^k E‖ for growing k, in the weight A/ρ and in the area norm.
 pub fn ratio_table(s: &Spectrum) -> String {
     let mut rows = vec![["k", "weight A/ρ", "area"].map(String::from).to_vec()];
     for (k, (w, a)) in ratios(&s.weighted).into_iter().zip(ratios(&s.unweighted)).enumerate() {
@@ -123,7 +124,7 @@ pub fn ratio_table(s: &Spectrum) -> String {
     aligned(&rows, &[Side::Right; 3])
 }
 
-/// The same numbers for programs.
+/// All numbers of the tables as JSON.
 pub fn machine(all: &[Spectrum]) -> Value {
     let one = |s: &Spectrum| {
         let modes = s.modes.iter().map(|m| {
@@ -146,7 +147,7 @@ pub fn machine(all: &[Spectrum]) -> Value {
 const GUIDE: Stroke = Stroke { color: GREY, width: 1.6, dash: Some((7.0, 5.0)) };
 const LIMIT: Stroke = Stroke { color: BLACK, width: 1.6, dash: Some((2.0, 4.0)) };
 
-/// Eigenvalues with the band, the decay of the modes, and the ratios in both norms.
+/// Draws the eigenvalues with the band, the decay of the modes, and the ratios in both norms.
 ///
 /// # Errors
 /// If the plot crate fails, which is a defect.
@@ -233,7 +234,7 @@ fn panels(page: &Canvas, s: &Spectrum, title: &str) -> Drawn {
     Ok(())
 }
 
-/// A mode as the camera sees it.
+/// A mode as an image seen by the camera.
 #[derive(Clone, Debug)]
 pub struct Painted {
     /// Line above the image.
@@ -242,7 +243,7 @@ pub struct Painted {
     pub values: Vec<f64>,
 }
 
-/// Painted modes side by side: red where positive, blue where negative, white at zero; each by its own 99th percentile.
+/// A sheet of painted modes: red where positive, blue where negative, white at zero. Each is scaled by its own 99th percentile.
 ///
 /// # Errors
 /// If there is no mode, the values do not match the size, or the text cannot be drawn.

@@ -1,7 +1,7 @@
-//! Convergence in h: tables, curves, and the places where a mesh fails.
+//! Convergence of the radiosity with the patch width h: tables, curves, and maps of the error.
 //!
 //! ```text
-//! |e_h| against h on logarithmic axes, order p = slope        (R_h − R)/R tile by tile, blue too dark, red too bright
+//! |e_h| against h on logarithmic axes, order p = slope        (R_h − R)/R of each tile, blue too dark, red too bright
 //! ```
 
 use crate::engine::radius::{Radius, radius_limit};
@@ -21,8 +21,45 @@ use crate::report::{
 use crate::stats::{Limit, Order, convergence_order};
 use crate::study::refinement::{Mesh, Quantity, Refinement};
 
-/// Quantity by quantity: the error of the image mean on every mesh and the fitted order, of the mean and of the image.
-pub fn table(r: &Refinement, max_bounces: usize) -> String {
+/// The small table, a row per quantity of `quantities`: the value by rays, the error of the image mean in percent of it on each
+/// of the finest `meshes` meshes (± standard error), and the fitted order.
+pub fn table(r: &Refinement, quantities: &[Quantity], meshes: usize) -> String {
+    let shown = &r.meshes[r.meshes.len().saturating_sub(meshes)..];
+    let mut header: Vec<String> = ["", "by rays"].map(String::from).to_vec();
+    header.extend(shown.iter().map(|m| format!("{} patches", m.patches)));
+    header.push("order in h".into());
+    let mut rows = vec![header];
+    for &q in quantities {
+        let truth = q.mean(&r.truth).mean.element_sum() / 3.0;
+        let mut row = vec![q.to_string(), significant(truth, 4)];
+        row.extend(shown.iter().map(|m| {
+            let (e, s) = r.mean_error(m, q);
+            percent(e / truth, s / truth)
+        }));
+        row.push(order_words(order(r, q)));
+        rows.push(row);
+    }
+    aligned(&rows, &[[Side::Left].as_slice(), &vec![Side::Right; shown.len() + 2]].concat())
+}
+
+/// A relative error with its standard error, in percent.
+pub fn percent(error: f64, std_error: f64) -> String {
+    let (error, std_error) = (100.0 * error, 100.0 * std_error);
+    match (error.is_finite(), std_error.is_finite()) {
+        (false, _) => "–".into(),
+        (true, false) => format!("{error:+.2} ± – %"),
+        (true, true) => format!("{error:+.2} ± {std_error:.2} %"),
+    }
+}
+
+/// The order of convergence of the image mean in h, if two or more errors exceed 3 standard errors and have one sign.
+pub fn order(r: &Refinement, quantity: Quantity) -> Option<Order> {
+    orders(r, &|m, q| r.mean_error(m, q), quantity)
+}
+
+/// The full table, a row per quantity: the error of the image mean on every mesh with the fitted order, and the same for the
+/// error over the image.
+pub fn full_table(r: &Refinement, max_bounces: usize) -> String {
     let mut header: Vec<String> = ["", "truth"].map(String::from).to_vec();
     header.extend(r.meshes.iter().map(|m| m.patches.to_string()));
     header.push("order in h".into());
@@ -50,13 +87,14 @@ pub fn table(r: &Refinement, max_bounces: usize) -> String {
     let means = rows_of(&all, &|m, q| r.mean_error(m, q));
     let images = rows_of(&all[..=max_bounces], &|m, q| image_error(r, m, q));
     format!(
-        "{}{}\n\nerror of the image mean, by patches (± standard error)\n{means}\nerror over the image ‖R_h − R‖/‖R‖, noise taken out; negative: noise is all there is\n{images}",
+        "{}{}\n\nError of the image mean by number of patches (± standard error).\n{means}\nError over the image ‖R_h − R‖/‖R‖, with the noise subtracted; a negative one is hidden by noise.\n{images}",
         r.meshes.iter().map(mesh).collect::<Vec<_>>().join("\n"),
         limit_words(&r.meshes.iter().map(|m| m.radius).collect::<Vec<_>>()).map_or(String::new(), |l| format!("\n{l}"))
     )
 }
 
-/// The spectral radius for h → 0 from meshes, coarsest first, with what it rests on; nothing where one mesh is all there is.
+/// The spectral radius extrapolated to h → 0 from meshes, coarsest first, with its half width and its orders; `None` with one
+/// mesh.
 pub fn limit_words(meshes: &[Radius]) -> Option<String> {
     let Some(limit) = radius_limit(meshes) else {
         let coarse = meshes.iter().nth_back(1).is_some_and(|m| !m.resolved);
@@ -75,7 +113,7 @@ pub fn limit_words(meshes: &[Radius]) -> Option<String> {
 /// An error with its standard error.
 type Error<'a> = dyn Fn(&Mesh, Quantity) -> (f64, f64) + 'a;
 
-/// Over the image, of a term; nothing is known of sums.
+/// The error of a term over the image with its standard error; NaN for a sum, whose error is not known.
 fn image_error(r: &Refinement, mesh: &Mesh, quantity: Quantity) -> (f64, f64) {
     match quantity {
         Quantity::Term(k) => r.image_error(mesh, k),
@@ -99,7 +137,7 @@ fn order_words(order: Option<Order>) -> String {
     order.map_or("–".into(), |o| format!("{:.2} ± {:.2}", o.order, o.std_error))
 }
 
-/// Everything, a line per mesh and quantity.
+/// All numbers as CSV, a line per mesh and quantity.
 pub fn csv(r: &Refinement, max_bounces: usize) -> String {
     let mut csv = Csv::new(
         "patches,h,k,mean_error,mean_error_std_error,image_error,image_error_std_error,radius_r,radius_g,radius_b,seconds",
@@ -115,7 +153,7 @@ pub fn csv(r: &Refinement, max_bounces: usize) -> String {
     csv.text()
 }
 
-/// |e_h| of the image mean, and ‖R_h − R‖/‖R‖, against h.
+/// Draws |e_h| of the image mean, and ‖R_h − R‖/‖R‖, against h.
 ///
 /// # Errors
 /// If the plot crate fails, which is a defect.
@@ -123,7 +161,7 @@ pub fn draw(r: &Refinement, max_bounces: usize, caption: &Caption) -> Result<Fig
     figure("patches", 1120, 490, caption, |page| panels(page, r, max_bounces))
 }
 
-/// The terms that ask a matrix something, few enough to be told apart, and all of them.
+/// The quantities that are drawn: k = 2 to at most 5, and their sum with all longer ones. T⁰ and T¹ need no matrix.
 fn shown(max_bounces: usize) -> Vec<Quantity> {
     (2..=max_bounces.min(5)).map(Quantity::Term).chain([Quantity::Indirect]).collect()
 }
@@ -185,8 +223,8 @@ fn panels(page: &Canvas, r: &Refinement, max_bounces: usize) -> Drawn {
 /// Pixels of a side of a tile.
 const TILE: usize = 4;
 
-/// Where the matrix fails: (R_h − R)/R̄ of all indirect light, averaged over tiles, mesh by mesh. Red: too bright, blue: too dark, full colour at
-/// `range`.
+/// Draws the error (R_h − R)/R̄ of all indirect light for each mesh, averaged over tiles. Red is too bright, blue is too dark;
+/// the colour is full at `range`.
 ///
 /// # Errors
 /// If the text cannot be drawn, which is a defect.

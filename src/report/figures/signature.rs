@@ -1,13 +1,14 @@
-//! The signature of a mistake: r_k against k, predicted and measured.
+//! A figure of the signature of a mistake: the ratio r_k against k, measured and predicted.
 //!
 //! ```text
-//! r_k = T_k^suspect / T_k^right      constant: the connection      a straight line on a logarithmic axis: the bounce
+//! r_k = T_k^suspect / T_k^right
+//! r_k is constant: the mistake is in the connection      r_k is geometric in k: the mistake is in the bounce
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | r_k | ratio of the image means | [`Signature::measured`] |
-//! | – | the prediction, if there is one in closed form | [`Signature::predicted`] |
+//! | – | r_k by theory, where it does not depend on the scene | [`Signature::predicted`] |
 
 use crate::report::{
     ReportError,
@@ -15,14 +16,14 @@ use crate::report::{
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, Words, figure},
 };
 
-/// Contents of the figure.
+/// The data of the figure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Signature {
     /// Title of the figure.
     pub title: String,
-    /// Measured r_k with errors.
+    /// Measured r_k with standard errors.
     pub measured: Vec<Point>,
-    /// Predicted r_k; empty if the prediction depends on the scene.
+    /// r_k by theory; empty where it depends on the scene.
     pub predicted: Vec<Point>,
 }
 

@@ -1,12 +1,12 @@
-//! Solvers side by side: a table, every step as CSV and JSON, the error against the work, and what extrapolation makes of the
-//! first terms of the series.
+//! Solvers of (I − T) L = E side by side: tables, every step as CSV and JSON, a figure of the error against the work, and the
+//! extrapolation of the series from its first terms.
 //!
 //! | column | meaning |
 //! |---|---|
-//! | products | applications of T, or work worth as much, until the error is below the value at the head |
-//! | seconds | the same on the clock; of this machine, and of this run |
-//! | error | ‖x − L‖_w/‖L‖_w, in the weight A/ρ, against LU, or GMRES to rounding |
-//! | residual | ‖E − (I − T) x‖ in the area inner product, at the last step |
+//! | to 1e-3 | products with T until the error is below 1e-3; work of another kind is counted as the products it is worth |
+//! | s to 1e-3 | seconds until the error is below 1e-3, on this machine and in this run |
+//! | error | ‖x − L‖_w/‖L‖_w of the last iterate, in the weight A/ρ; L is found by LU, or by GMRES to rounding |
+//! | residual | ‖E − (I − T) x‖ of the last iterate, in the area inner product |
 
 use crate::report::{
     ReportError,
@@ -23,47 +23,74 @@ use crate::solver::comparison::{History, Solver};
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
 
-/// Errors at which work and time are compared.
+/// Relative errors at which work and time are compared.
 pub const MILESTONES: [f64; 3] = [1e-3, 1e-6, 1e-10];
 
-/// A row per solver: products with T to each milestone, seconds to each, error and residual at the end.
+/// The small table, a row per solver: products with T to each milestone, seconds to the last one, error at the end.
 pub fn table(histories: &[History]) -> String {
+    let mut rows = vec![
+        std::iter::once("solver".to_string())
+            .chain(MILESTONES.map(|m| format!("to {m:.0e}")))
+            .chain([format!("seconds to {:.0e}", MILESTONES[2]), "error at the end".into()])
+            .collect::<Vec<String>>(),
+    ];
+    for h in histories {
+        let mut row = vec![h.solver.name().to_string()];
+        row.extend(MILESTONES.map(|m| h.reaches(m).map_or_else(dash, |p| products(p.applications))));
+        row.push(h.reaches(MILESTONES[2]).map_or_else(dash, |p| significant(p.seconds, 2)));
+        row.push(last_error(h));
+        rows.push(row);
+    }
+    aligned(&rows, &[[Side::Left].as_slice(), &[Side::Right; 5]].concat())
+}
+
+fn dash() -> String {
+    "–".into()
+}
+
+/// The error of the last iterate; LU is the reference and has none.
+fn last_error(h: &History) -> String {
+    match h.solver {
+        Solver::Lu => "reference".into(),
+        _ => h.points.last().map_or_else(dash, |p| format!("{:.1e}", p.error)),
+    }
+}
+
+/// The full table, a row per solver: products with T to each milestone, seconds to each, error and residual at the end.
+pub fn full_table(histories: &[History]) -> String {
     let mut header = vec!["solver".to_string()];
     header.extend(MILESTONES.map(|m| format!("to {m:.0e}")));
     header.extend(MILESTONES.map(|m| format!("s to {m:.0e}")));
     header.extend(["error", "residual"].map(String::from));
     let mut rows = vec![header];
-    let dash = || "–".to_string();
     for h in histories {
         let at = MILESTONES.map(|m| h.reaches(m));
         let mut row = vec![h.solver.name().to_string()];
         row.extend(at.map(|p| p.map_or_else(dash, |p| products(p.applications))));
         row.extend(at.map(|p| p.map_or_else(dash, |p| significant(p.seconds, 2))));
-        let last = h.points.last();
-        row.push(match (h.solver, last) {
-            (Solver::Lu, _) => "reference".into(),
-            (_, last) => last.map_or_else(dash, |p| format!("{:.1e}", p.error)),
-        });
-        row.push(last.map_or_else(dash, |p| format!("{:.1e}", p.residual)));
+        row.push(last_error(h));
+        row.push(h.points.last().map_or_else(dash, |p| format!("{:.1e}", p.residual)));
         rows.push(row);
     }
     let sides: Vec<Side> = (0..9).map(|i| if i == 0 { Side::Left } else { Side::Right }).collect();
     aligned(&rows, &sides)
 }
 
-/// What extrapolation makes of the first terms of a series.
+/// Limits of a series, extrapolated from its first terms by several methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extrapolated {
-    /// Terms used, k = 0 among them.
+    /// Number of terms used, counted from k = 0.
     pub terms: usize,
-    /// Relative error and noise gain of every method of [`METHODS`]; none where it has nothing to work with.
+    /// Relative error and noise gain of every method of [`METHODS`]; none where a method needs more terms.
     pub methods: [Option<[f64; 2]>; 5],
 }
 
 impl Extrapolated {
-    /// From the first terms of a series with a known limit and spectral radius.
+    /// Extrapolates from `terms`, the first terms of a series, and compares with its known `limit`; `radius` is the spectral
+    /// radius.
     ///
-    /// The gain is √(Var(A)/Var(S_n)) for independent terms of equal relative error.
+    /// The noise gain is √(Var(A)/Var(S_n)) for independent terms of equal relative error, where A is the extrapolated value
+    /// and S_n the sum of the terms.
     pub fn new(terms: &[f64], limit: f64, radius: f64) -> Self {
         let noise = DMatrix::from_diagonal(&DVector::from_iterator(terms.len(), terms.iter().map(|t| t * t)));
         let judge = |a: Accelerated| [(a.value / limit - 1.0).abs(), a.amplification(&noise)];
@@ -95,12 +122,12 @@ pub fn machine_extrapolations(rows: &[Extrapolated]) -> Value {
     Value::Array(rows.iter().map(row).collect())
 }
 
-/// Whole numbers as they are, parts of a product with one decimal.
+/// A number of products with T: whole numbers without decimals, others with one.
 fn products(n: f64) -> String {
     if n.fract() == 0.0 { format!("{n:.0}") } else { format!("{n:.1}") }
 }
 
-/// Every step of every solver.
+/// Every step of every solver as CSV.
 pub fn csv(histories: &[History]) -> String {
     let mut csv = Csv::new("solver,step,products,norm,residual,error,seconds");
     for h in histories {
@@ -113,7 +140,7 @@ pub fn csv(histories: &[History]) -> String {
     csv.text()
 }
 
-/// The numbers of [`table()`] and [`csv()`] for programs.
+/// The numbers of [`full_table()`] and [`csv()`] for programs.
 pub fn machine(histories: &[History]) -> Value {
     let solver = |h: &History| {
         let at = MILESTONES.map(|m| {
@@ -133,7 +160,7 @@ pub fn machine(histories: &[History]) -> Value {
 
 const GUIDE: Stroke = Stroke { color: GREY, width: 1.6, dash: Some((7.0, 5.0)) };
 
-/// The error of every iteration against its work, and the rate of the spectral radius beside it.
+/// Draws the error of every solver against its products with T, and the decay r(T)ⁿ for comparison.
 ///
 /// # Errors
 /// If the plot crate fails, which is a defect.
@@ -141,7 +168,7 @@ pub fn draw(histories: &[History], radius: f64, title: &str, caption: &Caption) 
     figure("solvers", 960, 560, caption, |page| panels(page, histories, radius, title))
 }
 
-/// The same solver looks the same, alone or among others.
+/// Colour and mark of a solver: the same ones whichever other solvers are drawn.
 fn look(solver: Solver) -> Look {
     match Solver::ALL.iter().position(|s| *s == solver).unwrap_or(0) {
         7 => Look { color: GREY, mark: Mark::Ring },

@@ -83,8 +83,8 @@ fn number(x: f64, digits: usize) -> String {
     if x.is_nan() { "–".into() } else { significant(x, digits) }
 }
 
-/// √MSE as text. The estimate of MSE is unbiased, so that it may be negative.
-fn rmse(mse: f64) -> String {
+/// The root of a mean square error in words; an unbiased estimate of a square may be negative, and then noise hides it.
+pub fn rmse(mse: f64) -> String {
     if mse < 0.0 { "≤ noise".into() } else { number(mse.sqrt(), 3) }
 }
 

@@ -1,4 +1,5 @@
-//! The walk on the matrix: tables beside the powers, and the variance of led walks against the error of the guide.
+//! Random walks on the radiosity matrix: tables that compare them with the powers of the matrix, and the variance of guided
+//! walks against the error of the guide.
 //!
 //! ```text
 //! relative variance E[(X − B)²]/B²      against      ‖v − B‖/‖B − E‖
@@ -6,8 +7,10 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | z | (mean − power)/error, patch by patch | [`table`] |
-//! | v | guide | [`guides`], [`draw`] |
+//! | B | the solution of the radiosity equation B = E + T B | |
+//! | X | the result of one walk, an estimate of B at the patch where it starts | |
+//! | v | the guide, an approximation of B that chooses the steps of a walk | [`variances`], [`guides`], [`draw`] |
+//! | z | (mean of the walks − power of the matrix)/standard error, for each patch | [`full_table`] |
 
 use std::fmt::Display;
 
@@ -18,19 +21,49 @@ use crate::report::{
     plot::{Axis, Canvas, Curve, Drawn, Entry, Figure, GREY, Look, Panel, Point, Sample, Stroke, Words, figure},
     text::{
         csv::Csv,
-        number::{average, error, significant},
+        number::{average, error, mark, outcome, significant},
         table::{Side, aligned},
     },
 };
+use crate::stats::Comparison;
 use crate::study::walk::Walked;
 use crate::study::zero_variance::{Guide, Led, Spread, ZeroVariance};
+use crate::terms::Estimate;
 
-/// A row per term: the walk, the power, how many standard errors apart, and the same patch by patch.
-pub fn table(walked: &Walked) -> String {
+/// The small table, a row per term: the walks with their error, the power of the matrix, the difference in percent, and the
+/// verdict. Of the terms it shows the first `most`, then the tail and the whole.
+pub fn table(walked: &Walked, comparison: &Comparison, most: usize) -> String {
+    let (found, exact) = (walked.sampled.series.image(), walked.exact.image());
+    let mut rows = vec![["k", "walks", "± 95 %", "exact", "difference", "verdict"].map(String::from).to_vec()];
+    let mut push = |name: String, quantity: &str, a: &Estimate, b: &Estimate| {
+        let [m, truth] = [a, b].map(|e| average(e).0);
+        let off = 100.0 * (m / truth - 1.0);
+        let verdict = comparison.rows.iter().find(|r| r.name == quantity);
+        rows.push(vec![
+            name,
+            significant(m, 5),
+            error(a),
+            significant(truth, 5),
+            if off.is_finite() { format!("{off:+.2} %") } else { "–".into() },
+            verdict.map_or_else(|| "–".into(), |r| format!("{} {}", mark(r.outcome), outcome(r.outcome))),
+        ]);
+    };
+    for (k, (a, b)) in found.terms.iter().zip(&exact.terms).enumerate().take(most) {
+        push(k.to_string(), &format!("T{k}"), a, b);
+    }
+    if !found.tail.is_none() && !found.terms.is_empty() {
+        push(format!("k > {}", found.terms.len() - 1), "tail", &found.tail, &exact.tail);
+    }
+    push("all".into(), "total", &found.total, &exact.total);
+    aligned(&rows, &[[Side::Right; 5].as_slice(), &[Side::Left]].concat())
+}
+
+/// The full table, a row per term: the walks, the power of the matrix, their difference, and z of the patches.
+pub fn full_table(walked: &Walked) -> String {
     let (found, exact) = (walked.sampled.series.image(), walked.exact.image());
     let header = ["k", "walk", "± 95 %", "power of the matrix", "difference", "|z| > 2", "largest |z|"];
     let mut rows = vec![header.map(String::from).to_vec()];
-    let mut push = |name: String, a: &crate::terms::Estimate, b: &crate::terms::Estimate, z: &[f64]| {
+    let mut push = |name: String, a: &Estimate, b: &Estimate, z: &[f64]| {
         let [m, truth] = [a, b].map(|e| average(e).0);
         let beyond = z.iter().filter(|z| z.abs() > 2.0).count() as f64 / z.len() as f64;
         let largest = z.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
@@ -57,7 +90,23 @@ fn spread_cells(s: &Spread) -> [String; 4] {
     [significant(s.variance, 3), significant(s.largest, 3), bias, significant(s.steps, 3)]
 }
 
-/// A row per guide and channel.
+/// The small table, a row per guide: the relative error of the guide in the first channel, and the relative variance of one
+/// walk in every channel.
+pub fn variances(all: &[ZeroVariance]) -> String {
+    let mut header = ["guide v".to_string(), "error of v".into()].to_vec();
+    header.extend(all.iter().map(|z| CHANNELS[z.channel].to_string()));
+    let mut rows = vec![header];
+    let Some(first) = all.first() else { return String::new() };
+    for (i, led) in first.guides.iter().enumerate() {
+        let error = if led.error.is_nan() { "–".into() } else { significant(led.error, 2) };
+        let mut row = vec![led.guide.to_string(), error];
+        row.extend(all.iter().map(|z| z.guides.get(i).map_or("–".into(), |l| significant(l.spread.variance, 2))));
+        rows.push(row);
+    }
+    aligned(&rows, &[[Side::Left].as_slice(), &vec![Side::Right; all.len() + 1]].concat())
+}
+
+/// The full table, a row per guide and channel.
 pub fn guides(all: &[ZeroVariance]) -> String {
     let header = ["channel", "guide v", "error of v", "variance/B²", "largest |X−B|/B", "mean/B − 1", "steps"];
     let mut rows = vec![header.map(String::from).to_vec()];
@@ -71,7 +120,7 @@ pub fn guides(all: &[ZeroVariance]) -> String {
     aligned(&rows, &[Side::Left, Side::Left, Side::Right, Side::Right, Side::Right, Side::Right, Side::Right])
 }
 
-/// A row per term and channel: walks of k steps led by the lower terms.
+/// A row per term and channel, for walks of k steps that are guided by the lower terms.
 pub fn terms(all: &[ZeroVariance]) -> String {
     let header = ["channel", "k", "variance/T²", "largest |X−T|/T", "mean/T − 1", "steps"];
     let mut rows = vec![header.map(String::from).to_vec()];
@@ -84,7 +133,7 @@ pub fn terms(all: &[ZeroVariance]) -> String {
     aligned(&rows, &[[Side::Left].as_slice(), &[Side::Right; 5]].concat())
 }
 
-/// Everything, a line per channel and guide or term.
+/// All numbers as CSV, a line per channel and guide or term.
 pub fn csv(all: &[ZeroVariance]) -> String {
     let mut csv =
         Csv::new("channel,guide,guide_error,relative_variance,largest_deviation,bias,bias_std_error,steps,walks");
@@ -99,8 +148,8 @@ pub fn csv(all: &[ZeroVariance]) -> String {
     csv.text()
 }
 
-/// Relative variance against the error of the guide, on logarithmic axes: one curve per channel and kind of guide. Walks led by B itself
-/// have no error to stand at; they are named in the legend.
+/// Draws the relative variance of a walk against the error of its guide, on logarithmic axes: one curve per channel and kind of
+/// guide. Walks guided by B itself have an error of 0 and no place on the axis; the legend gives their variance.
 ///
 /// # Errors
 /// If the plot crate fails, which is a defect.

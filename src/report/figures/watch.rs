@@ -1,5 +1,4 @@
-//! A test of a bias that is repeated while samples accumulate: the interval of the bias against the number of paths, and the
-//! final interval of every term.
+//! The text and the figure of `check bias`: the interval of the bias as samples accumulate, and every term at the end.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
@@ -21,7 +20,7 @@ use crate::report::{
 };
 use crate::stats::{Finding, Outcome};
 
-/// The state of the test at one moment.
+/// The state of the test after some batches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Glimpse {
     /// Number of batches so far.
@@ -54,58 +53,73 @@ fn percent(x: f64, of: f64) -> String {
     if p.is_finite() { format!("{}{} %", if p > 0.0 { "+" } else { "" }, significant(p, 2)) } else { "–".into() }
 }
 
-/// A table with one row per quantity.
-pub fn table(findings: &[Finding]) -> String {
-    let header = ["what", "value", "bias", "interval", "e-value", "p", "detectable", "verdict"];
+/// The small table, a row for each of `findings`: the value, the bias with its interval, the smallest bias that would have been
+/// found, and the verdict.
+pub fn table(findings: &[&Finding]) -> String {
+    let header = ["what", "value", "bias", "interval", "detectable", "verdict"];
     let mut rows = vec![header.map(String::from).to_vec()];
     rows.extend(findings.iter().map(|f| {
-        let detectable = percent(f.min_detectable, f.scale).replace('+', "");
-        let place = f.functional.replace("image, ", "");
-        vec![
-            format!("{}, {place}", f.name),
-            known(f.scale),
-            percent(f.effect, f.scale),
-            format!("[{}, {}]", percent(f.interval.0, f.scale), percent(f.interval.1, f.scale)),
-            e_value(f.log_e),
-            p_value(f.p),
-            detectable,
-            format!("{} {}", mark(f.outcome), outcome(f.outcome)),
-        ]
+        let [name, value, bias, interval, _, _, detectable, verdict] = cells(f);
+        vec![name, value, bias, interval, detectable, verdict]
     }));
+    let right = Side::Right;
+    aligned(&rows, &[Side::Left, right, right, right, right, Side::Left])
+}
+
+/// The full table: the same with the e-value and the p-value.
+pub fn full_table(findings: &[Finding]) -> String {
+    let header = ["what", "value", "bias", "interval", "e-value", "p", "detectable", "verdict"];
+    let mut rows = vec![header.map(String::from).to_vec()];
+    rows.extend(findings.iter().map(|f| cells(f).to_vec()));
     let right = Side::Right;
     aligned(&rows, &[Side::Left, right, right, right, right, right, right, Side::Left])
 }
 
-/// The verdict as text, with the smallest bias that the test could have missed.
+fn cells(f: &Finding) -> [String; 8] {
+    let place = f.functional.replace("image, ", "");
+    [
+        format!("{}, {place}", f.name),
+        known(f.scale),
+        percent(f.effect, f.scale),
+        format!("[{}, {}]", percent(f.interval.0, f.scale), percent(f.interval.1, f.scale)),
+        e_value(f.log_e),
+        p_value(f.p),
+        percent(f.min_detectable, f.scale).replace('+', ""),
+        format!("{} {}", mark(f.outcome), outcome(f.outcome)),
+    ]
+}
+
+/// The verdict in sentences, a line each: a bias of which terms was found, or the smallest bias that could have been missed.
 pub fn judgement(verdict: Outcome, findings: &[Finding], alpha: f64, beta: f64) -> String {
-    let mut text = match verdict {
+    let with = |outcome: Outcome| findings.iter().filter(move |f| f.outcome == outcome);
+    let missed = |f: &Finding| {
+        let size = percent(f.min_detectable, f.scale).replace('+', "");
+        let sure = 1.0 - beta;
+        format!(
+            "The smallest bias it could have missed: {size} of the {} (a larger one is found by now with probability {sure}).",
+            f.name
+        )
+    };
+    let mut lines = vec![match verdict {
         Outcome::Differs => {
-            let named: Vec<&str> =
-                findings.iter().filter(|f| f.outcome == Outcome::Differs).map(|f| f.name.as_str()).collect();
+            let named: Vec<&str> = with(Outcome::Differs).map(|f| f.name.as_str()).collect();
             format!(
-                "Biased: {} differ. Without a bias, the probability of this verdict is at most {alpha}.",
+                "Biased: {} differ; without a bias this happens with a probability of at most {alpha}.",
                 named.join(", ")
             )
         }
-        Outcome::Agrees => "No bias: the interval of every image mean lies within its margin δ.".to_owned(),
-        Outcome::Inconclusive => match findings.iter().find_map(|f| f.reason.as_deref()) {
-            Some(reason) => format!("No bias found, but a bias is not yet excluded: {reason}."),
-            None => "No bias found, but a bias is not yet excluded.".to_owned(),
-        },
-    };
-    if verdict != Outcome::Differs
-        && let Some(whole) = findings.last()
+        Outcome::Agrees => "No bias: every image mean is bounded within its margin δ.".to_owned(),
+        Outcome::Inconclusive => {
+            "No bias found, but a bias larger than the margin δ is not excluded either.".to_owned()
+        }
+    }];
+    lines.extend((verdict != Outcome::Differs).then(|| findings.last().map(missed)).flatten());
+    if verdict == Outcome::Inconclusive
+        && let Some((f, reason)) = findings.iter().find_map(|f| Some((f, f.reason.as_deref()?)))
     {
-        let missed = percent(whole.min_detectable, whole.scale).replace('+', "");
-        text += &format!(
-            "\nThe smallest bias it could have missed: {missed} of the {} (a larger one would have been found with probability {}).",
-            whole.name,
-            1.0 - beta
-        );
-        text +=
-            "\nFor single terms see the column \"detectable\". All intervals hold simultaneously and at every moment.";
+        lines.push(format!("The reason for {}: {reason}.", f.name));
     }
-    text
+    lines.join("\n")
 }
 
 /// Draws the figure. A batch has `paths` paths on each side.

@@ -37,7 +37,15 @@ pub struct Group {
     pub outcome: Outcome,
 }
 
-/// Result of all three tests.
+impl Group {
+    /// The channel in which the difference has the widest bound relative to T L.
+    pub fn worst_channel(&self) -> usize {
+        let reach = (self.difference.mean.abs() + self.half) / self.value;
+        (0..3).filter(|&c| reach[c].is_finite()).max_by(|&a, &b| reach[a].total_cmp(&reach[b])).unwrap_or(0)
+    }
+}
+
+/// What was found.
 #[derive(Clone, Debug)]
 pub struct Judgement {
     /// The groups of points with their means.
