@@ -34,6 +34,7 @@ use fredholm::{
         page::html::{self, Plate},
         plot::{Curve, Figure, Look, Point},
         text::{
+            grid::Grid,
             summary::{self, Bounds, Radiosity, Summary, VerdictRecord},
             table,
         },

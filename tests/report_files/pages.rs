@@ -36,11 +36,15 @@ fn page_is_self_contained_and_escapes() {
     let decay = Decay { surface: vec![curve(points)], ..Decay::default() };
     decay::draw(&decay, &caption()).unwrap().write(folder.path(), "decay").unwrap();
     let summary = full_summary();
+    let mut grid = Grid::new("a <p> b", ["<q>", "x"]);
+    grid.push(["<s>".into(), "1".into()]);
     let page = html::Page {
         title: "<script>alert(1)</script>".into(),
         command: "fredholm series 'a&b.toml' --set x=\"<b>\"".into(),
         facts: vec![("se<ed".into(), "1 > 0".into())],
-        verdicts: &summary.verdicts,
+        answer: "a < b".into(),
+        comparisons: vec![("<u>".into(), summary.verdicts.clone())],
+        grids: vec![grid],
         plates: vec![Plate::terms(&png), Plate::decay(&svg)],
         series: vec![("<i>".into(), summary.series[0].image())],
         files: vec![("a \"b\".exr".into(), "all <terms>".into()), ("javascript:x".into(), String::new())],
@@ -50,16 +54,35 @@ fn page_is_self_contained_and_escapes() {
     let text = std::fs::read_to_string(&path).unwrap();
 
     assert!(!text.contains("http"), "the page refers to the network");
-    for raw in ["<script", "<b>\"", "<i>", "se<ed", "<terms>", "a \"b\"", "href=\"javascript"] {
+    for raw in [
+        "<script",
+        "<b>\"",
+        "<i>",
+        "<u>",
+        "<p> b",
+        "<q>",
+        "<s>",
+        "a < b",
+        "se<ed",
+        "<terms>",
+        "a \"b\"",
+        "href=\"javascript",
+    ] {
         assert!(!text.contains(raw), "{raw} is not escaped");
     }
     assert!(text.contains("&lt;script&gt;") && text.contains("href=\"./a%20%22b%22.exr\""));
     assert!(text.contains("data:image/png;base64,iVBOR") && text.contains("<svg role=\"img\""));
     // Every element that is opened is closed.
-    for tag in ["section", "table", "tbody", "tr", "td", "figure", "svg", "main", "header", "dl", "ul"] {
+    for tag in
+        ["section", "details", "summary", "table", "tbody", "tr", "td", "figure", "svg", "main", "header", "dl", "ul"]
+    {
         let opened = text.matches(&format!("<{tag}>")).count() + text.matches(&format!("<{tag} ")).count();
         assert_eq!(opened, text.matches(&format!("</{tag}>")).count(), "<{tag}>");
     }
+    // Pictures come before the comparisons, and every table behind a comparison or a series is folded.
+    let place = |what: &str| text.find(what).unwrap();
+    assert!(place("data:image/png") < place("Do the answers agree?"));
+    assert_eq!(text.matches("<table class=\"stack\">").count() + 1, text.matches("<details>").count());
     let missing = Plate::terms(Path::new("absent.png"));
     assert!(html::render(&html::Page { plates: vec![missing], ..html::Page::default() }).is_err());
 }
