@@ -205,7 +205,7 @@ pub fn fixed(asked: Option<&Schedule>) -> Result<Option<Roulette>, Failure> {
 pub fn needs_no_guide(asked: Option<&Schedule>) -> Result<(), Failure> {
     match asked {
         Some(Schedule::ByExpectation(end)) => Err(usage(
-            &format!("--roulette {end} goes by what a guide expects, and there is none"),
+            &format!("--roulette {end} needs the light that a guide expects, and there is no guide"),
             "add --guide radiosity (series, render), or choose albedo",
         )),
         _ => Ok(()),

@@ -62,5 +62,9 @@ fn remedy(open: &[&Verdict], delta: &str) -> String {
     }
     let factor = open.iter().filter_map(|r| r.needed_factor).fold(0.0, f64::max);
     let noise = format!("The noise hides differences as small as {delta}");
-    if factor > 0.0 { format!("{noise}; {factor:.1} times the samples will decide.") } else { format!("{noise}.") }
+    if factor > 0.0 {
+        format!("{noise}; with {factor:.1} times the samples there will be a verdict.")
+    } else {
+        format!("{noise}.")
+    }
 }

@@ -113,7 +113,7 @@ pub fn collect(
         brightest: brightest(suspect, reference),
         noise: noise(suspect, reference, &regions[0]),
         samples: reference_spp * samples(suspect, reference, &regions[0]),
-        errors: if known { "the _se layers" } else { "the scatter of neighbouring pixels about the reference" },
+        errors: if known { "the _se layers" } else { "the difference of neighbouring pixels from the reference" },
         regions: regions.iter().map(|r| r.name.clone()).collect(),
         likeness: likeness(suspect, reference),
     }

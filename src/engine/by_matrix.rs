@@ -56,7 +56,8 @@ const KEEPS_ALL: f64 = 1.0 - 1e-6;
 
 /// The Neumann series of stored rays ends when the remainder is this small compared with the sum.
 const LEFT: f64 = 1e-7;
-/// It also ends after this number of steps, and GMRES takes over.
+/// The Neumann series of stored rays has at most this number of terms. If that is not enough, GMRES, another iterative solver,
+/// takes over.
 const MOST_STEPS: usize = 2000;
 /// GMRES must bring the residual below this value, as in [`settle`].
 const SETTLED: f64 = 1e-8;

@@ -117,7 +117,7 @@ impl Discretisation {
     }
 }
 
-/// Accuracy of the sampling of stored rays.
+/// How accurate the rows of form factors are when each row is estimated from stored rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledRows {
     /// N, the number of rays per row.

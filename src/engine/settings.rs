@@ -23,7 +23,7 @@ pub struct Settings {
     pub max_bounces: usize,
     /// Technique that finds light.
     pub technique: Technique,
-    /// Sampling of directions.
+    /// How directions are sampled: uniformly, by the cosine, or by the BSDF.
     pub sampling: Sampling,
     /// Roulette of the paths of the terms. With [`Roulette::after`] K, the terms keep all their samples.
     pub roulette: Roulette,

@@ -131,7 +131,8 @@ impl Roulette {
         before.map(|table| Self::Table(table.into_iter().chain([q]).collect()))
     }
 
-    /// q at vertex `v` for a path at state `at` with this throughput, after the vertex has been scored. It includes the
+    /// The probability q that the path ends at vertex `v`, where it has state `at` and this throughput. It is used after the light
+    /// found at the vertex has been added. If no other rule ends the path, it includes the
     /// transport's last resort.
     #[inline(always)]
     pub fn q<T: Transport>(&self, t: &T, v: usize, throughput: Rgb, at: &T::State) -> f32 {

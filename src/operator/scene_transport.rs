@@ -39,7 +39,7 @@ pub(crate) struct Connection {
     cos_x: f32,
     /// Density of y per solid angle at x.
     pdf: f32,
-    /// cos θ_x/(π·pdf): the weight for albedo 1. It is 0 if one of the cosines is not positive.
+    /// cos θ_x/(π·pdf): the weight for albedo 1. It is 0 if the direction points below the surface.
     factor: f32,
 }
 

@@ -52,8 +52,8 @@ pub(crate) fn offset_origin(x: Vec3, n: Vec3) -> Vec3 {
     x + n * error(x, n)
 }
 
-/// Origin and displacement of the segment from x to y, with both ends moved off their surfaces. The offset at y also covers
-/// the error of evaluating the plane of y at x.
+/// Origin and displacement of the segment from x to y, with both ends moved off their surfaces. The offset at y is larger: it
+/// also covers the rounding error of testing, from x, on which side of the plane through y a point lies.
 #[inline(always)]
 pub(crate) fn segment(x: Vec3, n: Vec3, y: Vec3, m: Vec3) -> (Vec3, Vec3) {
     let o = offset_origin(x, n);

@@ -89,7 +89,9 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NotFinite => f.write_str("the mean is NaN or infinite"),
-            Self::OneReplicate => f.write_str("one replicate gives no standard error: raise the samples per pixel"),
+            Self::OneReplicate => f.write_str(
+                "the samples form only one group, so their spread is not known: raise the samples per pixel",
+            ),
             Self::Infinite => f.write_str("the variance is infinite with this roulette: error bars are meaningless"),
             Self::Unknown => {
                 f.write_str("the variance may be infinite with this roulette: error bars cannot be trusted")

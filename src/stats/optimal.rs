@@ -56,7 +56,8 @@ pub fn optimal_reach(of: &Separable) -> Vec<f64> {
     best
 }
 
-/// The non-increasing ratios r after pooling neighbours that violate the order: r = ΣA/Σc over each pool. A vertex to which
+/// The ratios r = A/c of second moment (`second`, A) to cost (`rays`, c), made non-increasing. Neighbouring vertices that would
+/// increase are pooled: each gets r = ΣA/Σc over the pool. A vertex to which
 /// no ray leads joins the pool before it.
 fn pooled(second: &[f64], rays: &[f64]) -> Vec<f64> {
     // pools from the left: A, c, vertices

@@ -97,7 +97,8 @@ pub struct Verdict {
 pub struct Comparison {
     /// One row for each quantity, which describes its worst functional and channel.
     pub rows: Vec<Verdict>,
-    /// Number of scalar comparisons that share α.
+    /// Number of single comparisons (quantity × image part × channel). They are corrected together, so that α is the chance of any
+    /// false alarm among all of them.
     pub family: usize,
     /// Differs if any row does; Agrees if every row does.
     pub outcome: Outcome,

@@ -22,7 +22,7 @@ use crate::terms::scatter::Scatter;
 use crate::terms::{TermFilm, TermImage, Variance};
 use std::time::Instant;
 
-/// A snapshot of the film at one number of samples.
+/// Variances and errors of the image after a certain number of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stand {
     /// Samples per pixel.

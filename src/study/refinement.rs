@@ -85,7 +85,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// All quantities: the terms k = 0..=K, and the indirect light.
+    /// All quantities: the terms k = 0..=K with K = `max_bounces`, and the indirect light L − E.
     pub fn all(max_bounces: usize) -> Vec<Self> {
         (0..=max_bounces).map(Self::Term).chain([Self::Indirect]).collect()
     }

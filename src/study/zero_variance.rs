@@ -73,7 +73,7 @@ impl fmt::Display for Guide {
     }
 }
 
-/// A guide, its distance from B, and the spread of the walks that follow it.
+/// One guide, an approximation of the radiosity B: how far it is from B, and the variance of the walks that it guides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Led {
     /// The guide.

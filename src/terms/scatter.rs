@@ -38,7 +38,7 @@ pub struct Scatter {
     cross: Vec<f64>,
     /// ⟨(m − X)²⟩ − ⟨se_X²⟩; NaN without a reference.
     error: f64,
-    /// Error of MSE that comes from the noise of the reference.
+    /// Standard error of the mean square error that comes from the noise of the reference image.
     pub reference_error: f64,
     /// (Σ x²)²/Σ x⁴ over all contributions x: the number of equal events that would determine V as well.
     pub events: f64,

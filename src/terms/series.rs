@@ -227,8 +227,8 @@ pub struct Series {
     #[serde(default)]
     #[serde(alias = "unseen")]
     pub unsampled: Vec<UnsampledPaths>,
-    /// Kinds of paths that the samples find only by chance. Until enough of them are found, error bars are too small, and
-    /// the samples do not show it. The numbers of events in the estimates are therefore limited to the expected numbers.
+    /// Kinds of paths that carry much light but are found rarely. As long as none is found, the error bars are too small, and
+    /// the samples cannot show it. An error is therefore trusted only if enough such paths are expected (`stats::evidence`).
     #[serde(default)]
     pub doubts: Vec<Doubt>,
     /// If present, the reason why no comparison with this result gives a verdict: the scene has no unique correct image.

@@ -69,7 +69,7 @@ pub static BUGS: [Bug; 8] = [
         what: "the emission of surfaces that the eye sees directly is left out",
         place: "start: X_0 = 0 instead of E(x_0)",
         expected: "in a furnace ρ/(1 − ρ) instead of 1/(1 − ρ)",
-        signature: "0 at k = 0, then 1",
+        signature: "r_0 = 0, and r_k = 1 for all other k",
         ratio: |k| Some(if k == 0 { 0.0 } else { 1.0 }),
         technique: Technique::Mis,
         ends: Ends::AsSet,

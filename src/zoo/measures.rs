@@ -23,7 +23,7 @@ pub static BUGS: [Bug; 4] = [
         name: "area-density",
         what: "the density of the light point per area is used as if it were per solid angle",
         place: "connection: f cos θ_x E/p_A instead of f cos θ_x E/p_ω, p_ω = p_A r²/cos θ_y",
-        expected: "inside an emitting sphere of radius R: 8ρR²/3 for one bounce instead of ρ",
+        expected: "inside an emitting sphere of radius R, one bounce of this mistake gives 8ρR²/3 where ρ is correct",
         signature: "about flat in k, but not in space: smallest under the light; it grows with the scale of the scene",
         ratio: unknown,
         technique: Technique::Connect,

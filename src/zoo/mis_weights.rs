@@ -47,7 +47,7 @@ pub static BUGS: [Bug; 3] = [
         name: "mixed-heuristics",
         what: "connections are weighted by the power heuristic, hits by the balance heuristic",
         place: "MIS weights: w_c = p_c²/(p_c² + p_s²) together with w_s = p_s/(p_s + p_c): they do not sum to 1",
-        expected: "1 + (t² − t)/((1 + t²)(1 + t)) for a path with p_c = t p_s: 0.85 to 1.15; on the sphere t = 10",
+        expected: "a path whose two densities differ by a factor t counts 1 + (t² − t)/((1 + t²)(1 + t)) times, which is 0.85 to 1.15; in the scene `sphere` t is 10",
         signature: "flat in k: 1.081 on the sphere whose emitting cap is a tenth of its area",
         ratio: |k| flat(1.0 + 90.0 / 1111.0, k),
         technique: Technique::Mis,

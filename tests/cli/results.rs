@@ -150,7 +150,7 @@ fn one_sample_has_no_known_error() {
     let said = desk.run("compare a b");
     assert_eq!(said.code, 1);
     assert!(!said.out.contains("NaN"), "{}", said.out);
-    let reason = "one replicate gives no standard error";
+    let reason = "the samples form only one group";
     assert!(said.out.contains(reason), "{}", said.out);
     assert!(said.out.contains("z map: no pixel has a known error"), "{}", said.out);
 }

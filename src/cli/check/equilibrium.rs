@@ -25,15 +25,15 @@ use serde_json::json;
 
 pub(super) const EXAMPLES: &str = "Examples:
   fredholm check equilibrium cornell
-  fredholm check equilibrium cornell --break 1.02     a step that weighs 2 % too much, and is found
+  fredholm check equilibrium cornell --break 1.02     one side made 2 % too large: the check must find it
   fredholm check equilibrium box.toml --points 256 --spp 262144
 
-L is estimated by the path tracer; E + T L by one step taken by hand and the path tracer from there,
-with numbers of its own. Half of the points are uniform on all surfaces with cosine-distributed
+L is estimated by the path tracer. E + T L is estimated by one explicit bounce and then the path tracer,
+with different random numbers. Half of the points are uniform on all surfaces with cosine-distributed
 directions, half are what random pixels see. Tested at level α: every point (Holm), the mean over each
 half, and whether the p-values of all points are uniform.
 
-Blind to an error in T that both sides share: L' = E + 1.02 T L' holds, too.";
+It cannot find an error of T that is on both sides: a wrong L' with L' = E + 1.02 T L' passes, too.";
 
 /// Width and height of the picture: few pixels with many samples each, so that rare hits of a lamp do not show as a pattern.
 const PICTURE: u32 = 32;
@@ -62,7 +62,7 @@ pub struct Equilibrium {
     /// Chance to reject the equation though it holds
     #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = probability)]
     alpha: f64,
-    /// δ of the means over points, as a fraction of T L
+    /// Margin δ: how much the two sides may differ, averaged over the points, as a fraction of T L
     #[arg(long, value_name = "FRACTION", default_value_t = 0.02, value_parser = probability)]
     delta: f64,
     /// Breaks the equation on purpose: the step by hand weighs FACTOR times what it should

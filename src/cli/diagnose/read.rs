@@ -142,7 +142,7 @@ enum Part {
 /// Names of the layer that holds the error of the unnamed layer.
 const ALONE: [&str; 3] = ["se", "stderr", "std_error"];
 
-/// The meaning of a layer by its name, or `None`.
+/// Which image an EXR layer of that name holds, and which colour channel of it; `None` if the name is unknown.
 fn meaning(name: &str) -> Option<(Slot, Part)> {
     // of `ViewLayer.Combined` only the last word counts
     let lower = name.rsplit('.').next()?.to_lowercase();

@@ -125,7 +125,7 @@ fn page(f: &Diagnosed) -> (String, Vec<String>, Vec<String>) {
             format!(" The nearest is {}, off by {:.1} standard errors in the mean square.", c.name, c.misfit.sqrt())
         });
         answer.push(format!(
-            "None of {} simulated mistakes and no simple rule for r_k fits.{nearest} Are scene, materials and camera the same?",
+            "None of the {} known mistakes explains the ratios of your terms to the correct ones, and they follow no simple rule.{nearest} Are scene, materials and camera the same?",
             d.candidates.len()
         ));
     }

@@ -112,7 +112,7 @@ fn people(lab: &Laboratory, spectra: &[Spectrum], bands: &[Band], channel: Chann
         s.band
     );
     if bands.iter().any(|b| b.other > 0) {
-        above += " Some patches meet at another angle than 90°, where the band is not known.";
+        above += " Some faces meet at an angle other than 90°; for them the band of eigenvalues that belong to the mesh is not known.";
     }
     let left = s.modes.len().saturating_sub(SHOWN);
     let below = if left > 0 { format!("… and {left} more in modes.json") } else { String::new() };

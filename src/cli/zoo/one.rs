@@ -61,7 +61,8 @@ struct Pair {
     right: Sampled,
 }
 
-/// The answer: by how much the mistake changes the whole image, and how sure it is that there is a mistake.
+/// The first sentence of the output: the factor by which the mistake changes the mean of the image, and the p-value of the
+/// hypothesis that there is no mistake.
 fn answer(bug: &Bug, shown: &Pair) -> String {
     let r = whole(shown.wrong.series.image(), shown.right.series.image());
     let zoo::judge::Judgement { p, what } = zoo::judge::judge(&shown.wrong, &shown.right);

@@ -265,7 +265,10 @@ fn suits(scene: &Description, listed: &[(usize, Primitive)]) -> Result<(), Scene
         );
     }
     if !scene.lights.is_empty() {
-        let e = SceneError::new("a radiosity matrix can only hold light that surfaces emit").key("lights");
+        let e = SceneError::new(
+            "the scene has lights that are not surfaces, and a radiosity matrix knows only light emitted by surfaces",
+        )
+        .key("lights");
         return Err(e.help("run without radiosity, or replace these lights by emitting shapes"));
     }
     for &(s, p) in listed {

@@ -29,7 +29,7 @@ pub struct RayChecks {
 }
 
 impl Light<'_> {
-    /// Measures the properties of the sampled rows.
+    /// Measures what the rows of form factors must fulfil: row sums, reciprocity, and the fraction of lost rays.
     pub fn checks(&self) -> RayChecks {
         let rays = self.rays;
         let n = rays.per_row as f64;

@@ -19,7 +19,7 @@ use crate::operator::patches::Patches;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Maximum number of terms of the series for the noise.
+/// Maximum number of terms of the Neumann series that carries the noise of the rows to the noise of the solution.
 const NOISE_STEPS: usize = 100;
 
 /// The three channels of a patch, in the form that gathering reads; the fourth number is 0.

@@ -175,7 +175,7 @@ pub(crate) fn rasterise(svg: &str, scale: f32) -> Result<Picture, ReportError> {
     let size = tree.size();
     let pixels = |length: f32| (length * scale).round() as u32;
     let mut canvas = tiny_skia::Pixmap::new(pixels(size.width()), pixels(size.height()))
-        .ok_or_else(|| wrong(&format!("a canvas of {}×{} is not possible", size.width(), size.height())))?;
+        .ok_or_else(|| wrong(&format!("a picture of {}×{} pixels cannot be made", size.width(), size.height())))?;
     canvas.fill(tiny_skia::Color::WHITE);
     resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut canvas.as_mut());
     Ok(Picture {

@@ -62,7 +62,10 @@ pub(super) fn check(list: &[Statement], path: &Path) -> Result<(), SceneError> {
                     let vt = parts.get(1).and_then(|p| number_of(p));
                     if let Some(i) = vt.filter(|&i| i == 0 || i > total_vt || (i < 0 && seen_vt < i.saturating_neg())) {
                         let what = format!("vt index {i} is out of range, the file has {total_vt}");
-                        return fail(what, "indices start at 1; negative ones count back from the last vt");
+                        return fail(
+                            what,
+                            "use an index from 1 to the number of vt lines; negative indices count back from the last vt line",
+                        );
                     }
                 }
             }

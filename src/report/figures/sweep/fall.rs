@@ -169,7 +169,7 @@ const COLUMN: f64 = 560.0;
 const ROW: f64 = 430.0;
 const GUIDE: Stroke = Stroke { color: GREY, width: 1.6, dash: Some((7.0, 5.0)) };
 
-/// Draws the sums of all renders in one panel, and the terms of every render in a panel of its own.
+/// Draws one panel with the whole image of each render, and for each render one panel with its terms.
 ///
 /// # Errors
 /// If the plot crate fails, which is a defect.
