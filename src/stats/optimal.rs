@@ -1,20 +1,23 @@
-//! The roulette schedule with the most efficiency, exactly.
+//! The most efficient roulette schedule, computed exactly.
 //!
 //! ```text
 //! minimise  V(Q) C(Q) = (Σ_v A_v/Q_v − m) (Σ_v c_v Q_v)        over 1 = Q_0 ≥ Q_1 ≥ … ≥ Q_K > 0
 //! ```
 //!
-//! For positive numbers `V C = min_λ (V + λC)²/(4λ)`, attained at λ = V/C. So the best Q minimises V + λC for some λ, which is
-//! convex and separable: without the order of the Q_v it has `Q_v² = A_v/(λ c_v)`, and with it neighbours out of order share
-//! `r = ΣA/Σc` (pool adjacent violators; λ does not matter for who shares), capped at 1:
+//! The symbols are those of [`schedule`](super::schedule): V is the variance, C the cost, Q_v the probability of reaching
+//! vertex v. For positive numbers `V C = min_λ (V + λC)²/(4λ)`, attained at λ = V/C. So the best Q minimises V + λC for some
+//! λ. This problem is convex and separable. Without the order of the Q_v its solution is `Q_v² = A_v/(λ c_v)`. To keep the
+//! order, neighbours that violate it are pooled and share the ratio `r = ΣA/Σc` (pool adjacent violators; the pools do not
+//! depend on λ). Finally Q_v is capped at 1:
 //!
 //! ```text
 //! Q_v(λ) = min(1, √(r_v/λ))        r_1 ≥ r_2 ≥ … ≥ r_K
 //! ```
 //!
-//! One number λ is left. Where the vertices v ≤ j are capped, with a = Σ_{v≤j} A_v − m and c = Σ_{v≤j} c_v, V C is smallest at
-//! λ = a/c if that lies in the range r_{j+1} ≤ λ ≤ r_j that caps just these, and at the nearer end if not (for a ≤ 0 the lower).
-//! The best of these K + 1 places is the optimum over all schedules: nothing is iterated.
+//! Only the number λ is left. Suppose the vertices v ≤ j are capped, and let a = Σ_{v≤j} A_v − m and c = Σ_{v≤j} c_v. Then
+//! `V C` is smallest at λ = a/c, if that lies in the range r_{j+1} ≤ λ ≤ r_j in which exactly these vertices are capped.
+//! Otherwise it is smallest at the nearer end of the range (for a ≤ 0 at the lower end). The best of these K + 1 candidates
+//! is the optimum over all schedules, and no iteration is needed.
 //!
 //! References: Barlow, Bartholomew, Bremner, Brunk, *Statistical Inference under Order Restrictions* (1972) for the pooling;
 //! Bolin and Meyer, *An error metric for Monte Carlo ray tracing* (1997), and Rath et al., *EARS* (2022), for efficiency as the
@@ -23,11 +26,12 @@
 use super::schedule::Separable;
 use crate::estimator::Roulette;
 
-/// The most that the optimal schedule ends at one vertex: what no path of a recording has found may still be there, and must
-/// not cost all paths but a few when it is found.
+/// The largest termination probability of the optimal schedule at one vertex. Light that no recorded path has found may
+/// still exist. With a larger q almost all paths would end before they could find it.
 pub const MOST: f64 = 0.9;
 
-/// Q_v, v = 0..=K, of the schedule that minimises V · rays. Where nothing is scored from some vertex on it falls towards 0.
+/// Q_v, v = 0..=K, of the schedule that minimises V · rays. From a vertex on where nothing is scored any more, Q_v falls
+/// towards 0.
 pub fn optimal_reach(of: &Separable) -> Vec<f64> {
     let ratios = pooled(&of.second[1..], &of.rays[1..]);
     let at = |lambda: f64| -> Vec<f64> {
@@ -52,8 +56,8 @@ pub fn optimal_reach(of: &Separable) -> Vec<f64> {
     best
 }
 
-/// The non-increasing r that pools neighbours out of order: r = ΣA/Σc over each pool. A vertex that no ray leads to joins
-/// the pool before it.
+/// The non-increasing ratios r after pooling neighbours that violate the order: r = ΣA/Σc over each pool. A vertex to which
+/// no ray leads joins the pool before it.
 fn pooled(second: &[f64], rays: &[f64]) -> Vec<f64> {
     // pools from the left: A, c, vertices
     let mut pools: Vec<(f64, f64, usize)> = vec![];
@@ -73,9 +77,10 @@ fn pooled(second: &[f64], rays: &[f64]) -> Vec<f64> {
     pools.iter().flat_map(ratio).collect()
 }
 
-/// The schedule that reaches vertex v with probability `reach[v]`, and ends paths with probability `beyond` from the last on.
+/// The schedule that reaches vertex v with probability `reach[v]`, and ends paths with probability `beyond` at the last
+/// vertex and all later ones.
 pub fn schedule(reach: &[f64], beyond: f64) -> Roulette {
-    // three digits: no efficiency is lost, and the table can be typed
+    // rounded to three digits: no efficiency is lost, and a user can type the table
     let q = |w: &[f64]| ((1.0 - w[1] / w[0]).clamp(0.0, MOST) * 1e3).round() / 1e3;
     Roulette::Table(reach.windows(2).map(q).chain([beyond]).collect())
 }
@@ -87,8 +92,8 @@ mod tests {
     use crate::math::{Key, Purpose, Rng};
     use crate::stats::schedule::{Part, reach, tests};
 
-    /// The plain twin: from several starts, one Q_v after the other is moved to the best of many places between its
-    /// neighbours, and pools of neighbours together, until nothing gains.
+    /// Reference implementation by search. From several starts it scales each Q_v, and each run of neighbouring Q_v, up or
+    /// down until nothing improves.
     fn by_search(of: &Separable) -> f64 {
         let n = of.second.len();
         let mut least = f64::INFINITY;
@@ -102,7 +107,7 @@ mod tests {
                         for factor in [1.0 - step, 1.0 / (1.0 - step)] {
                             let mut tried = q.clone();
                             tried[first..end].iter_mut().for_each(|x| *x *= factor);
-                            // back into the order: nothing above its predecessor
+                            // restore the order: no value above its predecessor
                             (1..n).for_each(|v| tried[v] = tried[v].min(tried[v - 1]));
                             if of.work(&tried) < of.work(&q) * (1.0 - 1e-13) {
                                 (q, gained) = (tried, true);
@@ -124,7 +129,7 @@ mod tests {
         for case in 0..60_u32 {
             let u = |i: usize| f64::from(Rng::at(Key::new(5, "optimal"), case, i as u32, 0, Purpose::Start).one());
             let n = 3 + case as usize % 5;
-            // falling on the whole, with neighbours out of order, and means between nothing and all there is
+            // falling on the whole, with neighbours out of order, and means between zero and the largest possible
             let second: Vec<f64> = (0..n).map(|v| f64::powi(0.45, v as i32) * (0.2 + 2.0 * u(v))).collect();
             let rays: Vec<f64> = (0..n).map(|v| 0.5 + u(20 + v)).collect();
             let product = [0.0, 0.3, 0.8, 0.98][case as usize % 4] * second.iter().sum::<f64>();
@@ -140,8 +145,8 @@ mod tests {
         }
     }
 
-    /// Without noise of its own a furnace is best without roulette. With emission that varies, `A_v ∝ ρ^{2v}`: Q_v is 1 and then
-    /// falls by ρ per vertex, which is q = 1 − ρ, and beats the best constant schedule.
+    /// In a furnace emission has no variance, so no roulette is best. With emission that varies, `A_v ∝ ρ^{2v}`: Q_v is 1 at
+    /// first and then falls by ρ per vertex. That is q = 1 − ρ, and it is better than the best constant schedule.
     #[test]
     fn a_furnace_wants_no_roulette_and_a_sphere_the_analog_walk() {
         let all = Separable::of(&tests::furnace(0.5, 12), Part::All);

@@ -1,29 +1,30 @@
-//! What a roulette schedule costs and what noise it makes, from the cross moments of paths without roulette.
+//! Cost and noise of a roulette schedule, predicted from the cross moments of paths without roulette.
 //!
 //! ```text
 //! Q_v = Π_{i<v} (1 − q[i])                       the probability of reaching vertex v
-//! E[S_a S_b] = M_ab / Q_{v(a)∧v(b)}              both weigh 1/Q, and both are there if the later vertex is reached
+//! E[S_a S_b] = M_ab / Q_{v(a)∧v(b)}              each has weight 1/Q, and both exist if the later vertex is reached
 //! Var = Σ_ab ( M_ab / Q_{v(a)∧v(b)} − m_ab )  =  Σ_v A_v / Q_v − m
 //! cost = Σ_v c_v Q_v                             rays per path
 //! ```
 //!
-//! exact for every schedule that does not depend on the path: `Q_max / (Q_v(a) Q_v(b)) = 1/Q_min` vertex for vertex. The tail is
-//! one more slot, at vertex K; what happens beyond is part of it, and is as it was when the moments were recorded.
+//! This is exact for every schedule that does not depend on the path, since `Q_max / (Q_v(a) Q_v(b)) = 1/Q_min` for each
+//! pair of vertices. M_ab and m_ab are the [cross moments](crate::terms::cross_moments) of the slots. The tail is one more
+//! slot, at vertex K. It includes everything beyond K, as it was when the moments were recorded.
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
 //! | v(a), k(a) | vertex and term of a slot | [`Vertices::vertex`], [`Vertices::term`] |
-//! | A_v | Σ of M_ab over pairs whose smaller vertex is v | [`Separable::second`] |
-//! | m | Σ of m_ab | [`Separable::product`] |
-//! | c_v | rays asked for once vertex v is reached | [`Separable::rays`] |
+//! | A_v | Σ of M_ab over all pairs of slots whose smaller vertex is v | [`Separable::second`] |
+//! | m | Σ of m_ab over all pairs of slots | [`Separable::product`] |
+//! | c_v | rays requested once vertex v is reached | [`Separable::rays`] |
 //!
-//! Efficiency is 1/(V · rays), V being the variance of one sample averaged over pixels and channels. Reference for the weight:
-//! Arvo and Kirk, *Particle transport and image synthesis* (1990); the sum over vertices is elementary.
+//! Efficiency is 1/(V · rays), where V is the variance of one sample, averaged over pixels and channels. Reference for the
+//! weight: Arvo and Kirk, *Particle transport and image synthesis* (1990); the sum over vertices is elementary.
 
 use crate::estimator::{Roulette, Vertices};
 use crate::terms::cross_moments::{CrossMoments, Recorded, Value};
 
-/// Of which part of the image the noise is asked.
+/// The part of the image whose noise is predicted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// One term.
@@ -37,16 +38,16 @@ pub enum Part {
 /// Noise and cost as functions of the probabilities of reaching each vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Separable {
-    /// A_v, v = 0..=K.
+    /// A_v, for v = 0..=K.
     pub second: Vec<f64>,
-    /// m.
+    /// m, the sum of the products of means.
     pub product: f64,
-    /// c_v, v = 0..=K, of the whole path.
+    /// c_v, for v = 0..=K, of the whole path.
     pub rays: Vec<f64>,
 }
 
 impl Separable {
-    /// A part of the image, from the moments of [`Vertices`], averaged over the channels.
+    /// Computes A_v, m and c_v of a part of the image from the moments of [`Vertices`], averaged over the channels.
     pub fn of(moments: &CrossMoments, part: Part) -> Self {
         let vertices = moments.slots / 2;
         let mut of = Self { second: vec![0.0; vertices], product: 0.0, rays: vec![0.0; vertices] };
@@ -77,13 +78,13 @@ impl Separable {
         self.rays.iter().zip(reach).map(|(c, q)| c * q).sum()
     }
 
-    /// V · rays: what the efficiency is one over.
+    /// V · rays, the inverse of the efficiency.
     pub fn work(&self, reach: &[f64]) -> f64 {
         self.variance(reach) * self.cost(reach)
     }
 }
 
-/// Q_v for v = 0..=`last`; none where q depends on the path.
+/// Q_v for v = 0..=`last`; None if q depends on the path.
 pub fn reach(schedule: &Roulette, last: usize) -> Option<Vec<f64>> {
     let mut q = 1.0;
     let mut all = vec![q];
@@ -94,7 +95,7 @@ pub fn reach(schedule: &Roulette, last: usize) -> Option<Vec<f64>> {
     Some(all)
 }
 
-/// Noise of one sample, and its price.
+/// Noise and cost of one sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Noise {
     /// V of each term k = 0..=K.
@@ -110,7 +111,8 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// Predicted from the moments of [`Vertices`] without roulette before vertex K; none where q depends on the path.
+    /// Predicts noise and cost from the moments of [`Vertices`], recorded without roulette before vertex K. None if q
+    /// depends on the path.
     pub fn predicted(recorded: &Recorded, schedule: &Roulette) -> Option<Self> {
         let last = (recorded.all.slots / 2).checked_sub(1)?;
         let reach = reach(schedule, last)?;
@@ -124,7 +126,8 @@ impl Noise {
         })
     }
 
-    /// As it is: from the moments of an estimator whose slots are the terms and the tail, under whatever roulette it used.
+    /// Measured noise and cost, from the moments of an estimator whose slots are the terms and the tail, with whatever
+    /// roulette it used.
     pub fn measured(recorded: &Recorded) -> Self {
         let last = recorded.all.slots.saturating_sub(1);
         let variance = |m: &CrossMoments, slots: std::ops::RangeInclusive<usize>| {
@@ -142,7 +145,7 @@ impl Noise {
     }
 }
 
-/// The ratio of two efficiencies from one recording, with an error that knows that they share their samples.
+/// The ratio of the efficiencies of two schedules from one recording. Its error accounts for the samples that both share.
 pub fn gain(recorded: &Recorded, of: &Roulette, over: &Roulette) -> Option<Value> {
     let last = (recorded.all.slots / 2).checked_sub(1)?;
     let (of, over) = (reach(of, last)?, reach(over, last)?);
@@ -157,16 +160,16 @@ pub(super) mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    /// The moments of a furnace, E = 1, one albedo ρ, hits alone: Y_k = ρ^k on every path. The tail is ρ^{K+1}/(1 − ρ) as if
-    /// nothing ended it.
+    /// The moments of a furnace with E = 1, one albedo ρ and hits only: Y_k = ρ^k on every path. The tail is
+    /// ρ^{K+1}/(1 − ρ), as if roulette never ended it.
     pub(in super::super) fn furnace(rho: f64, last: usize) -> CrossMoments {
         sphere(rho, last, 0.0)
     }
 
-    /// The same with emission of mean 1 and variance σ² at every vertex but the first, all independent.
+    /// The same with independent emission of mean 1 and variance σ² at every vertex but the first.
     pub(in super::super) fn sphere(rho: f64, last: usize, variance: f64) -> CrossMoments {
         let slots = Vertices::slots_for(last);
-        // hits stand at even slots; the tail at the odd last one, without what roulette would do to it
+        // hits have even slots; the tail has the last slot, which is odd, and is not affected by roulette here
         let mean = |a: usize| match a {
             _ if a == slots - 1 => rho.powi(last as i32 + 1) / (1.0 - rho),
             _ if a.is_multiple_of(2) => rho.powi(a as i32 / 2),
@@ -192,7 +195,7 @@ pub(super) mod tests {
         assert!((a - b).abs() <= 1e-9 * b.abs() + 1e-12, "{what}: {a}, expected {b}");
     }
 
-    /// `Var[T^k] = ρ^{2k}(s^{−k} − 1)`, its covariances, and the whole image for K → ∞: `ρ²q / ((1 − ρ)²(1 − q − ρ²))`.
+    /// `Var[T^k] = ρ^{2k}(s^{−k} − 1)`, the covariances, and the whole image for K → ∞: `ρ²q / ((1 − ρ)²(1 − q − ρ²))`.
     #[test]
     fn a_furnace_has_its_closed_forms() {
         for (rho, q) in [(0.5, 0.5), (0.5, 0.1), (0.8, 0.1), (0.7, 0.2), (0.95, 0.02)] {
@@ -204,7 +207,7 @@ pub(super) mod tests {
                 let expected = f64::powi(rho, 2 * k as i32) * (f64::powi(s, -(k as i32)) - 1.0);
                 near(of.variance(&reach_all), expected, &format!("Var T{k}, ρ = {rho}, q = {q}"));
             }
-            // the variance of a sum of two terms tells their covariance ρ^{j+k}(s^{−min(j,k)} − 1)
+            // the moments of a pair of terms give their covariance ρ^{j+k}(s^{−min(j,k)} − 1)
             let (j, k) = (2, 5);
             let pair = m.second(2 * j, 2 * k) / reach_all[j.min(k)] - m.product(2 * j, 2 * k);
             let power = |x: f64, n: usize| x.powi(n as i32);
@@ -218,13 +221,13 @@ pub(super) mod tests {
         }
     }
 
-    /// Emission of variance σ²: `ρ²/(1 − q − ρ²) · (q/(1 − ρ)² + σ²)`, whose best constant q is
-    /// `(−b + √(b² + a b D))/a` with a = 1/(1 − ρ)², b = σ², D = 1 − ρ², found here by search.
+    /// With emission of variance σ² the variance is `ρ²/(1 − q − ρ²) · (q/(1 − ρ)² + σ²)`. The best constant q is
+    /// `(−b + √(b² + a b D))/a` with a = 1/(1 − ρ)², b = σ², D = 1 − ρ². The test finds it by search.
     #[test]
     fn the_best_constant_schedule_of_a_sphere_is_the_known_one() {
         for (rho, sigma) in [(0.5, 1.0), (0.8, 3.0), (0.3, 0.5)] {
             let mut all = Separable::of(&sphere(rho, 120, sigma * sigma), Part::All);
-            // the closed form counts vertices, the camera's too
+            // the closed form also counts the vertex of the camera
             all.rays[0] += 1.0;
             let work = |q: f64| all.work(&reach(&constant(q), 120).unwrap());
             let (a, b, d) = (1.0 / f64::powi(1.0 - rho, 2), sigma * sigma, 1.0 - rho * rho);

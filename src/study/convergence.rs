@@ -1,4 +1,5 @@
-//! How error and cost grow with the samples of one render: V(n), MSE(n), rays and seconds, read off the film as it fills.
+//! How error and cost of one render depend on its number of samples: V(n), MSE(n), rays and seconds. They are read from the
+//! film while it fills.
 //!
 //! ```text
 //! V(n) ∝ n^b,  b = −1 for independent samples        MSE = bias² + V        efficiency = 1 / (V · cost)
@@ -6,12 +7,13 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | V, MSE | see [`scatter`](crate::terms::scatter) | [`Stand::parts`] |
-//! | n | samples per pixel at a stand | [`Stand::spp`] |
-//! | b | fitted slope | [`NoiseCurve::slope`] |
+//! | V, MSE | variance and mean squared error; see [`scatter`](crate::terms::scatter) | [`Stand::parts`] |
+//! | n | samples per pixel at the time of a snapshot | [`Stand::spp`] |
+//! | b | fitted slope of log V against log n | [`NoiseCurve::slope`] |
 //!
-//! Nothing is rendered twice: the film of n samples is a part of the film of 2n. The points of a curve therefore share their
-//! replicates, and the error of a slope comes from curves without one replicate each.
+//! Nothing is rendered twice: the first n samples of a film of 2n samples are the film of n samples. The points of a curve
+//! are therefore dependent. The error of a slope takes this into account: it is found by leaving out one replicate of all
+//! points at a time (the jackknife).
 
 use crate::engine::by_rays::Sampled;
 use crate::stats::evidence::FITTED_SPREAD;
@@ -20,29 +22,29 @@ use crate::terms::scatter::Scatter;
 use crate::terms::{TermFilm, TermImage, Variance};
 use std::time::Instant;
 
-/// A film at one number of samples.
+/// A snapshot of the film at one number of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stand {
     /// Samples per pixel.
     pub spp: u32,
-    /// Rays so far.
+    /// Rays traced up to this snapshot.
     pub rays: u64,
-    /// Wall-clock seconds spent on samples so far.
+    /// Wall-clock seconds spent on sampling up to this snapshot.
     pub seconds: f64,
-    /// Each slot, then the sum.
+    /// Variance and error of each slot, then of the sum of all slots.
     pub parts: Vec<Scatter>,
 }
 
-/// Images to compare with, from an independent stream.
+/// Reference images to compare with, rendered with independent random numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reference {
-    /// In words.
+    /// Description of the estimator that made the images.
     pub label: String,
-    /// T^k E, k = 0..=K.
+    /// The terms T^k E, k = 0..=K.
     pub terms: Vec<TermImage>,
-    /// Everything longer, where it is known.
+    /// Everything longer than K, if it was estimated.
     pub tail: Option<TermImage>,
-    /// The whole.
+    /// The whole image.
     pub total: TermImage,
 }
 
@@ -53,29 +55,31 @@ impl From<Sampled> for Reference {
     }
 }
 
-/// Keeps what the film says at chosen numbers of samples.
+/// Takes snapshots of the film at chosen numbers of samples.
 pub struct Recorder<'a> {
     reference: Option<&'a Reference>,
-    /// Where to look; empty: after every pass.
+    /// Samples per pixel at which to take a snapshot; if empty, after every pass.
     at: Vec<u32>,
-    /// Since when samples are taken, and how long they took before.
+    /// Start of the current sampling interval; `seconds` holds the time of the earlier ones.
     since: Instant,
     seconds: f64,
     kept: Vec<Stand>,
 }
 
 impl<'a> Recorder<'a> {
-    /// Keeps the numbers of samples `at`, in rising order, or all that the render stops at.
+    /// Takes snapshots at the numbers of samples in `at`, in rising order. If `at` is empty, takes one whenever the render
+    /// pauses.
     pub fn new(reference: Option<&'a Reference>, at: Vec<u32>) -> Self {
         Self { reference, at, since: Instant::now(), seconds: 0.0, kept: vec![] }
     }
 
-    /// What was kept.
+    /// The snapshots taken.
     pub fn stands(self) -> Vec<Stand> {
         self.kept
     }
 
-    /// Looks at the film after a pass; the next number of samples per pixel at which to look, beside the usual ones.
+    /// Takes a snapshot after a pass if one is due. Returns the next number of samples per pixel at which the render should
+    /// pause, in addition to its usual pauses.
     pub fn look(&mut self, film: &TermFilm) -> Option<u32> {
         self.seconds += self.since.elapsed().as_secs_f64();
         let spp = film.least_samples();
@@ -103,19 +107,21 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// One term, the tail or the sum of one render, as it falls.
+/// The noise of one term, of the tail or of the sum, against the number of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseCurve {
-    /// `0`, `1`, …, `tail`, `all`.
+    /// Name of the part: `0`, `1`, …, `tail` or `all`.
     pub name: String,
-    /// n and what the film says there, in rising order.
+    /// Samples per pixel and the noise measured there, in rising order.
     pub points: Vec<(u32, Scatter)>,
-    /// Whether what is shown tends to anything: the variance of a sum without end may be infinite.
+    /// States whether the variance is finite. The variance of a sum of infinitely many terms may be infinite, and then the
+    /// curve has no limit.
     pub variance: Variance,
 }
 
 impl NoiseCurve {
-    /// The parts of a render: its slots (a tail only if it is `known`), then the sum. `variance` is that of the tail and of the sum.
+    /// The curves of a render: one per slot, then the sum. The tail is left out unless it is known. `variance` applies to
+    /// the tail and to the sum.
     pub fn all(stands: &[Stand], tail_is_known: bool, variance: Variance) -> Vec<Self> {
         let count = stands.first().map_or(0, |s| s.parts.len());
         let name = |i: usize| match count - i {
@@ -132,12 +138,13 @@ impl NoiseCurve {
         kept.map(part).collect()
     }
 
-    /// The slope of V; none where there is no noise or no variance, or fewer than two points that rest on events enough.
+    /// The fitted slope of V. None if there is no noise, if the variance is infinite, or if fewer than two points have
+    /// enough evidence.
     pub fn slope(&self) -> Option<Slope> {
         self.fit(Scatter::variance, Scatter::variance_without)
     }
 
-    /// The slope of MSE; none without a reference, or where an estimate of it is not positive.
+    /// The fitted slope of MSE. None without a reference, or if an estimate of MSE is not positive.
     pub fn error_slope(&self) -> Option<Slope> {
         self.fit(|s| s.squared_error().unwrap_or(f64::NAN), Scatter::squared_error_without)
     }
@@ -146,7 +153,7 @@ impl NoiseCurve {
         if Evidence::of_variance(self.variance).no_error.is_some() {
             return None;
         }
-        // a variance that rests on few events is no point of a curve: most of it has not happened yet
+        // a variance from few events is left out: most of the rare contributions that make it up have not occurred yet
         let known = || self.points.iter().filter(|(_, s)| s.events >= FITTED_SPREAD);
         let points: Vec<(f64, f64)> = known().map(|(n, s)| (f64::from(*n), value(s))).collect();
         let leave = |s: &Scatter| (0..s.replicates()).map(|i| without(s, i)).collect();

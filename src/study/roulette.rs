@@ -1,22 +1,29 @@
-//! Roulette schedules of a scene: predicted, measured, chosen.
+//! Russian roulette schedules for a scene: predicts their noise and cost from a pilot run, measures them, and finds the
+//! best.
 //!
 //! ```text
 //! pilot: paths without roulette up to vertex K  →  M_ab, m_ab, c_v  →  V and rays of every schedule  →  the best one
 //! ```
 //!
-//! Beyond vertex K the pilot goes on with constant q ≤ 1 − max albedo ([`beyond`]), and so does every schedule that is compared
-//! with it: with survival s ≥ max albedo no weight grows, `ρ²/s ≤ ρ` and `ρ⁴/s³ ≤ ρ`, so that the tail has finite moments of
-//! second and of fourth order whatever stands in the table before. Where the albedo is 1, or is only known to be at most 1, the
-//! growth R of second moments without roulette is [measured](crate::engine::known::growth), and q = (1 − R)/4: then R/(1 − q) < 1 and, since the moments
-//! of fourth order grow no faster, R/(1 − q)³ < 1.
+//! M_ab, m_ab are the cross moments of what is scored at the vertices of a path, and c_v the rays at vertex v
+//! ([`crate::stats::schedule`]). V is the variance of one path.
 //!
-//! | what | finite where | place |
+//! Beyond vertex K the pilot ends paths with a constant probability q ≤ 1 − max albedo ([`beyond`]), and so does every
+//! schedule that is compared with it. With survival s = 1 − q ≥ max albedo the weights do not grow, because `ρ²/s ≤ ρ` and
+//! `ρ⁴/s³ ≤ ρ`. The tail then has finite second and fourth moments, whatever the schedule does before vertex K.
+//!
+//! If the albedo is 1, or if only the bound 1 is known, the growth R of second moments without roulette is
+//! [measured](crate::engine::known::growth). Then q = (1 − R)/4 is used. It makes R/(1 − q) < 1. Since fourth moments grow
+//! no faster, R/(1 − q)³ < 1 holds, too.
+//!
+//! | quantity | is finite if | place |
 //! |---|---|---|
 //! | variance under constant q | the spectral radius of ρ²F/(1 − q) is below 1 | [`Radii::second`] |
-//! | variance of the measured variance | that of ρ⁴F/(1 − q)³ is | [`Radii::fourth`] |
+//! | variance of the measured variance | the spectral radius of ρ⁴F/(1 − q)³ is below 1 | [`Radii::fourth`] |
 //!
-//! Without a matrix the largest albedo stands for F: then a radius below 1 proves that the moment is finite, and one above 1
-//! proves nothing. Both speak of directions drawn like the reflectance, whose weights are albedos.
+//! Without a matrix, F is replaced by 1 and ρ by the largest albedo. This gives upper bounds of the radii: a bound below 1
+//! proves that the moment is finite, a bound above 1 proves nothing. Both radii assume that directions are sampled in
+//! proportion to the BSDF times the cosine, so that the weight of a bounce is the albedo.
 
 use crate::engine::Settings;
 use crate::engine::known::growth::{CLEAR, FromLight, growth};
@@ -38,16 +45,18 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::Instant;
 
-/// Paths of a pilot: enough for a schedule that is as good as the best to a percent or two.
+/// Paths of a pilot run. The schedule found from them has an efficiency within one or two percent of the best.
 const PILOT: u64 = 1 << 18;
-/// Vertices a pilot looks at: at least, and at most.
+/// Smallest and largest number of vertices K that the pilot run records.
 const DEPTH: [usize; 2] = [16, 64];
-/// The least q beyond K: paths of a million vertices. It is only reached where the variance is not known to be finite.
+/// The smallest q beyond K: a mean length of a million vertices. It is only reached if the variance is not known to be
+/// finite.
 const LEAST: f64 = 1e-6;
-/// Replicates behind the errors.
+/// Replicates from which the errors are computed.
 const REPLICATES: u32 = 64;
 
-/// q from vertex K on: at most 1 − the largest albedo of the scene, or a quarter of what second moments lose at a vertex.
+/// Probability of termination q from vertex K on: 1 − the largest albedo of the scene, rounded down to two digits. If the
+/// largest albedo is 1, a quarter of the fraction that second moments lose per vertex.
 pub fn beyond(scene: &Scene) -> f64 {
     let rho = f64::from((scene.max_albedo() * scene.lit()).max_element());
     let loss = if rho < 1.0 {
@@ -61,11 +70,11 @@ pub fn beyond(scene: &Scene) -> f64 {
 }
 
 fn amount(spp: u32, settings: &Settings, stream: &str) -> Amount {
-    // moments are those of one sample: independent points, whatever the images are made with
+    // the moments describe single samples: use independent random numbers even if the images use quasi-random points
     Amount { spp, replicates: spp.min(REPLICATES) as usize, key: Key::new(settings.seed, stream) }
 }
 
-/// The cross moments of paths without roulette before vertex K = `settings.max_bounces`; nothing if interrupted.
+/// Records the cross moments of paths without roulette before vertex K = `settings.max_bounces`. None if interrupted.
 pub fn pilot(scene: &Scene, settings: &Settings, spp: u32, progress: Progress<'_>) -> Option<Recorded> {
     let roulette = Roulette::Constant { from: settings.max_bounces, q: beyond(scene) };
     let t = SceneTransport { scene, sampling: settings.sampling };
@@ -75,8 +84,8 @@ pub fn pilot(scene: &Scene, settings: &Settings, spp: u32, progress: Progress<'_
     record(&t, &scene.camera, &estimator, amount(spp, settings, "cross moments"), progress)
 }
 
-/// Terms under a schedule as the path tracer would use it, from vertex 0 on; nothing if interrupted. Read with
-/// [`Noise::measured`].
+/// Measures the terms under `schedule`, applied from vertex 0 on as in the path tracer. The result is read with
+/// [`Noise::measured`]. None if interrupted.
 pub fn measure(
     scene: &Scene,
     settings: &Settings,
@@ -92,8 +101,9 @@ pub fn measure(
     record(&t, &scene.camera, &estimator, amount, progress)
 }
 
-/// Wall-clock seconds per path that the terms take under each schedule without any bookkeeping: the least of three rounds of
-/// `spp` samples, taken in turn so that a busy machine is unfair to all alike.
+/// Wall-clock seconds per path under each schedule, without recording of moments. Each schedule is timed three times with
+/// `spp` samples, and the smallest time counts. The schedules take turns, so that other load on the machine affects all of
+/// them equally.
 pub fn seconds_per_path(scene: &Scene, settings: &Settings, schedules: &[Roulette], spp: u32) -> Vec<f64> {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let paths = f64::from(scene.camera.size[0]) * f64::from(scene.camera.size[1]) * f64::from(spp);
@@ -110,19 +120,19 @@ pub fn seconds_per_path(scene: &Scene, settings: &Settings, schedules: &[Roulett
     least
 }
 
-/// The schedule with the most efficiency, and what it is expected to be.
+/// The schedule with the highest efficiency 1/(variance · cost), and its predicted noise.
 #[derive(Clone, Debug)]
 pub struct Optimal {
-    /// A table: K entries, then q beyond.
+    /// The schedule as a table: q at vertices 0 to K − 1, then the constant q from vertex K on.
     pub roulette: Roulette,
     /// Predicted noise and cost.
     pub noise: Noise,
-    /// Its efficiency over that of the lecture's schedule, both as tables to K.
+    /// Its efficiency divided by that of the lecture's schedule. Both schedules are tables up to K with the same q beyond.
     pub gain: Value,
 }
 
-/// The best schedule for the whole image, from a recording of [`pilot`]. Its prediction comes from the same paths that chose
-/// it, and is a little too good.
+/// The best schedule for the whole image, from a recording made by [`pilot`]. The prediction uses the same paths that chose
+/// the schedule, so that it is slightly too optimistic.
 pub fn best(recorded: &Recorded, scene: &Scene) -> Option<Optimal> {
     let last = (recorded.all.slots / 2).checked_sub(1)?;
     let roulette = schedule(&optimal_reach(&Separable::of(&recorded.all, Part::All)), beyond(scene));
@@ -132,7 +142,8 @@ pub fn best(recorded: &Recorded, scene: &Scene) -> Option<Optimal> {
     Some(Optimal { roulette, noise, gain })
 }
 
-/// The best schedule for a scene and these settings, from a pilot of its own stream; nothing if interrupted.
+/// The best schedule for a scene and these settings. The pilot run uses random numbers that no render uses. None if
+/// interrupted.
 ///
 /// ```
 /// use fredholm::scene::{Scene, load};
@@ -153,19 +164,19 @@ pub fn optimal(scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Op
     best(&pilot(scene, &settings, spp, progress)?, scene)
 }
 
-/// A schedule as it is asked for.
+/// A roulette schedule as the user requests it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Schedule {
-    /// This one.
+    /// A schedule given explicitly.
     Given(Roulette),
-    /// By what a guide says is still to come.
+    /// Termination by the light that a guide expects the rest of the path to find.
     ByExpectation(ByExpectation),
-    /// The one with the most efficiency, which only the scene can tell.
+    /// The schedule with the highest efficiency; it must first be computed for the scene by [`optimal`].
     Optimal,
 }
 
 impl Schedule {
-    /// The schedule, of walks without a guide; none if it is yet to be found.
+    /// The schedule for walks without a guide. None if it must first be computed.
     pub fn given(&self) -> Option<Roulette> {
         match self {
             Self::Given(roulette) => Some(roulette.clone()),
@@ -185,7 +196,7 @@ impl fmt::Display for Schedule {
     }
 }
 
-/// `optimal`, or as [`ByExpectation`], or as [`Roulette`].
+/// Parses `optimal`, or a schedule in the syntax of [`ByExpectation`] or [`Roulette`].
 impl FromStr for Schedule {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
@@ -201,7 +212,7 @@ impl FromStr for Schedule {
     }
 }
 
-/// q from some vertex on, where a schedule settles on one.
+/// The constant q that a schedule reaches from some vertex on; none for schedules that depend on albedo or throughput.
 pub fn constant(schedule: &Roulette) -> Option<f64> {
     match schedule {
         Roulette::Constant { q, .. } => Some(*q),
@@ -210,19 +221,19 @@ pub fn constant(schedule: &Roulette) -> Option<f64> {
     }
 }
 
-/// Spectral radii that decide whether moments are finite under constant survival.
+/// Spectral radii that decide whether moments are finite if every vertex terminates paths with the same q. Here s = 1 − q.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Radii {
-    /// Of ρ²F/s: the variance.
+    /// Spectral radius of ρ²F/s: below 1 if the variance is finite.
     pub second: f64,
-    /// Of ρ⁴F/s³: the variance of the measured variance.
+    /// Spectral radius of ρ⁴F/s³: below 1 if the variance of the measured variance is finite.
     pub fourth: f64,
-    /// Whether these are only upper bounds, from the largest albedo.
+    /// True if the values are only upper bounds, computed from the largest albedo.
     pub bounds: bool,
 }
 
 impl Radii {
-    /// For walks that end with probability `q` everywhere; the largest over the channels.
+    /// The radii for walks that end with probability `q` at every vertex; the largest of the three channels.
     pub fn new(matrix: Option<&Radiosity>, scene: &Scene, q: f64) -> Self {
         let (s, largest) = (1.0 - q, |r: [f64; 3]| r.into_iter().fold(0.0, f64::max));
         match matrix {
@@ -238,7 +249,7 @@ impl Radii {
         }
     }
 
-    /// Whether the variance is finite, as far as this tells: bounds prove that it is, or nothing.
+    /// The answer for the variance, where it is known. An upper bound can only prove that the variance is finite.
     pub fn variance(&self) -> Option<Variance> {
         match (self.second < 1.0, self.bounds) {
             (true, true) => Some(Variance::Finite),
@@ -247,7 +258,8 @@ impl Radii {
         }
     }
 
-    /// What the reader of an error bar must know, if anything: in words, after the name of what is estimated.
+    /// A warning that belongs to an error bar, if one is needed. The words continue a sentence that begins with the name of
+    /// the estimator.
     pub fn warning(&self) -> Option<String> {
         let Self { second, fourth, bounds } = *self;
         match (bounds, second >= 1.0, fourth >= 1.0) {
@@ -263,7 +275,7 @@ impl Radii {
             )),
             (true, false, true) => Some(format!(
                 "has finite variance, but error bars may come out too small: the bound\n\
-                 max ρ⁴/(1−q)³ = {fourth:.3} ≥ 1 does not exclude that the measured variance has none"
+                 max ρ⁴/(1−q)³ = {fourth:.3} ≥ 1 does not exclude that the variance of the measured variance is infinite"
             )),
             _ => None,
         }

@@ -1,21 +1,22 @@
-//! Where samples go: the terms with so many samples each, at one cost.
+//! How to distribute samples over the terms: compares the variance of three ways at equal cost.
 //!
 //! ```text
 //! Var = Σ σ_k²/n_k      Cost = Σ n_k c_k      Var · Cost ≥ (Σ σ_k √c_k)²,  equal iff  n_k ∝ σ_k/√c_k
 //! equal split: Var · Cost = Σ σ_k² · Σ c_k    prefix reuse: 1ᵀC1 · c,  all terms from one path
 //! ```
 //!
-//! The bound is the Cauchy–Schwarz inequality for (σ_k/√n_k) and (√(n_k c_k)); Neyman found the split for strata
-//! (*J. Royal Statistical Society* 97, 1934).
+//! The bound is the Cauchy–Schwarz inequality for the vectors (σ_k/√n_k) and (√(n_k c_k)). Neyman found this split for
+//! strata (*J. Royal Statistical Society* 97, 1934).
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | σ_k² | variance of one sample of term k, averaged over pixels and channels | [`Term::variance`] |
 //! | c_k | rays, or seconds, of one sample of term k | [`Term::rays`], [`Term::seconds`] |
-//! | n_k | samples per pixel of term k | [`Term::spp`], [`optimal`] |
+//! | n_k | samples per pixel given to term k | [`Term::spp`], [`optimal`] |
 //! | C | covariance of the terms of one path | [`Reuse::covariance`] |
 //!
-//! Terms with films and streams of their own are independent, so that the variance of their sum is the sum of variances.
+//! In the first two ways every term has its own film and its own random numbers. The terms are then independent, so that the
+//! variance of their sum is the sum of their variances.
 
 use crate::engine::Settings;
 use crate::estimator::render::{Amount, render};
@@ -28,14 +29,14 @@ use crate::terms::covariance::{Covariance, covariance};
 use crate::terms::scatter::Scatter;
 use std::time::Instant;
 
-/// What one term gave.
+/// Measured noise and cost of one term.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
     /// Samples per pixel.
     pub spp: u32,
-    /// σ_k².
+    /// σ_k²: variance of one sample.
     pub variance: f64,
-    /// Its standard error.
+    /// Standard error of `variance`.
     pub std_error: f64,
     /// Rays of one sample.
     pub rays: f64,
@@ -43,12 +44,12 @@ pub struct Term {
     pub seconds: f64,
 }
 
-/// What prefix reuse gave.
+/// Measured noise and cost of prefix reuse, where one path samples all terms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reuse {
     /// Samples per pixel.
     pub spp: u32,
-    /// C, slot by slot.
+    /// C: covariance of the terms of one path, slot by slot.
     pub covariance: Covariance,
     /// Rays of one path.
     pub rays: f64,
@@ -56,16 +57,16 @@ pub struct Reuse {
     pub seconds: f64,
 }
 
-/// A product of variance and cost with its standard error.
+/// The product of variance and cost, with its standard error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Var · Cost.
     pub value: f64,
-    /// Its standard error; the cost is taken as known.
+    /// Standard error of `value`. The error of the cost is neglected.
     pub std_error: f64,
 }
 
-/// What a unit of cost is.
+/// Unit in which cost is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// Rays per pixel.
@@ -75,14 +76,14 @@ pub enum Unit {
 }
 
 impl Term {
-    /// c_k.
+    /// c_k: cost of one sample of this term.
     pub fn cost(&self, unit: Unit) -> f64 {
         if unit == Unit::Rays { self.rays } else { self.seconds }
     }
 }
 
 impl Reuse {
-    /// 1ᵀC1 · c.
+    /// 1ᵀC1 · c: variance of the sum of all terms of one path, times the cost of the path.
     pub fn work(&self, unit: Unit) -> Work {
         let (sum, error) = self.covariance.sum();
         let cost = if unit == Unit::Rays { self.rays } else { self.seconds };
@@ -90,7 +91,7 @@ impl Reuse {
     }
 }
 
-/// Var · Cost of terms with `counts` samples each.
+/// Variance times cost of the sum of all terms, if term k gets `counts[k]` samples.
 pub fn work(terms: &[Term], counts: &[u32], unit: Unit) -> Work {
     let pairs = || terms.iter().zip(counts).map(|(t, &n)| (t, f64::from(n)));
     let cost: f64 = pairs().map(|(t, n)| n * t.cost(unit)).sum();
@@ -99,7 +100,7 @@ pub fn work(terms: &[Term], counts: &[u32], unit: Unit) -> Work {
     Work { value: variance * cost, std_error: error * cost }
 }
 
-/// (Σ σ_k √c_k)², the least that any split can do, with its error by the delta method.
+/// (Σ σ_k √c_k)²: the smallest product of variance and cost that any split reaches. Its error follows from the delta method.
 ///
 /// ```
 /// use fredholm::study::split::{Term, Unit, best, work};
@@ -117,8 +118,8 @@ pub fn best(terms: &[Term], unit: Unit) -> Work {
     Work { value: root * root, std_error: error }
 }
 
-/// n_k ∝ σ_k/√c_k with Σ n_k c_k near `budget`, rounded to whole replicates: multiples of `replicates`, at least one of
-/// them, also for a term without noise.
+/// The optimal counts: n_k ∝ σ_k/√c_k with Σ n_k c_k near `budget`. Each count is rounded to a multiple of `replicates` and
+/// is at least `replicates`, also for a term without noise.
 pub fn optimal(terms: &[Term], unit: Unit, budget: f64, replicates: u32) -> Vec<u32> {
     let root: f64 = terms.iter().map(|t| (t.variance * t.cost(unit)).sqrt()).sum();
     let count = |t: &Term| {
@@ -128,16 +129,17 @@ pub fn optimal(terms: &[Term], unit: Unit, budget: f64, replicates: u32) -> Vec<
     terms.iter().map(count).collect()
 }
 
-/// The multiple of `replicates` nearest to `n`, not 0.
+/// The positive multiple of `replicates` nearest to `n`.
 pub fn whole(n: f64, replicates: u32) -> u32 {
     let most = f64::from((1u32 << 30) / replicates);
     (n / f64::from(replicates)).round().clamp(1.0, most) as u32 * replicates
 }
 
-/// Replicates of every film here.
+/// Replicates of every film in this module.
 pub const REPLICATES: usize = 16;
 
-/// Renders slot by slot with so many samples each: the terms, and the tail if the roulette ends. None if interrupted.
+/// Renders each slot separately with the number of samples in `counts`. The slots are the terms and, if the roulette ends
+/// all paths, the tail. None if interrupted.
 pub fn measure<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
@@ -168,7 +170,7 @@ pub fn measure<T: Transport>(
     Some(terms)
 }
 
-/// Renders all terms from one path, and keeps how they depend on each other. None if interrupted.
+/// Renders all terms from one path per sample, and records their covariance. None if interrupted.
 pub fn reuse<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
@@ -190,23 +192,24 @@ pub fn reuse<T: Transport>(
     Some(Reuse { spp, covariance: covariance(&film), rays, seconds: seconds / paths })
 }
 
-/// Pilot and measurement of the three ways.
+/// A pilot run and the measurements of the three ways.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// What the prediction knows: every term alone, from a stream of its own.
+    /// Each term measured separately, from random numbers that the measurements do not use. The predictions use these
+    /// values.
     pub pilot: Vec<Term>,
-    /// The same for prefix reuse.
+    /// The pilot run of prefix reuse.
     pub pilot_reuse: Reuse,
-    /// As many samples for every term.
+    /// First way: the same number of samples for every term.
     pub equal: Vec<Term>,
-    /// n_k ∝ σ_k/√c_k of the pilot, by rays.
+    /// Second way: n_k ∝ σ_k/√c_k from the pilot run, with cost in rays.
     pub optimal: Vec<Term>,
-    /// All terms from one path.
+    /// Third way: all terms from one path.
     pub reuse: Reuse,
 }
 
-/// Measures the three ways at about the rays that `settings.spp` samples of every term take; the pilot takes `pilot` samples
-/// of its own. Counts are rounded to multiples of [`REPLICATES`]. None if interrupted.
+/// Measures the three ways at equal cost: about the rays that `settings.spp` samples of every term take. The pilot run takes
+/// `pilot` additional samples of every term. Counts are rounded to multiples of [`REPLICATES`]. None if interrupted.
 pub fn study(scene: &Scene, settings: &Settings, pilot: u32, progress: Progress<'_>) -> Option<Study> {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let (single, prefix) = (SingleTerm(settings.plan()), Prefix(settings.plan()));
