@@ -164,9 +164,11 @@ impl Session {
         paragraphs(&blocks)
     }
 
-    /// Where which files are.
+    /// The folder and the names of the files. The names begin a new line if the line would be longer than 80 columns.
     pub fn written(&self, files: &[String]) -> String {
-        format!("written to {}: {}", self.folder.display(), files.join(", "))
+        let (folder, files) = (format!("written to {}:", self.folder.display()), files.join(", "));
+        let long = folder.chars().count() + 1 + files.chars().count() > 80;
+        folder + if long { "\n" } else { " " } + &files
     }
 
     /// How it ends.

@@ -38,7 +38,7 @@ pub struct Asked {
     /// Estimators of the terms; the first is the one that is compared with the other worlds.
     pub estimators: Vec<Estimator>,
     /// The schedule with the most efficiency, in place of those of the settings.
-    pub optimal_roulette: bool,
+    pub optimal_roulette: Option<roulette::Aim>,
     /// A guide of about so many patches.
     pub guide: Option<usize>,
     /// Every strategy of the bidirectional estimator.
@@ -59,7 +59,7 @@ impl Default for Asked {
         Self {
             worlds: World::ALL.to_vec(),
             estimators: vec![Estimator::Prefix],
-            optimal_roulette: false,
+            optimal_roulette: None,
             guide: None,
             strategies: false,
             against_rays: None,
@@ -151,8 +151,8 @@ impl Run {
     /// # Errors
     /// If the scene has no matrix, or no mesh for a guide.
     pub fn solve(&mut self, progress: Progress<'_>) -> Result<(), MatrixError> {
-        if self.asked.optimal_roulette
-            && let Some(best) = roulette::optimal(&self.scene, &self.settings, progress)
+        if let Some(aim) = self.asked.optimal_roulette
+            && let Some(best) = roulette::optimal(&self.scene, &self.settings, aim, progress)
         {
             (self.settings.roulette, self.settings.path_roulette) = (best.roulette.clone(), best.roulette);
         }
