@@ -194,7 +194,7 @@ pub fn can_be_sampled(scene: &Scene, estimator: Option<Estimator>, settings: &Se
 /// A schedule where nothing else will do: the study keeps all samples of its terms, or compares them, and has none to find.
 pub fn fixed(asked: Option<&Schedule>) -> Result<Option<Roulette>, Failure> {
     match asked {
-        Some(Schedule::Optimal) => Err(Failure::Usage(
+        Some(Schedule::Optimal(_)) => Err(Failure::Usage(
             "error: --roulette optimal has no part in this\nhelp: `fredholm roulette SCENE --optimise` finds it; give its table here".into(),
         )),
         asked => needs_no_guide(asked).map(|()| asked.and_then(Schedule::given)),

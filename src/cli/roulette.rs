@@ -1,9 +1,9 @@
-//! `fredholm roulette [SCENE]`: schedules predicted from the cross moments of one recording, verified by rendering them, and
-//! the best one found.
+//! `fredholm roulette [SCENE]`: predicts schedules from the cross moments of one recording, verifies them by rendering, and
+//! finds the best one for the whole image and for indirect light.
 
-use super::base::{Ending, Failure, names, paragraphs, usage};
+use super::base::{Ending, Failure, names, usage};
 use super::open::Opened;
-use super::options::{Shared, among, size, values};
+use super::options::{Shared, among, one_of, size, values};
 use super::preflight;
 use super::session::Session;
 use fredholm::engine::Settings;
@@ -11,34 +11,45 @@ use fredholm::engine::by_matrix;
 use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::{self, Technique};
 use fredholm::progress::Progress;
-use fredholm::report::figures::roulette::{self as rows, Row};
+use fredholm::report::figures::roulette::{self as rows, Row, Shares};
+use fredholm::report::text::prose::{listed, wrapped};
 use fredholm::report::text::summary::{self, Summary};
 use fredholm::report::text::table;
 use fredholm::report::write_atomically;
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::load;
 use fredholm::scene::{Description, Scene, Selection};
-use fredholm::stats::Noise;
-use fredholm::study::roulette::{self, Radii, Schedule};
+use fredholm::stats::schedule::share;
+use fredholm::stats::{Noise, Part};
+use fredholm::study::roulette::{self, Aim, Optimal, Radii, Relative, Schedule};
 use fredholm::terms::World;
-use fredholm::terms::cross_moments::{Recorded, Value};
+use fredholm::terms::cross_moments::Recorded;
 
-/// Shown below the help.
+/// Text below the help.
 pub const EXAMPLES: &str = "Examples:
-  fredholm roulette cornell                                     predictions alone
-  fredholm roulette cornell --verify                            each also rendered: z beside it
-  fredholm roulette cornell --optimise                          the best schedule, and by how much
+  fredholm roulette cornell                        which of nine schedules is best, predicted
+  fredholm roulette cornell --verify               each also rendered: are the predictions right?
+  fredholm roulette cornell --optimise             the best schedules, and how much they gain
+  fredholm roulette cornell --optimise --for indirect
   fredholm roulette furnace --schedules none,constant:0.1@0,table:0,0.2,0.4
 
-Paths are recorded without roulette up to vertex K. V is the variance of one sample of the whole image,
-averaged over pixels and channels; 1/(V rays) is the efficiency. Every schedule that does not depend on the
-path is predicted up to vertex K; from there on all go on with q = 1 − the largest albedo of the scene.
-albedo and throughput depend on the path: they are measured only.
+What is optimised: the efficiency 1/(variance × rays) of one sample. The variance is averaged over
+pixels and channels. --for says of which quantity:
+  whole     the whole image, all terms T^k E: the schedule `optimal`
+  indirect  indirect light, the terms k ≥ 2:  the schedule `optimal-indirect`
+The two differ where T0, emission seen directly, dominates the variance (in cornell the edge of the
+lamp). Ending paths cannot reduce T0. The whole-image optimum then ends most paths at once, because
+new camera paths are worth more, and indirect light becomes noisier. `--roulette optimal` of the
+other commands means the whole image; they also accept optimal-indirect.
+
+Paths are recorded without roulette up to vertex K. Every schedule whose q does not depend on the
+path is predicted up to vertex K; from there on all continue with q = 1 − the largest albedo of the
+scene. albedo and throughput depend on the path: they can only be measured.
 
 Written: roulette.csv, roulette.svg, roulette.png, summary.json (with the cross moments).
 Exit code 1: a measured variance contradicts its prediction.";
 
-/// What is shown unless other schedules are asked for.
+/// Schedules that are compared unless others are given.
 const USUAL: &str = "none,lecture,constant:0.1@0,constant:0.2@0,constant:0.3@0,constant:0.5@0,constant:0.3@2,\
                      table:0,0.1,0.2,0.3,albedo";
 
@@ -50,7 +61,8 @@ pub struct Args {
     pub scene: String,
     /// Schedules to compare, with commas [default: nine usual ones]
     ///
-    /// none, lecture, constant:Q[@V], table:q0,q1,…, albedo[@V], throughput[@V], optimal
+    /// none, lecture, constant:Q[@V], table:q0,q1,…, albedo[@V], throughput[@V], optimal,
+    /// optimal-indirect
     #[arg(long, value_name = "SCHEDULE,…", verbatim_doc_comment)]
     pub schedules: Option<String>,
     /// Render every schedule and compare what is measured with what was predicted
@@ -59,6 +71,12 @@ pub struct Args {
     /// Find the best schedule, and measure its gain over the lecture's and over albedo roulette
     #[arg(long, visible_alias = "optimize")]
     pub optimise: bool,
+    /// The quantity whose variance × rays counts: whole or indirect [default: both]
+    ///
+    /// whole: the whole image, all terms T^k E. indirect: indirect light, the terms k ≥ 2.
+    #[arg(long = "for", value_name = "QUANTITY", value_parser = one_of::<Aim>(Aim::ALL), hide_possible_values = true,
+        verbatim_doc_comment)]
+    pub aim: Option<Aim>,
     /// Samples per pixel, of the recording and of every render
     #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(4..=1 << 20))]
     pub spp: u32,
@@ -85,8 +103,15 @@ pub struct Args {
     pub shared: Shared,
 }
 
-/// A schedule by the name it was typed with; `None` is to be found.
-type Asked = (String, Option<estimator::Roulette>);
+/// A schedule as it was typed.
+type Asked = (String, Schedule);
+
+impl Args {
+    /// The quantities that are judged.
+    fn aims(&self) -> Vec<Aim> {
+        self.aim.map_or(Aim::ALL.to_vec(), |aim| vec![aim])
+    }
+}
 
 /// Predicts, verifies, optimises.
 pub fn run(args: &Args) -> Result<Ending, Failure> {
@@ -110,14 +135,17 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
     let Some(recorded) = roulette::pilot(&scene, &settings, args.spp, session.progress()) else {
         return Ok(session.nothing_to_save(""));
     };
-    let best = roulette::best(&recorded, &scene);
-    let beyond = roulette::beyond(&scene);
-    let given = |(name, given): Asked| Some((name, given.or(best.as_ref().map(|b| b.roulette.clone()))?));
+    let best: Vec<Optimal> = Aim::ALL.into_iter().filter_map(|aim| roulette::best(&recorded, &scene, aim)).collect();
+    let given = |(name, asked): Asked| {
+        let found = || best.iter().find(|b| asked.aim() == Some(b.aim)).map(|b| b.roulette.clone());
+        Some((name, asked.given().or_else(found)?))
+    };
     let predicted = asked.into_iter().filter_map(given);
-    let predicted = predicted.map(|(name, s)| predict(name, s, &recorded, settings.max_bounces, beyond));
+    let predicted = predicted.map(|(name, s)| predict(name, s, &recorded, &scene, settings.max_bounces));
     let (mut all, schedules): (Vec<Row>, Vec<estimator::Roulette>) = predicted.unzip();
     measure(args, (&scene, &settings), &mut all, &schedules, session.progress());
 
+    let beyond = roulette::beyond(&scene);
     let mut record = Summary {
         spp: args.spp.into(),
         max_bounces: settings.max_bounces,
@@ -131,21 +159,42 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
     rows::draw(&all, &title, &session.caption())?.write(&session.folder, "roulette")?;
     session.sign(&record)?;
     let doubts = doubts(&all, &description, &scene);
-    let warnings = warnings(&doubts, &recorded);
-    session.warn(&warnings);
-    session.show(&record, || {
-        let found = if args.optimise { gains(&all, best.as_ref()) } else { String::new() };
-        let warned = warnings.iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n");
-        let head = head(args, &record, &recorded, beyond);
-        paragraphs(&[head, rows::table(&all), found, warned, session.written(&record.files)])
-    })?;
+    session.warn(&warnings(&doubts, &recorded));
     // a variance that cannot be measured contradicts nothing
-    let told = all.iter().filter(|r| doubts.iter().all(|d| d.0 != r.name));
-    let contradicted = told.filter_map(Row::z).any(|z| z.abs() > critical(all.len(), recorded.replicates()));
+    let told = || all.iter().filter(|r| doubts.iter().all(|d| d.0 != r.name));
+    let critical = critical(all.len(), recorded.replicates());
+    let contradicted = told().flat_map(|r| [r.z(), r.indirect_z()]).flatten().any(|z| z.abs() > critical);
+    session.show(&record, || {
+        let verified = args.verify.then(|| rows::verified(told(), critical)).flatten().unwrap_or_default();
+        let mut details = vec![
+            head(args, &record, &recorded, beyond),
+            rows::table(&all),
+            optimal_details(&all, &best),
+            warnings(&doubts, &recorded).iter().map(|w| format!("warning: {w}\n")).collect(),
+        ];
+        let (answer, mut tables) = if args.optimise {
+            rows::optima(&all, &shares(&recorded), &args.aims())
+        } else {
+            let doubtful: Vec<&str> = doubts.iter().map(|d| d.0.as_str()).collect();
+            (rows::answer(&all, &args.aims()), vec![rows::small_table(&all, &doubtful)])
+        };
+        let named = |d: &&(String, Radii)| !args.optimise || rivals(args).contains(&d.0.as_str());
+        let doubts: Vec<&(String, Radii)> = doubts.iter().filter(named).collect();
+        let warning = short_warning(&doubts, &recorded, args.verify, (settings.max_bounces, beyond));
+        // with --optimise a prediction that holds is a detail
+        let quiet = args.optimise && !contradicted;
+        details.insert(1, if quiet { verified.clone() } else { String::new() });
+        let below = [if quiet { "" } else { &verified }, &warning].map(str::trim_end).join("\n");
+        match tables.last_mut().filter(|last| quiet && !last.is_empty()) {
+            Some(last) => *last += &below,
+            None => tables.push(below.trim_start().into()),
+        }
+        session.text(&answer, &tables, &details, &record.files)
+    })?;
     Ok(session.ending(contradicted))
 }
 
-/// Renders what is to be rendered.
+/// Renders the schedules that must be rendered.
 fn measure(
     args: &Args,
     (scene, settings): (&Scene, &Settings),
@@ -155,8 +204,7 @@ fn measure(
 ) {
     if args.verify || args.optimise {
         for (row, schedule) in all.iter_mut().zip(schedules) {
-            let rival = ["optimal", "lecture", "albedo"].contains(&row.name.as_str());
-            if args.verify || rival {
+            if args.verify || rivals(args).contains(&row.name.as_str()) {
                 let measured = roulette::measure(scene, settings, schedule, args.spp, progress);
                 row.measured = measured.map(|m| Noise::measured(&m));
             }
@@ -169,20 +217,32 @@ fn measure(
     }
 }
 
+/// The schedules that --optimise always renders.
+fn rivals(args: &Args) -> Vec<&'static str> {
+    ["lecture", "albedo"].into_iter().chain(args.aims().into_iter().map(Aim::schedule_name)).collect()
+}
+
+/// The settings, for --verbose.
 fn head(args: &Args, record: &Summary, recorded: &Recorded, beyond: f64) -> String {
     let Summary { command, seed, spp, width, height, max_bounces, .. } = record;
     format!(
         "{command}\nseed {seed}, {spp} spp, {width}×{height} pixels, technique {}; {} paths recorded in {:.1} s\n\
-         from vertex K = {max_bounces} on every predicted schedule goes on with q = {beyond:.2}",
+         from vertex K = {max_bounces} on every predicted schedule continues with q = {beyond:.2}",
         args.technique,
         table::count(recorded.paths),
         recorded.seconds
     )
 }
 
-/// |z| beyond which a prediction is contradicted: family level 10⁻³ over the schedules.
+/// Shares of the variance without roulette.
+fn shares(recorded: &Recorded) -> Shares {
+    let terms = (0..recorded.all.slots / 2).map(|k| share(recorded, Part::Term(k))).collect();
+    Shares { terms, indirect: share(recorded, Part::INDIRECT) }
+}
+
+/// |z| beyond which a prediction is contradicted. The family level 10⁻³ is shared by two quantities of every schedule.
 fn critical(schedules: usize, replicates: u64) -> f64 {
-    fredholm::stats::critical(1e-3 / schedules as f64, replicates as f64 - 1.0)
+    fredholm::stats::critical(1e-3 / (2 * schedules) as f64, replicates as f64 - 1.0)
 }
 
 fn schedules(args: &Args) -> Result<Vec<Asked>, Failure> {
@@ -191,19 +251,19 @@ fn schedules(args: &Args) -> Result<Vec<Asked>, Failure> {
     for name in values(list) {
         let schedule: Schedule =
             name.parse().map_err(|why: String| usage(&why, &format!("for example --schedules {USUAL}")))?;
-        all.push((name, schedule.given()));
+        all.push((name, schedule));
     }
     if args.optimise {
-        for rival in ["lecture", "albedo", "optimal"] {
-            if !all.iter().any(|(name, _)| name == rival) {
-                all.push((rival.into(), rival.parse().ok()));
+        for rival in rivals(args) {
+            if let (false, Ok(schedule)) = (all.iter().any(|(name, _)| name == rival), rival.parse()) {
+                all.push((rival.into(), schedule));
             }
         }
     }
     Ok(all)
 }
 
-/// The scene, in a small picture unless a size was asked for.
+/// The scene, with an image of at most 64 pixels a side unless --size is given.
 fn scene(args: &Args, session: &mut Session) -> Result<Opened, Failure> {
     const SIDE: u32 = 64;
     let size = match args.size {
@@ -217,75 +277,106 @@ fn scene(args: &Args, session: &mut Session) -> Result<Opened, Failure> {
     session.open(&args.scene, &args.shared.changes, size)
 }
 
-/// A row with its prediction, and the schedule as it is rendered: as a table up to vertex K where there is one.
+/// A row with its prediction, and the schedule as it is rendered: as a table up to vertex K if q does not depend on the path.
 fn predict(
     name: String,
     schedule: estimator::Roulette,
     recorded: &Recorded,
+    scene: &Scene,
     last: usize,
-    beyond: f64,
 ) -> (Row, estimator::Roulette) {
-    let schedule = schedule.then(last, beyond).unwrap_or(schedule);
+    let schedule = schedule.then(last, roulette::beyond(scene)).unwrap_or(schedule);
     let row = Row {
         name,
         schedule: schedule.to_string(),
         q: (0..last).filter_map(|v| schedule.fixed(v)).collect(),
         predicted: Noise::predicted(recorded, &schedule),
+        relative: Relative::predicted(recorded, scene, &schedule),
         replicates: recorded.replicates(),
         ..Row::default()
     };
     (row, schedule)
 }
 
-/// What is gained by the best schedule: predicted, and measured by rays and by seconds.
-fn gains(all: &[Row], best: Option<&roulette::Optimal>) -> String {
-    let row = |name: &str| all.iter().find(|r| r.name == name);
-    let (Some(best), Some(optimal)) = (best, row("optimal")) else { return String::new() };
-    let mut lines = vec![format!(
-        "optimal: {}\npredicted: {:.3} ± {:.3} times the efficiency of the lecture's schedule",
-        best.roulette, best.gain.value, best.gain.std_error
-    )];
-    for rival in ["lecture", "albedo"] {
-        if let (Some(a), Some(other)) = (optimal.measured.as_ref(), row(rival))
-            && let Some(b) = other.measured.as_ref()
-        {
-            let by_rays = ratio(a.efficiency, b.efficiency);
-            let mut line =
-                format!("measured: {:.3} ± {:.3} times that of {rival} per ray", by_rays.value, by_rays.std_error);
-            if let (Some(s), Some(t)) = (optimal.seconds, other.seconds) {
-                line += &format!(", {:.3} times per second", b.all.value * t / (a.all.value * s));
+/// The optimal schedules as tables that can be typed, their predicted gain, and for whole image the gain per second.
+fn optimal_details(all: &[Row], best: &[Optimal]) -> String {
+    let mut lines = vec![];
+    for b in best {
+        let name = b.aim.schedule_name();
+        let Some(own) = all.iter().find(|r| r.name == name) else { continue };
+        let gain = format!("{:.3} ± {:.3}", b.gain.value, b.gain.std_error);
+        lines.push(format!("{name}: {}", b.roulette));
+        lines.push(format!(
+            "  predicted: {gain} times the efficiency of the lecture's schedule for {}",
+            rows::quantity(b.aim)
+        ));
+        let variance = |r: &Row| {
+            let m = r.measured.as_ref()?;
+            Some(if b.aim == Aim::Whole { m.all.value } else { m.indirect.value } * r.seconds?)
+        };
+        for rival in ["lecture", "albedo"] {
+            let other = all.iter().find(|r| r.name == rival).and_then(variance);
+            if let (Some(own), Some(other)) = (variance(own), other) {
+                lines.push(format!("  measured: {:.3} times that of {rival} per second", other / own));
             }
-            lines.push(line);
         }
     }
     lines.join("\n")
 }
 
-/// a/b of two independent values.
-fn ratio(a: Value, b: Value) -> Value {
-    let value = a.value / b.value;
-    Value { value, std_error: value * (a.std_error / a.value).hypot(b.std_error / b.value) }
-}
-
-/// The schedules whose variance, or whose measured variance, may be infinite, were they to go on for ever as they were typed.
-fn doubts(all: &[Row], description: &Description, scene: &Scene) -> Vec<(String, String)> {
+/// The schedules whose variance, or whose measured variance, may be infinite if they continue for ever as they were typed.
+fn doubts(all: &[Row], description: &Description, scene: &Scene) -> Vec<(String, Radii)> {
     let coarse = by_matrix::coarse(description, scene);
     let doubt = |row: &Row| {
         let q = roulette::constant(&row.name.parse().ok()?)?;
-        let what = Radii::new(coarse.as_ref().map(|m| &m.radiosity), scene, q).warning()?;
-        Some((row.name.clone(), what))
+        let radii = Radii::new(coarse.as_ref().map(|m| &m.radiosity), scene, q);
+        radii.warning().map(|_| (row.name.clone(), radii))
     };
     all.iter().filter_map(doubt).collect()
 }
 
-/// What spoils an error bar.
-fn warnings(doubts: &[(String, String)], recorded: &Recorded) -> Vec<String> {
-    let mut out: Vec<String> = doubts.iter().map(|(name, what)| format!("{name} {what}")).collect();
+/// One line for each schedule whose error bars cannot be trusted.
+fn warnings(doubts: &[(String, Radii)], recorded: &Recorded) -> Vec<String> {
+    let mut out: Vec<String> = doubts.iter().filter_map(|(name, r)| Some(format!("{name} {}", r.warning()?))).collect();
     if !out.is_empty() {
-        out.push("predictions are finite, since all go on with the q above from vertex K on".into());
+        out.push("the predictions are finite, because all schedules continue with the q above from vertex K on".into());
     }
     if recorded.non_finite > 0 {
         out.push(format!("{} samples were not finite; they are left in the sums", recorded.non_finite));
     }
     out
+}
+
+/// The same in one paragraph: with `measured` also the schedules whose measured variance has no error. `beyond` is K, and q
+/// from vertex K on.
+fn short_warning(
+    doubts: &[&(String, Radii)],
+    recorded: &Recorded,
+    measured: bool,
+    (last, beyond): (usize, f64),
+) -> String {
+    let of = |infinite: bool| {
+        let chosen = doubts.iter().filter(|d| (d.1.second >= 1.0) == infinite);
+        chosen.map(|d| format!("`{}`", d.0)).collect::<Vec<_>>()
+    };
+    let (infinite, without_error) = (of(true), if measured { of(false) } else { vec![] });
+    let may = if doubts.iter().any(|d| d.1.bounds) { "may be" } else { "is" };
+    let mut sentences = vec![];
+    if !infinite.is_empty() {
+        sentences.push(format!(
+            "warning: the variance of {} {may} infinite; the predictions are finite because they continue with q = {beyond:.2} \
+             from vertex {last} on.",
+            listed(&infinite)
+        ));
+    }
+    if !without_error.is_empty() {
+        sentences.push(format!(
+            "warning: the error of the measured variance of {} {may} infinite, so their z mean nothing.",
+            listed(&without_error)
+        ));
+    }
+    if recorded.non_finite > 0 {
+        sentences.push(format!("warning: {} samples were not finite; they are left in the sums.", recorded.non_finite));
+    }
+    sentences.iter().map(|s| wrapped(s)).collect::<Vec<_>>().join("\n")
 }

@@ -31,8 +31,26 @@ pub enum Part {
     Term(usize),
     /// Everything longer than K.
     Tail,
+    /// The sum of all terms from this one on, with the tail.
+    From(usize),
     /// The whole image.
     All,
+}
+
+impl Part {
+    /// Indirect light: Σ_{k≥2} T^k E, with the tail. Light that arrives after at least one bounce between lamp and surface
+    /// seen.
+    pub const INDIRECT: Self = Self::From(2);
+
+    /// Returns true if the part contains term `k`. `tail` is the number K + 1 under which the tail counts as a term.
+    fn contains(self, k: usize, tail: usize) -> bool {
+        match self {
+            Self::Term(own) => own == k && k < tail,
+            Self::Tail => k == tail,
+            Self::From(first) => k >= first.min(tail),
+            Self::All => true,
+        }
+    }
 }
 
 /// Noise and cost as functions of the probabilities of reaching each vertex.
@@ -54,11 +72,7 @@ impl Separable {
         for (a, rays) in moments.rays.iter().enumerate() {
             of.rays[Vertices::vertex(a)] += rays;
         }
-        let wanted = |&a: &usize| match part {
-            Part::Term(k) => Vertices::term(a) == k && k < vertices,
-            Part::Tail => Vertices::term(a) == vertices,
-            Part::All => true,
-        };
+        let wanted = |&a: &usize| part.contains(Vertices::term(a), vertices);
         for a in (0..moments.slots).filter(wanted) {
             for b in (0..moments.slots).filter(wanted) {
                 of.second[Vertices::vertex(a.min(b))] += moments.second(a, b);
@@ -104,10 +118,14 @@ pub struct Noise {
     pub tail: Value,
     /// V of the whole image.
     pub all: Value,
+    /// V of indirect light, [`Part::INDIRECT`].
+    pub indirect: Value,
     /// Rays per path.
     pub rays: Value,
     /// 1/(V · rays) of the whole image.
     pub efficiency: Value,
+    /// 1/(V · rays) of indirect light.
+    pub indirect_efficiency: Value,
 }
 
 impl Noise {
@@ -116,43 +134,62 @@ impl Noise {
     pub fn predicted(recorded: &Recorded, schedule: &Roulette) -> Option<Self> {
         let last = (recorded.all.slots / 2).checked_sub(1)?;
         let reach = reach(schedule, last)?;
-        let variance = |part: Part| recorded.value(|m| Separable::of(m, part).variance(&reach));
-        Some(Self {
-            terms: (0..=last).map(|k| variance(Part::Term(k))).collect(),
-            tail: variance(Part::Tail),
-            all: variance(Part::All),
-            rays: recorded.value(|m| Separable::of(m, Part::All).cost(&reach)),
-            efficiency: recorded.value(|m| 1.0 / Separable::of(m, Part::All).work(&reach)),
-        })
+        let variance = |m: &CrossMoments, part: Part| Separable::of(m, part).variance(&reach);
+        Some(Self::of(recorded, last, variance, |m| Separable::of(m, Part::All).cost(&reach)))
     }
 
     /// Measured noise and cost, from the moments of an estimator whose slots are the terms and the tail, with whatever
     /// roulette it used.
     pub fn measured(recorded: &Recorded) -> Self {
-        let last = recorded.all.slots.saturating_sub(1);
-        let variance = |m: &CrossMoments, slots: std::ops::RangeInclusive<usize>| {
-            let pairs = slots.clone().flat_map(|a| slots.clone().map(move |b| (a, b)));
-            pairs.map(|(a, b)| m.second(a, b) - m.product(a, b)).sum::<f64>()
-        };
-        let rays = |m: &CrossMoments| m.rays.iter().sum::<f64>();
+        let last = recorded.all.slots.saturating_sub(2);
+        Self::of(recorded, last, measured_variance, |m| m.rays.iter().sum())
+    }
+
+    /// All numbers, given the variance of each part and the rays per path as functions of the moments.
+    fn of(
+        recorded: &Recorded,
+        last: usize,
+        variance: impl Fn(&CrossMoments, Part) -> f64,
+        rays: impl Fn(&CrossMoments) -> f64,
+    ) -> Self {
+        let value = |part: Part| recorded.value(|m| variance(m, part));
+        let efficiency = |part: Part| recorded.value(|m| 1.0 / (variance(m, part) * rays(m)));
         Self {
-            terms: (0..last).map(|k| recorded.value(|m| variance(m, k..=k))).collect(),
-            tail: recorded.value(|m| variance(m, last..=last)),
-            all: recorded.value(|m| variance(m, 0..=last)),
-            rays: recorded.value(rays),
-            efficiency: recorded.value(|m| 1.0 / (variance(m, 0..=last) * rays(m))),
+            terms: (0..=last).map(|k| value(Part::Term(k))).collect(),
+            tail: value(Part::Tail),
+            all: value(Part::All),
+            indirect: value(Part::INDIRECT),
+            rays: recorded.value(&rays),
+            efficiency: efficiency(Part::All),
+            indirect_efficiency: efficiency(Part::INDIRECT),
         }
     }
 }
 
-/// The ratio of the efficiencies of two schedules from one recording. Its error accounts for the samples that both share.
-pub fn gain(recorded: &Recorded, of: &Roulette, over: &Roulette) -> Option<Value> {
+/// V of a part of the image, measured: from moments whose slots are the terms and the tail.
+pub fn measured_variance(m: &CrossMoments, part: Part) -> f64 {
+    let tail = m.slots.saturating_sub(1);
+    let slots = || (0..m.slots).filter(|&k| part.contains(k, tail));
+    slots().flat_map(|a| slots().map(move |b| (a, b))).map(|(a, b)| m.second(a, b) - m.product(a, b)).sum()
+}
+
+/// The ratio of the efficiencies of two schedules for a part of the image, from one recording. Its error accounts for the
+/// samples that both share. None if a schedule depends on the path.
+pub fn gain(recorded: &Recorded, of: &Roulette, over: &Roulette, part: Part) -> Option<Value> {
     let last = (recorded.all.slots / 2).checked_sub(1)?;
     let (of, over) = (reach(of, last)?, reach(over, last)?);
     Some(recorded.value(|m| {
-        let s = Separable::of(m, Part::All);
+        let s = Separable::of(m, part);
         s.work(&over) / s.work(&of)
     }))
+}
+
+/// The share of a part in the variance of the whole image, without roulette before vertex K.
+pub fn share(recorded: &Recorded, part: Part) -> Value {
+    recorded.value(|m| {
+        let without = vec![1.0; m.slots / 2];
+        Separable::of(m, part).variance(&without) / Separable::of(m, Part::All).variance(&without)
+    })
 }
 
 #[cfg(test)]
@@ -247,6 +284,34 @@ pub(super) mod tests {
             }
             assert!((lo - best).abs() < 1e-4, "ρ = {rho}, σ = {sigma}: {lo}, expected {best}");
         }
+    }
+
+    /// The sum of all slots from term k on has the variance of the matrix sum over these slots, for a moment matrix without
+    /// structure: nothing of an earlier term enters.
+    #[test]
+    fn a_sum_from_some_term_on_leaves_earlier_terms_out() {
+        let last = 3;
+        let slots = Vertices::slots_for(last);
+        let entry = |a: usize, b: usize| 1.0 + ((a * b + a + b) % 7) as f64;
+        let second: Vec<f64> = (0..slots * slots).map(|i| entry(i / slots, i % slots)).collect();
+        let product: Vec<f64> = second.iter().map(|x| 0.25 * x).collect();
+        let m = CrossMoments {
+            slots,
+            second: [0, 1, 2].map(|_| second.clone()),
+            product: [0, 1, 2].map(|_| product.clone()),
+            rays: vec![1.0; slots],
+        };
+        let q = [1.0, 0.8, 0.4, 0.1];
+        for first in 0..=last + 1 {
+            let kept = || (0..slots).filter(|&a| Vertices::term(a) >= first);
+            let pairs = kept().flat_map(|a| kept().map(move |b| (a, b)));
+            let expected: f64 = pairs.map(|(a, b)| entry(a, b) * (1.0 / q[Vertices::vertex(a.min(b))] - 0.25)).sum();
+            near(Separable::of(&m, Part::From(first)).variance(&q), expected, &format!("terms from {first} on"));
+        }
+        let same = |a: Part, b: Part| assert_eq!(Separable::of(&m, a), Separable::of(&m, b), "{a:?} {b:?}");
+        same(Part::From(0), Part::All);
+        same(Part::From(last + 1), Part::Tail);
+        same(Part::INDIRECT, Part::From(2));
     }
 
     #[test]

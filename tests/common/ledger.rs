@@ -157,6 +157,7 @@ pub const ENTRIES: &[Entry] = &[
     entry("recorded_moments_are_those_of_the_matrix", 120),
     entry("predicted_variances_are_measured", 36),
     entry("predicted_variances_are_measured_at_length", 378),
+    entry("predicted_variances_of_later_terms_are_measured", 15),
     entry("the_best_schedule_is_the_most_efficient", 11),
     // tests/points.rs
     entry("sobol_points_move_no_mean", 2_000),

@@ -12,13 +12,20 @@ fn the_command_predicts_verifies_and_optimises() {
     let (code, out, err) = fredholm(desk.path(), line);
     assert_eq!(code, 0, "{out}{err}");
     assert!(out.lines().all(|l| l.starts_with("fredholm ") || l.chars().count() <= 100), "{out}");
-    for word in ["table:0,0.2,0.1", "measured", "times that of lecture per ray", "times that of albedo per ray"] {
-        assert!(out.contains(word), "{word}: {out}");
+    for word in [
+        "For the whole image,",
+        "For indirect light (terms k ≥ 2)",
+        "Measured: for the whole image",
+        "times the rays of `albedo`",
+    ] {
+        assert!(out.replace('\n', " ").contains(word), "{word}: {out}");
     }
     let folder = desk.path().join("out");
     let csv = std::fs::read_to_string(folder.join("roulette.csv")).unwrap();
-    // five schedules of seven terms, tail and all
-    assert_eq!(csv.lines().count(), 1 + 5 * 9);
+    // six schedules of seven terms, tail, all, and indirect light
+    assert_eq!(csv.lines().count(), 1 + 6 * 10);
+    let indirect = csv.lines().filter(|l| l.contains(",indirect,"));
+    assert_eq!(indirect.filter(|l| l.starts_with("\"optimal-indirect\"")).count(), 1, "{csv}");
     let summary = fredholm::report::text::summary::read(&folder.join("summary.json")).unwrap();
     let moments = summary.cross_moments.unwrap();
     assert_eq!(moments["slots"].as_array().unwrap().len(), 14);
@@ -38,6 +45,9 @@ fn the_best_schedule_can_be_asked_for_wherever_there_is_roulette() {
         &format!("sweep sphere --over roulette --schedules lecture,albedo,optimal {common} -o a"),
     );
     assert!(code == 0 && out.contains("optimal") && err.contains("optimal is table:"), "{out}{err}");
+    let (code, _, err) =
+        fredholm(desk.path(), &format!("sweep sphere --over roulette --values optimal-indirect {common} -o i"));
+    assert!(code == 0 && err.contains("optimal-indirect is table:"), "{err}");
     let (code, out, err) = fredholm(desk.path(), &format!("render sphere --roulette optimal {common} -o b"));
     assert!(code == 0 && out.contains("roulette: path tracer table:"), "{out}{err}");
     let (code, _, err) = fredholm(desk.path(), &format!("series sphere --worlds terms {common} -o c"));
@@ -48,4 +58,32 @@ fn the_best_schedule_can_be_asked_for_wherever_there_is_roulette() {
     assert_eq!((moments["paths"].as_u64(), moments["max_bounces"].as_u64()), (Some(512), Some(3)));
     // the eye is a slot of its own: its ray is the only one before vertex 1 but for a connection
     assert_eq!(moments["rays"][0], 1.0);
+}
+
+/// `--for` chooses the quantity: only its optimum is found and measured, and the numbers do not depend on it.
+#[test]
+fn the_optimum_is_that_of_the_quantity_that_was_asked_for() {
+    let desk = tempfile::TempDir::new().unwrap();
+    let small = "roulette cornell --size 16x16 --spp 64 --max-bounces 6 --schedules none --optimise -q";
+    let column = |folder: &str, name: &str| {
+        let csv = std::fs::read_to_string(desk.path().join(folder).join("roulette.csv")).unwrap();
+        csv.lines().filter(|l| l.starts_with(&format!("\"{name}\""))).map(String::from).collect::<Vec<_>>()
+    };
+    for (folder, more) in [("both", ""), ("whole", "--for whole"), ("indirect", "--for indirect")] {
+        let (code, out, err) = fredholm(desk.path(), &format!("{small} {more} -o {folder}"));
+        assert_eq!(code, 0, "{out}{err}");
+        assert_eq!(out.contains("For the whole image"), folder != "indirect", "{out}");
+        assert_eq!(out.contains("For indirect light"), folder != "whole", "{out}");
+    }
+    assert!(column("whole", "optimal-indirect").is_empty() && column("indirect", "optimal").is_empty());
+    // all but the seconds
+    let without = |lines: Vec<String>| -> Vec<String> {
+        lines.iter().map(|l| l.rsplit_once(',').unwrap().0.to_owned()).collect()
+    };
+    for (folder, name) in [("whole", "optimal"), ("indirect", "optimal-indirect")] {
+        assert_eq!(without(column(folder, name)), without(column("both", name)));
+    }
+    assert_ne!(column("both", "optimal")[0], column("both", "optimal-indirect")[0]);
+    let (code, _, err) = fredholm(desk.path(), "roulette cornell --for everything");
+    assert!(code == 2 && err.contains("whole"), "{err}");
 }

@@ -39,7 +39,7 @@ fn variance_falls_in_one_render() {
     for words in ["The sum of all terms", "prefix connect", "slope −1", "--over spp"] {
         assert!(svg.contains(words), "{words}");
     }
-    assert!(s.said.out.contains("slope of V ± se"), "{}", s.said.out);
+    assert!(s.said.out.contains("slope ± se"), "{}", s.said.out);
 }
 
 /// MSE = ⟨(m − X)²⟩ − ⟨se_X²⟩ and V = ⟨se_m²⟩ over pixels and channels, with m the images of `same`, whose samples are those of the
@@ -100,9 +100,10 @@ fn squared_errors_need_a_reference_of_its_own_stream() {
 #[test]
 fn a_split_is_predicted_and_measured() {
     let desk = TempDir::new().unwrap();
-    let line = "sweep cornell --over split --size 8x8 --max-bounces 2 --spp 64 -q -o s";
+    let line = "sweep cornell --over split --size 8x8 --max-bounces 2 --spp 64 -q -o s --verbose";
     let said = run(desk.path(), line);
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert!(said.out.starts_with("Among the ways to spend rays, `optimal`"), "{}", said.out);
     for words in ["equal", "optimal", "prefix", "least of any split", "1ᵀC1"] {
         assert!(said.out.contains(words), "{words}\n{}", said.out);
     }

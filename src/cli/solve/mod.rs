@@ -136,7 +136,7 @@ fn asked(args: &RunArgs, worlds: Vec<World>, estimators: Vec<Estimator>) -> Aske
     Asked {
         worlds,
         estimators,
-        optimal_roulette: args.roulette == Some(Schedule::Optimal),
+        optimal_roulette: args.roulette.as_ref().and_then(Schedule::aim),
         guide: (args.guide == Guiding::Radiosity).then(|| args.patches.map_or(guided::PATCHES, |n| n as usize)),
         strategies: args.strategies,
         against_rays: (args.factors == Some(Form::Both)).then(|| preflight::rays(args.rays)),

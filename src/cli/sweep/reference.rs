@@ -1,4 +1,4 @@
-//! What `--reference` of a sweep over spp asks for: a finished run, or a render of its own.
+//! The reference images of a sweep over spp: a finished run, or a separate render.
 
 use super::args::Sweep;
 use crate::cli::base::{Failure, usage};
@@ -17,7 +17,7 @@ use fredholm::study::stages::reference_seed;
 use fredholm::terms::{TermImage, World};
 use std::path::Path;
 
-/// Where a reference comes from.
+/// The source of a reference.
 pub enum Planned {
     Read(Box<Reference>),
     Render(Estimator, Settings),
@@ -38,7 +38,7 @@ impl Planned {
     }
 }
 
-/// What `--reference` asks for, refused before anything is rendered if it cannot be had.
+/// The reference that `--reference` asks for. Refuses one that is not possible before anything is rendered.
 pub fn plan(
     args: &Sweep,
     scene: &Scene,

@@ -1,7 +1,7 @@
-//! `--over split`: the samples of separate terms shared equally, shared best, and one path for all.
+//! `--over split`: separate samples for each term, shared equally or optimally, against one path for all terms.
 
 use super::args::Sweep;
-use crate::cli::base::{Ending, Failure, names, paragraphs, usage};
+use crate::cli::base::{Ending, Failure, names, usage};
 use crate::cli::preflight;
 use crate::cli::session::Session;
 use fredholm::engine::Settings;
@@ -40,8 +40,8 @@ pub fn run(args: &Sweep) -> Result<Ending, Failure> {
             "{command}\nseed {seed}, {width}×{height} pixels, k ≤ {max_bounces}, technique {}, {threads} threads; cost per pixel",
             settings.technique
         );
-        let files = format!("written to {}:\n{}", session.folder.display(), record.files.join(", "));
-        paragraphs(&[head, report::table(&study), files])
+        let tables = [report::small_table(&study), report::samples(&study)];
+        session.text(&report::answer(&study), &tables, &[head, report::table(&study)], &record.files)
     })?;
     Ok(Ending::Ok)
 }
@@ -63,7 +63,7 @@ fn write(session: &Session, study: &Study) -> Result<(), Failure> {
     let (folder, covariance) = (&session.folder, &study.reuse.covariance);
     write_atomically(&folder.join("split.csv"), report::csv(study).as_bytes())?;
     write_atomically(&folder.join("covariance.csv"), report::covariance_csv(covariance).as_bytes())?;
-    report::draw(covariance, study.pilot.len(), "What terms of one path share", &session.caption())?
+    report::draw(covariance, study.pilot.len(), "How the terms of one path are correlated", &session.caption())?
         .write(folder, "covariance")?;
     Ok(())
 }

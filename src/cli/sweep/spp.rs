@@ -1,9 +1,9 @@
-//! `--over spp`: one render for every combination of estimator, technique, schedule and points; variance and squared error
-//! against samples per pixel, read off the film as it fills.
+//! `--over spp`: one render for every combination of estimator, technique, schedule and points. Variance and squared error
+//! against samples per pixel are read from the film while it fills.
 
 use super::args::{Sweep, estimator};
 use super::reference;
-use crate::cli::base::{Ending, Failure, names, paragraphs, usage};
+use crate::cli::base::{Ending, Failure, names, usage};
 use crate::cli::options::{number, values};
 use crate::cli::session::Session;
 use crate::cli::{notes, preflight};
@@ -12,16 +12,17 @@ use fredholm::engine::by_rays::{self, Begins, Estimator};
 use fredholm::estimator::Technique;
 use fredholm::math::Points;
 use fredholm::report::figures::sweep::fall::{self, Fall};
+use fredholm::report::figures::sweep::fall_answer;
 use fredholm::report::text::summary::Summary;
 use fredholm::report::write_atomically;
 use fredholm::scene::Scene;
 use fredholm::stats::Evidence;
 use fredholm::study::convergence::{Recorder, Reference};
-use fredholm::study::roulette::{self, Schedule};
+use fredholm::study::roulette::{self, Aim, Schedule};
 use fredholm::terms::Series;
 use std::str::FromStr;
 
-/// Replicates of a film, and the first number of samples that can be looked at.
+/// Replicates of a film. They are also the first number of samples at which a variance is known.
 const REPLICATES: u32 = 16;
 
 /// One render.
@@ -30,8 +31,8 @@ struct Case {
     /// None: the path tracer.
     estimator: Option<Estimator>,
     settings: Settings,
-    /// The schedule is yet to be found.
-    optimal: bool,
+    /// The quantity for which the best schedule must first be found; None if the schedule is given.
+    optimal: Option<Aim>,
 }
 
 /// Renders every combination once.
@@ -50,8 +51,9 @@ pub fn run(args: &Sweep) -> Result<Ending, Failure> {
     }
     let planned = reference::plan(args, &scene, &description, &cases[0].settings)?;
     session.make_folder(&format!("{}-spp", description.name))?;
-    for case in cases.iter_mut().filter(|c| c.optimal) {
-        if let Some(best) = roulette::optimal(&scene, &case.settings, session.progress()) {
+    for case in &mut cases {
+        let Some(aim) = case.optimal else { continue };
+        if let Some(best) = roulette::optimal(&scene, &case.settings, aim, session.progress()) {
             (case.settings.roulette, case.settings.path_roulette) = (best.roulette.clone(), best.roulette);
         }
     }
@@ -74,7 +76,7 @@ pub fn run(args: &Sweep) -> Result<Ending, Failure> {
     Ok(session.ending(false))
 }
 
-/// Every case in turn, looked at as its film fills.
+/// Renders every case and records the noise while its film fills.
 fn render(
     session: &Session,
     scene: &Scene,
@@ -102,7 +104,7 @@ fn render(
     (falls, series)
 }
 
-/// The values of a list, each with its text; where there is none, the usual one without a text.
+/// The values of a list, each with its text. Without a list: the default value and its label.
 fn listed<T>(
     given: Option<&String>,
     usual: (&str, T),
@@ -123,7 +125,7 @@ fn cases(args: &Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
     let mut cases: Vec<Case> = vec![];
     for (e, estimator) in &estimators {
         for (t, technique) in &techniques {
-            // a walk from the light has no use for a technique
+            // a walk from the light does not use a technique
             if estimator.is_some_and(|e| e.begins() == Begins::AtLight) && *technique != techniques[0].1 {
                 continue;
             }
@@ -136,7 +138,7 @@ fn cases(args: &Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
                     if let Some(given) = schedule.as_ref().and_then(Schedule::given) {
                         (settings.roulette, settings.path_roulette) = (given.clone(), given);
                     }
-                    let optimal = *schedule == Some(Schedule::Optimal);
+                    let optimal = schedule.as_ref().and_then(Schedule::aim);
                     cases.push(Case { label: words.join(" "), estimator: *estimator, settings, optimal });
                 }
             }
@@ -150,7 +152,7 @@ fn cases(args: &Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
     Ok(cases)
 }
 
-/// The numbers of samples to look at; none: after every doubling.
+/// The numbers of samples at which the noise is recorded. Empty: after every doubling.
 fn counts(args: &Sweep) -> Result<Vec<u32>, Failure> {
     let Some(list) = &args.values else { return Ok(vec![]) };
     let of =
@@ -189,5 +191,7 @@ fn people(session: &Session, falls: &[Fall], record: &Summary, reference: Option
             head += &format!("\n{}: {reason}; its V(n) of the tail and of all has no meaning", fall.label);
         }
     }
-    paragraphs(&[head, fall::table(falls), notes::not_finite(&record.series), session.written(&record.files)])
+    let table = fall_answer::small_table(falls, reference.map(|r| r.label.as_str()));
+    let tables = [table, notes::not_finite(&record.series)];
+    session.text(&fall_answer::answer(falls), &tables, &[head, fall::table(falls)], &record.files)
 }

@@ -1,10 +1,10 @@
-//! A sweep over a setting of the terms: rendered again for every value, cost beside gain.
+//! A sweep over a setting of the terms: renders again for every value, and compares cost and noise.
 //!
-//! Every row is what `fredholm series` gives with that value and the same seed, so rows may share random numbers: their
-//! means are not independent of each other.
+//! Every row has the numbers that `fredholm series` gives with this value and the same seed. Rows may therefore share random
+//! numbers, and their means are not independent of each other.
 
 use super::args::{Over, Sweep};
-use crate::cli::base::{Ending, Failure, names, note, paragraphs, usage};
+use crate::cli::base::{Ending, Failure, names, note, usage};
 use crate::cli::options::{number, values};
 use crate::cli::session::Session;
 use crate::cli::{notes, preflight};
@@ -15,15 +15,15 @@ use fredholm::report::figures::sweep;
 use fredholm::report::text::summary::Summary;
 use fredholm::report::write_atomically;
 use fredholm::scene::Scene;
-use fredholm::study::roulette::{self, Schedule};
+use fredholm::study::roulette::{self, Aim, Schedule};
 
 /// One value of the setting.
 struct Case {
     value: String,
     estimator: Estimator,
     settings: Settings,
-    /// The schedule is still to be found.
-    optimal: bool,
+    /// The quantity for which the best schedule must first be found; None if the schedule is given.
+    optimal: Option<Aim>,
 }
 
 /// Renders the terms for every value.
@@ -60,12 +60,13 @@ pub fn run(args: &Sweep) -> Result<Ending, Failure> {
     Ok(session.ending(false))
 }
 
-/// Finds the schedules that are yet to be found, and shares the rays out.
+/// Finds the optimal schedules that were asked for, and with --equal-rays gives every value the same number of rays.
 fn prepare(args: &Sweep, cases: &mut [Case], scene: &Scene, progress: Progress<'_>) -> Result<(), Failure> {
-    for case in cases.iter_mut().filter(|c| c.optimal) {
-        if let Some(best) = roulette::optimal(scene, &case.settings, progress) {
+    for case in cases.iter_mut() {
+        let Some(aim) = case.optimal else { continue };
+        if let Some(best) = roulette::optimal(scene, &case.settings, aim, progress) {
             case.settings.roulette = best.roulette;
-            note(&format!("{}: optimal is {}", case.value, case.settings.roulette));
+            note(&format!("{}: {} is {}", case.value, aim.schedule_name(), case.settings.roulette));
         }
     }
     if args.equal_rays {
@@ -92,10 +93,11 @@ fn write(session: &Session, found: &sweep::Sweep, record: Summary) -> Result<Sum
 fn people(session: &Session, found: &sweep::Sweep, record: &Summary) -> String {
     let Summary { command, seed, width, height, max_bounces, .. } = record;
     let head = format!("{command}\nseed {seed}, {width}×{height} pixels, k ≤ {max_bounces}");
-    paragraphs(&[head, sweep::table(found), notes::not_finite(&record.series), session.written(&record.files)])
+    let tables = [sweep::small_table(found), notes::not_finite(&record.series)];
+    session.text(&sweep::answer(found), &tables, &[head, sweep::table(found)], &record.files)
 }
 
-/// The values of each setting unless told otherwise.
+/// The default values of each setting.
 fn usual(over: Over) -> &'static str {
     match over {
         Over::Branching => "1,2,3,4",
@@ -108,7 +110,7 @@ fn usual(over: Over) -> &'static str {
     }
 }
 
-/// The values asked for, or the usual ones, each with what is to be rendered.
+/// The values that were asked for, or the default ones, each with its settings.
 fn cases(args: &Sweep) -> Result<Vec<Case>, Failure> {
     let (one, mut common) = (args.one_of_each()?, args.settings(if args.over == Over::Branching { 32 } else { 256 }));
     (common.points, common.technique) = (one.points, one.technique);
@@ -116,7 +118,7 @@ fn cases(args: &Sweep) -> Result<Vec<Case>, Failure> {
         common.roulette = given;
     }
     let case = |value: String| {
-        let optimal = one.roulette == Some(Schedule::Optimal);
+        let optimal = one.roulette.as_ref().and_then(Schedule::aim);
         let mut case = Case { value, estimator: one.estimator, settings: common.clone(), optimal };
         let help = || format!("values of --over {} are such as --values {}", args.over, usual(args.over));
         case.set(args.over, args.branching).map_err(|why| usage(&why, &help()))?;
@@ -138,9 +140,9 @@ impl Case {
             Over::Roulette => {
                 let asked: Schedule = value.parse()?;
                 if let Schedule::ByExpectation(end) = asked {
-                    return Err(format!("{end} goes by what a guide expects, and a sweep has none"));
+                    return Err(format!("{end} needs a guide, and a sweep has none"));
                 }
-                self.optimal = asked == Schedule::Optimal;
+                self.optimal = asked.aim();
                 if let Some(given) = asked.given() {
                     self.settings.roulette = given;
                 }
@@ -151,7 +153,8 @@ impl Case {
     }
 }
 
-/// Gives every case about the rays that the dearest takes with its samples: a trial with one sample tells the price.
+/// Gives every case about the rays that the most expensive one takes with its samples. A trial with one sample per pixel
+/// measures the rays of a path.
 fn share_rays(cases: &mut [Case], scene: &Scene) {
     let price = |case: &Case| {
         let trial = Settings { spp: 1, ..case.settings.clone() };

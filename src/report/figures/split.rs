@@ -1,4 +1,4 @@
-//! Where samples go: three ways at one cost, predicted and measured, and the heat map of covariances that explains them.
+//! Three ways to spend the same rays on samples, predicted and measured, and the heat map of covariances that explains them.
 //!
 //! ```text
 //! equal: Σσ² · Σc      optimal: (Σ σ√c)²      prefix: 1ᵀC1 · c       each the product of variance and cost of the sum
@@ -13,6 +13,8 @@ use crate::report::{
     text::{
         csv::Csv,
         number::significant,
+        prose::wrapped,
+        ranking::{Candidate, Ranking},
         table::{Side, aligned},
     },
 };
@@ -20,17 +22,17 @@ use crate::study::split::{REPLICATES, Study, Term, Unit, Work, best, work};
 use crate::terms::covariance::Covariance;
 use plotters::{prelude::RGBColor, style::text_anchor::HPos};
 
-/// One way to spend the samples.
+/// Variance × cost of one way to spend the samples.
 pub struct Way {
     /// `equal`, `optimal` or `prefix`.
     pub name: &'static str,
-    /// From the pilot, by rays and by seconds.
+    /// Variance × cost predicted by the pilot run, by rays and by seconds.
     pub predicted: [Work; 2],
-    /// From the render itself.
+    /// Variance × cost measured by the render, by rays and by seconds.
     pub measured: [Work; 2],
-    /// Rays per pixel that were spent.
+    /// Rays spent per pixel.
     pub rays: f64,
-    /// Seconds per pixel that were spent.
+    /// Seconds spent per pixel.
     pub seconds: f64,
 }
 
@@ -71,7 +73,7 @@ fn number_to(x: f64, digits: usize) -> String {
     if x.is_nan() { "–".into() } else { significant(x, digits) }
 }
 
-/// Two tables: variance × cost of the whole, predicted and measured, and the samples of every term.
+/// Every number in tables: variance × cost of the whole image, predicted and measured, and the samples of every term.
 pub fn table(study: &Study) -> String {
     let ways = ways(study);
     let reuse = ways[2].measured[0].value;
@@ -133,7 +135,87 @@ pub fn table(study: &Study) -> String {
     blocks.join("\n")
 }
 
-/// A line per way and term; `all` for the sum. What is not known is left empty.
+/// The answer: which way needs the fewest rays for the same error, and why.
+pub fn answer(study: &Study) -> String {
+    let noise = format!("{} samples per pixel and term", study.equal.first().map_or(0, |t| t.spp));
+    let mut text = ranking(study).sentence("ways to spend rays", "the whole image", &noise);
+    let total: u32 = study.optimal.iter().map(|t| t.spp).sum();
+    let most = study.optimal.iter().enumerate().max_by_key(|(_, t)| t.spp);
+    let variance: f64 = study.pilot.iter().map(|t| t.variance).sum();
+    if let Some((k, t)) = most
+        && let Some(pilot) = study.pilot.get(k)
+    {
+        text += &format!(
+            " The optimal split gives term k the samples n ∝ σ/√c. So {} gets {:.0} % of the samples: it has {:.0} % of the \
+             variance, and one sample takes {}.",
+            term(study, k),
+            100.0 * f64::from(t.spp) / f64::from(total),
+            100.0 * pilot.variance / variance,
+            if pilot.rays == 1.0 { "one ray".into() } else { significant(pilot.rays, 2) + " rays" }
+        );
+    }
+    wrapped(&text)
+}
+
+/// The ways by Var × rays as measured.
+fn ranking(study: &Study) -> Ranking {
+    let candidate = |w: Way| Candidate {
+        name: w.name.into(),
+        work: w.measured[0].value,
+        relative_error: w.measured[0].std_error / w.measured[0].value,
+        replicates: REPLICATES as u64,
+        without: vec![], // the three ways use different random numbers
+    };
+    Ranking::new(ways(study).into_iter().map(candidate).collect())
+}
+
+/// `T3`, or `tail`.
+fn term(study: &Study, k: usize) -> String {
+    if k + 1 == study.reuse.covariance.slots { "tail".into() } else { format!("T{k}") }
+}
+
+/// The three ways, one line each: Var × rays as predicted and as measured.
+pub fn small_table(study: &Study) -> String {
+    let ranking = ranking(study);
+    let header = ["way", "rays/pixel", "predicted", "± 95 %", "measured", "± 95 %", "relative"];
+    let mut rows = vec![header.map(String::from).to_vec()];
+    for w in ways(study) {
+        let (p, m) = (w.predicted[0], w.measured[0]);
+        rows.push(vec![
+            w.name.into(),
+            number(w.rays),
+            number_to(p.value, 3),
+            half(p.std_error),
+            number_to(m.value, 3),
+            half(m.std_error),
+            ranking.cell_with_error(w.name),
+        ]);
+    }
+    let head = "Variance × rays of the whole image, predicted by a pilot run and measured at about the same rays. \
+                equal: the same n for each term. optimal: n ∝ σ/√c. prefix: all terms from one path.";
+    format!("{}\n{}", wrapped(head), aligned(&rows, &[[Side::Left].as_slice(), &[Side::Right; 6]].concat()))
+}
+
+/// Variance, cost and samples of the first terms and of the tail, one column each.
+pub fn samples(study: &Study) -> String {
+    const MOST: usize = 9;
+    let all = study.pilot.len();
+    // the last column is the tail, or the last term
+    let shown: Vec<usize> = if all > MOST { (0..MOST - 1).chain([all - 1]).collect() } else { (0..all).collect() };
+    let row = |name: &str, of: &dyn Fn(usize) -> String| -> Vec<String> {
+        [name.to_owned()].into_iter().chain(shown.iter().map(|&k| of(k))).collect()
+    };
+    let rows = [
+        row("term", &|k| term(study, k)),
+        row("σ²", &|k| number_to(study.pilot[k].variance, 2)),
+        row("rays c", &|k| number_to(study.pilot[k].rays, 2)),
+        row("n", &|k| study.optimal[k].spp.to_string()),
+    ];
+    let head = "The optimal split: variance σ² and rays c of one sample, and samples n per pixel.";
+    format!("{head}\n{}", aligned(&rows, &[[Side::Left].as_slice(), &[Side::Right; MOST]].concat()))
+}
+
+/// Every number as CSV: one line per way and term, `all` for the sum. Numbers that are not known are left empty.
 pub fn csv(study: &Study) -> String {
     let mut csv = Csv::new(
         "way,k,n,variance,variance_std_error,rays,seconds,predicted_work_rays,predicted_work_rays_std_error,\
@@ -167,8 +249,8 @@ pub fn covariance_csv(c: &Covariance) -> String {
 
 const CELL: f64 = 46.0;
 
-/// Draws correlations beside the share of every entry in the variance of the sum. `slots` of them are shown: all, or all but
-/// a tail that is not known.
+/// Draws the correlations of the terms, and next to them the share of every entry in the variance of the sum. `slots` is the
+/// number of terms shown: all of them, or all but a tail that is not known.
 ///
 /// # Errors
 /// If the plot crate fails, which is a defect.
@@ -186,15 +268,15 @@ pub fn draw(c: &Covariance, slots: usize, title: &str, caption: &Caption) -> Res
         let percent = |v: f64| if v.is_nan() { String::new() } else { signed(format!("{:.1}", 100.0 * v)) };
         let tail = slots == c.slots;
         matrix(page, 70.0, slots, tail, "Correlation of the terms of one path", &correlation, &text)?;
-        matrix(page, 160.0 + side, slots, tail, "Share of 1ᵀC1, per cent", &share, &percent)?;
+        matrix(page, 160.0 + side, slots, tail, "Share of the variance of the sum, per cent", &share, &percent)?;
         let note = format!(
-            "1ᵀC1 = {}, trace C = {}: one path for all terms has {} times the variance of separate paths",
+            "Variance of the sum {}, sum of the variances {}: one path for all terms has {} times the variance of separate paths",
             number(sum),
             number(trace),
             number_to(sum / trace, 3)
         );
         page.text(&note, (24.0, side + 130.0), Words { size: 12.5, ..Words::default() })?;
-        let key = "blue: positive · orange: negative, deeper by the root of the size · empty: a term without noise";
+        let key = "blue: positive · orange: negative; the depth of the colour grows with the root of the size · empty: a term without noise";
         page.text(key, (24.0, side + 150.0), Words { size: 12.5, color: GREY, ..Words::default() })
     })
 }

@@ -6,6 +6,8 @@ pub mod markdown;
 mod null_as_nan;
 pub mod number;
 pub mod pixel_errors;
+pub mod prose;
+pub mod ranking;
 pub(crate) mod rows;
 pub mod sentence;
 pub mod summary;

@@ -39,8 +39,8 @@ pub struct Asked {
     pub worlds: Vec<World>,
     /// Estimators of the terms. The first one is compared with the path tracer and the matrix.
     pub estimators: Vec<Estimator>,
-    /// Use the most efficient roulette schedule instead of the one in the settings.
-    pub optimal_roulette: bool,
+    /// Use the roulette schedule that is most efficient for this quantity instead of the one in the settings.
+    pub optimal_roulette: Option<roulette::Aim>,
     /// Guide the paths by a radiosity solution with about this number of patches.
     pub guide: Option<usize>,
     /// Also render each strategy of the bidirectional estimator separately.
@@ -63,7 +63,7 @@ impl Default for Asked {
         Self {
             worlds: World::ALL.to_vec(),
             estimators: vec![Estimator::Prefix],
-            optimal_roulette: false,
+            optimal_roulette: None,
             guide: None,
             strategies: false,
             against_rays: None,
@@ -162,8 +162,8 @@ impl Run {
     /// # Errors
     /// If the scene has no matrix, or no mesh for a guide.
     pub fn solve(&mut self, progress: Progress<'_>) -> Result<(), MatrixError> {
-        if self.asked.optimal_roulette
-            && let Some(best) = roulette::optimal(&self.scene, &self.settings, progress)
+        if let Some(aim) = self.asked.optimal_roulette
+            && let Some(best) = roulette::optimal(&self.scene, &self.settings, aim, progress)
         {
             (self.settings.roulette, self.settings.path_roulette) = (best.roulette.clone(), best.roulette);
         }

@@ -1,4 +1,4 @@
-//! The noise of several renders against samples per pixel, side by side: table, CSV and figure.
+//! The noise of several renders against samples per pixel: table, CSV and figure.
 //!
 //! ```text
 //! V(n) = c n^b      efficiency = 1 / (n V(n) · rays)   or   1 / (n V(n) · seconds)        rays, seconds: per path
@@ -21,42 +21,42 @@ use crate::stats::Slope;
 use crate::study::convergence::{NoiseCurve, Stand};
 use crate::terms::{Variance, scatter::Scatter};
 
-/// One render as its noise falls.
+/// The noise of one render at growing numbers of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fall {
-    /// Estimator and what tells it from the others.
+    /// The estimator, and the settings in which the renders differ.
     pub label: String,
     /// Pixels.
     pub pixels: usize,
-    /// Cost and scatter at every n.
+    /// Cost and scatter at every number of samples n.
     pub stands: Vec<Stand>,
-    /// The same by term.
+    /// The noise of each term, of the tail and of the sum.
     pub parts: Vec<NoiseCurve>,
 }
 
 impl Fall {
-    /// From the stands of one render. `variance` is that of the tail and of the sum.
+    /// Collects the noise of one render. `variance` says if the variance of the tail and of the sum is finite.
     pub fn new(label: String, pixels: usize, stands: Vec<Stand>, tail_is_known: bool, variance: Variance) -> Self {
         Self { label, pixels, parts: NoiseCurve::all(&stands, tail_is_known, variance), stands }
     }
 
-    /// Rays and seconds per path at a stand.
-    fn cost(&self, s: &Stand) -> [f64; 2] {
+    /// Rays and seconds per path, measured up to one number of samples.
+    pub(super) fn cost(&self, s: &Stand) -> [f64; 2] {
         [s.rays as f64, s.seconds].map(|c| c / (self.pixels as f64 * f64::from(s.spp)))
     }
 
-    /// 1/(n V · rays) and 1/(n V · seconds), per path, of the part at a stand.
+    /// Efficiency of a part with variance `v` at one number of samples: 1/(n V · rays) and 1/(n V · seconds), per path.
     fn efficiency(&self, s: &Stand, v: f64) -> [f64; 2] {
         self.cost(s).map(|c| 1.0 / (f64::from(s.spp) * v * c))
     }
 }
 
 /// `−1.003 ± 0.021`.
-fn slope_text(slope: Option<Slope>) -> String {
+pub(super) fn slope_text(slope: Option<Slope>) -> String {
     slope.map_or("–".into(), |s| plus_minus(s.slope, s.std_error, 2))
 }
 
-fn number(x: f64) -> String {
+pub(super) fn number(x: f64) -> String {
     if x.is_nan() { "–".into() } else { significant(x, 3) }
 }
 
@@ -68,7 +68,7 @@ fn name(part: &str) -> String {
     }
 }
 
-/// Every render: what each term's variance is at the last n, how it falls, what it costs.
+/// Every number: for each render the variance of each term at the last n, its slope and its cost.
 pub fn table(falls: &[Fall]) -> String {
     let mut blocks = vec![];
     for f in falls {
@@ -120,7 +120,8 @@ pub fn table(falls: &[Fall]) -> String {
     blocks.join("\n")
 }
 
-/// A line per render, part and n; slopes repeat on the lines of their part. What is not known is left empty.
+/// Every number as CSV: one line per render, part and n. Slopes repeat on the lines of their part. Numbers that are not
+/// known are left empty.
 pub fn csv(falls: &[Fall]) -> String {
     let mut csv = Csv::new(
         "value,k,n,replicates,variance,variance_std_error,mse,mse_std_error,slope,slope_std_error,mse_slope,\
@@ -225,7 +226,7 @@ fn panel(page: &Canvas, (left, top): Place, title: &str, lines: &[Line]) -> Draw
     if lines.iter().any(|l| !l.errors.is_empty()) {
         entries.push(Entry::new(Sample::Mark(Look { color: BLACK, mark: Look::CROSS }), "squared error"));
     }
-    entries.push(Entry::new(Sample::Heading, "bands: 95 %"));
+    entries.push(Entry::new(Sample::Plain, "bands: 95 %"));
     page.legend((left + 350.0, top + 28.0), 200.0, &entries)?;
     Ok(())
 }

@@ -1,5 +1,7 @@
 //! The figure of a sweep: cost and gain side by side.
 //!
+//! Lines join the points of one value over k, which has an order. They never join values, which may have none.
+//!
 //! | setting | left | right |
 //! |---|---|---|
 //! | branching | rays per path against k, straight lines of slope log N | V against k |
@@ -27,8 +29,11 @@ const RIGHT: [f64; 4] = [552.0, 72.0, 372.0, 350.0];
 
 fn panels(page: &Canvas, sweep: &Sweep, title: &str) -> Drawn {
     page.text(title, (24.0, 24.0), Words { size: 18.0, ..Words::default() })?;
-    let by_value = |i: usize, points: Vec<Point>| {
+    // a little to the side, so that curves that agree do not hide each other
+    let middle = (sweep.rows.len() as f64 - 1.0) / 2.0;
+    let by_value = |i: usize, mut points: Vec<Point>| {
         let r = &sweep.rows[i];
+        points.iter_mut().for_each(|p| p.x += 0.08 * (i as f64 - middle).clamp(-4.0, 4.0));
         let label = if sweep.over == "branching" { format!("N = {}", r.value) } else { r.value.clone() };
         Curve { label, points, look: Look::nth(i) }
     };
@@ -73,11 +78,11 @@ fn panels(page: &Canvas, sweep: &Sweep, title: &str) -> Drawn {
 const LEGEND: (f64, f64) = (944.0, 68.0);
 const GUIDE: Stroke = Stroke { color: GREY, width: 1.6, dash: Some((7.0, 5.0)) };
 
-/// What the legend says below the curves.
+/// Notes in the legend below the curves.
 fn notes(silent: bool) -> Vec<Entry> {
-    let mut notes = vec![Entry::new(Sample::Heading, "bars: 95 %")];
+    let mut notes = vec![Entry::new(Sample::Plain, "bars: 95 %")];
     if silent {
-        notes.push(Entry::new(Sample::Heading, "no mark: no noise"));
+        notes.push(Entry::new(Sample::Plain, "no mark: no noise"));
     }
     notes
 }
@@ -89,7 +94,7 @@ fn against_k<'a, 'b>(
     curves: &[Curve],
 ) -> Result<Panel<'a, 'b>, Box<dyn std::error::Error>> {
     let points = || curves.iter().flat_map(|c| &c.points);
-    let last = points().map(|p| p.x).fold(1.0, f64::max) as usize;
+    let last = points().map(|p| p.x).fold(1.0, f64::max).round() as usize;
     let panel = Panel::draw(page, title, frame, Axis::counts("bounce k", last, 10), log(unit, curves))?;
     curves.iter().try_for_each(|c| panel.curve(c, 0.0, true))?;
     Ok(panel)

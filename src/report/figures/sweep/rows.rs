@@ -1,4 +1,4 @@
-//! What each value of a setting costs and buys: the table and the CSV of a sweep.
+//! Cost and noise for each value of a setting: every number in tables, and as CSV.
 
 use crate::engine::by_rays::Sampled;
 use crate::report::text::{
@@ -6,13 +6,14 @@ use crate::report::text::{
     number::{average, error, significant},
     table::{Side, aligned},
 };
+use crate::terms::scatter::Scatter;
 use crate::terms::variance::Variance;
 use crate::terms::{Estimate, Functional};
 
-/// What one value gave.
+/// Cost and noise with one value of the setting.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// The value, as it was typed.
+    /// The value as it was typed.
     pub value: String,
     /// Samples per pixel.
     pub spp: u32,
@@ -26,6 +27,10 @@ pub struct Row {
     pub variance: Vec<Variance>,
     /// Variance of one sample of the sum of all slots.
     pub total: Variance,
+    /// Variance of one sample without each replicate: a list for each slot, then for the sum. Empty without replicates.
+    pub without: Vec<Vec<f64>>,
+    /// Finite, infinite or unknown: the variance of the tail and of the sum is finite under the roulette that was used.
+    pub known: crate::terms::Variance,
     /// Wall-clock seconds.
     pub seconds: f64,
 }
@@ -47,6 +52,11 @@ impl Row {
             }
             None => (vec![unknown; sampled.rays.len()], unknown),
         };
+        let without = sampled.snapshots.last().map_or(vec![], |s| {
+            let n = f64::from(s.spp);
+            let leave = |of: &Scatter| (0..of.replicates()).map(|i| n * of.variance_without(i)).collect();
+            s.scatter.iter().map(leave).collect()
+        });
         Self {
             value: value.into(),
             spp: sampled.spp,
@@ -55,6 +65,8 @@ impl Row {
             rays: sampled.rays.clone(),
             variance: slots,
             total,
+            without,
+            known: sampled.series.variance,
             seconds: sampled.series.cost.seconds,
         }
     }
@@ -92,7 +104,7 @@ pub struct Sweep {
     pub rows: Vec<Row>,
 }
 
-/// Two tables: the whole image by value, and every term of every value.
+/// Every number in two tables: the whole image for each value, and every term for each value.
 pub fn table(sweep: &Sweep) -> String {
     let number = |x: f64| if x.is_infinite() { "∞".into() } else { known_to(x, 3) };
     let cost = |r: &Row, v: f64| r.efficiency(v).map(number);
@@ -128,7 +140,7 @@ fn known_to(x: f64, digits: usize) -> String {
     if x.is_nan() { "–".into() } else { significant(x, digits) }
 }
 
-/// Everything, a line per value and k (`0`, `1`, …, `tail`, `all`); a number that is not known is left empty.
+/// Every number as CSV: one line per value and k (`0`, `1`, …, `tail`, `all`). Numbers that are not known are left empty.
 pub fn csv(sweep: &Sweep) -> String {
     let mut csv = Csv::new(
         "over,value,k,spp,paths,mean,std_error,mean_r,mean_g,mean_b,std_error_r,std_error_g,std_error_b,replicates,rays,\
