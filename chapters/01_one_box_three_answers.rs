@@ -90,12 +90,24 @@ fn claims(scene: &Scene, a: &Answers<'_>, [(_, path), (_, matrix)]: [(&str, &Com
     vec![
         claim(same_as_path.contains("total"), "terms and tail add up to the path tracer's image", same_as_path),
         // T1 through the camera is gathered from E: the first term that the matrix has a part in is T2
-        claim(same_as_matrix.contains("T2"), "light reflected twice is the matrix's", same_as_matrix.clone()),
-        claim(same_as_matrix.contains("total"), "and so is the whole", same_as_matrix),
-        claim(matrix.outcome != Outcome::Differs, "no term is proved to differ", format!("{:?}", matrix.outcome)),
-        claim(term < 1.0, "no term exceeds its bound", format!("at most {} of it", percent(term))),
-        claim(tail < 1.0, "nor does the tail", format!("at most {} of it", percent(tail))),
-        claim(lit == 2, "k = 2 is the first to light the ceiling", format!("k = {lit}")),
+        claim(same_as_matrix.contains("T2"), "T²E from paths agrees with the matrix", same_as_matrix.clone()),
+        claim(same_as_matrix.contains("total"), "the whole image from paths agrees with the matrix", same_as_matrix),
+        claim(
+            matrix.outcome != Outcome::Differs,
+            "no term is proved to differ from the matrix",
+            format!("{:?}", matrix.outcome),
+        ),
+        claim(
+            term < 1.0,
+            "no term exceeds its bound, ‖TᵏE‖₁ ≤ gᵏ ‖E‖₁, g the largest albedo",
+            format!("at most {} of it", percent(term)),
+        ),
+        claim(
+            tail < 1.0,
+            "the tail does not exceed its bound, g/(1 − g) ‖T⁸E‖₁",
+            format!("at most {} of it", percent(tail)),
+        ),
+        claim(lit == 2, "T²E is the first term that lights the ceiling", format!("k = {lit}")),
         claim(left.log10().round() == -2.0, "about a hundredth is left after k = 8", percent(left)),
     ]
 }

@@ -1,4 +1,4 @@
-//! Progress with an ETA on stderr, and Ctrl-C.
+//! Progress on stderr with the estimated time left, and Ctrl-C.
 
 use super::base::note;
 use fredholm::progress::{Listener, Progress};
@@ -14,18 +14,18 @@ pub fn stop_flag() -> &'static AtomicBool {
     FLAG.get_or_init(|| {
         let flag = Arc::new(AtomicBool::new(false));
         let set = Arc::clone(&flag);
-        // without a handler Ctrl-C simply ends the program, which is a fair second best
+        // if the handler cannot be set, Ctrl-C ends the program without saving
         let _ = ctrlc::set_handler(move || {
             if set.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
-            note("\ninterrupted: saving what exists (again: stop at once)");
+            note("\ninterrupted: saving what exists (Ctrl-C again: stop without saving)");
         });
         flag
     })
 }
 
-/// A bar on a terminal; elsewhere a line per 10 % for work that takes more than two seconds.
+/// A progress bar on a terminal; elsewhere one line per 10 % for work that takes more than two seconds.
 pub struct Bar {
     quiet: bool,
     bar: Mutex<Option<ProgressBar>>,
@@ -36,7 +36,7 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// `preview` is shown the film after every complete pass.
+    /// A bar that calls `preview` with the film after every complete pass.
     pub fn new(quiet: bool, preview: impl Fn(&fredholm::terms::TermFilm) + Sync + Send + 'static) -> Self {
         Self {
             quiet,
@@ -48,17 +48,17 @@ impl Bar {
         }
     }
 
-    /// Without a preview.
+    /// A bar without a preview.
     pub fn plain(quiet: bool) -> Self {
         Self::new(quiet, |_| ())
     }
 
-    /// What the library is given: work that this bar shows, and that Ctrl-C ends.
+    /// The handle for the library: this bar shows the work, and Ctrl-C ends it.
     pub fn progress(&self) -> Progress<'_> {
         Progress::to(self).stopped_by(stop_flag())
     }
 
-    /// Takes the bar away.
+    /// Removes the bar from the screen.
     pub fn finish(&self) {
         if let Some(bar) = lock(&self.bar).take() {
             bar.finish_and_clear();

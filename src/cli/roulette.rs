@@ -2,8 +2,9 @@
 //! the best one found.
 
 use super::base::{Ending, Failure, names, paragraphs, usage};
+use super::choices::{LIGHTS, SAMPLINGS, TECHNIQUES};
 use super::open::Opened;
-use super::options::{Shared, among, size, values};
+use super::options::{HOW, Shared, WHAT, one_of, size, values};
 use super::preflight;
 use super::session::Session;
 use fredholm::engine::Settings;
@@ -23,20 +24,20 @@ use fredholm::study::roulette::{self, Radii, Schedule};
 use fredholm::terms::World;
 use fredholm::terms::cross_moments::{Recorded, Value};
 
-/// Shown below the help.
-pub const EXAMPLES: &str = "Examples:
-  fredholm roulette cornell                                     predictions alone
-  fredholm roulette cornell --verify                            each also rendered: z beside it
-  fredholm roulette cornell --optimise                          the best schedule, and by how much
+/// Below `roulette --help`.
+pub const HELP: &str = "Examples:
+  fredholm roulette cornell
+  fredholm roulette cornell --verify
+  fredholm roulette cornell --optimise
   fredholm roulette furnace --schedules none,constant:0.1@0,table:0,0.2,0.4
 
-Paths are recorded without roulette up to vertex K. V is the variance of one sample of the whole image,
-averaged over pixels and channels; 1/(V rays) is the efficiency. Every schedule that does not depend on the
-path is predicted up to vertex K; from there on all go on with q = 1 − the largest albedo of the scene.
-albedo and throughput depend on the path: they are measured only.
+Paths are recorded without roulette up to vertex K. V is the variance of one sample of the whole image, averaged over pixels and \
+channels; 1/(V rays) is the efficiency. A schedule that does not depend on the path is predicted up to vertex K; beyond K, all \
+schedules continue with q = 1 − the largest albedo of the scene. albedo and throughput depend on the path, so they are only \
+measured.
 
-Written: roulette.csv, roulette.svg, roulette.png, summary.json (with the cross moments).
-Exit code 1: a measured variance contradicts its prediction.";
+The command writes roulette.csv, roulette.svg, roulette.png and summary.json (with the cross moments). Exit code 1: a measured \
+variance contradicts its prediction.";
 
 /// What is shown unless other schedules are asked for.
 const USUAL: &str = "none,lecture,constant:0.1@0,constant:0.2@0,constant:0.3@0,constant:0.5@0,constant:0.3@2,\
@@ -45,42 +46,53 @@ const USUAL: &str = "none,lecture,constant:0.1@0,constant:0.2@0,constant:0.3@0,c
 /// Arguments of `roulette`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Args {
-    /// Built-in scene, .toml, or .obj
-    #[arg(value_name = "SCENE", default_value = "cornell")]
+    /// Built-in scene, .toml or .obj file
+    #[arg(value_name = "SCENE", default_value = "cornell", help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     pub scene: String,
-    /// Schedules to compare, with commas [default: nine usual ones]
+    /// Schedules to compare [default: nine usual ones]
     ///
-    /// none, lecture, constant:Q[@V], table:q0,q1,…, albedo[@V], throughput[@V], optimal
-    #[arg(long, value_name = "SCHEDULE,…", verbatim_doc_comment)]
+    /// A list separated by commas: none, lecture, constant:Q[@V], table:q0,q1,…, albedo[@V], throughput[@V], optimal.
+    /// `fredholm series --help` describes them.
+    #[arg(long, value_name = "RULE,…", help_heading = WHAT)]
     pub schedules: Option<String>,
-    /// Render every schedule and compare what is measured with what was predicted
-    #[arg(long)]
+    /// Render every schedule, and check the predictions
+    #[arg(long, help_heading = WHAT)]
     pub verify: bool,
-    /// Find the best schedule, and measure its gain over the lecture's and over albedo roulette
-    #[arg(long, visible_alias = "optimize")]
+    /// Find the best schedule, and measure its gain
+    ///
+    /// The gain is measured over the lecture's roulette and over albedo roulette. --optimize is the same option.
+    #[arg(long, alias = "optimize", help_heading = WHAT)]
     pub optimise: bool,
-    /// Samples per pixel, of the recording and of every render
-    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(4..=1 << 20))]
+    /// Samples per pixel of every render
+    ///
+    /// The recording has the same number of samples.
+    #[arg(long, value_name = "N", default_value_t = 128, help_heading = WHAT, value_parser = clap::value_parser!(u32).range(4..=1 << 20))]
     pub spp: u32,
-    /// Seed: same seed, same bits, for any number of threads
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u64,
-    /// Image size in pixels [default: the scene's, made smaller to at most 64 pixels a side]
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    /// Image size in pixels [default: at most 64 a side]
+    ///
+    /// By default the size of the scene, reduced to at most 64 pixels a side.
+    #[arg(long, value_name = "WxH", value_parser = size, help_heading = WHAT)]
     pub size: Option<[u32; 2]>,
     /// K: schedules are predicted up to this vertex
-    #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u16).range(1..=64))]
+    #[arg(long, value_name = "K", default_value_t = 16, help_heading = WHAT, value_parser = clap::value_parser!(u16).range(1..=64))]
     pub max_bounces: u16,
-    /// How light is found.
-    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help = among("How light is found", Technique::ALL))]
+    /// Seed: the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = WHAT)]
+    pub seed: u64,
+    /// Light by scatter, connect, mis or mis-power
+    ///
+    /// The technique by which a path finds light.
+    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Technique>(TECHNIQUES))]
     pub technique: Technique,
-    /// How a light is selected.
-    #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", help = among("How a light is selected", Selection::ALL))]
+    /// Selection of a light: uniform or power
+    #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Selection>(LIGHTS))]
     pub lights: Selection,
-    /// How directions are drawn.
-    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help = among("How directions are drawn", Sampling::ALL))]
+    /// Directions: uniform, cosine or bsdf
+    ///
+    /// The density of the sampled directions at a surface.
+    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Sampling>(SAMPLINGS))]
     pub sampling: Sampling,
-    /// Scene, output, threads.
+    /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
 }

@@ -13,35 +13,35 @@ fn another_runs_output_is_never_touched() {
         all
     };
     desk.ok(&line(4));
-    let first = contents(&out.join("cornell"));
+    let first = contents(&out.join("cornell-series"));
     // the same command, also when typed with what does not matter, replaces its own
     desk.ok(&format!("{} -vt 1 --json", line(4)));
-    assert_eq!(folders(), ["cornell"]);
-    assert_eq!(contents(&out.join("cornell"))["terms.exr"], first["terms.exr"]);
+    assert_eq!(folders(), ["cornell-series"]);
+    assert_eq!(contents(&out.join("cornell-series"))["terms.exr"], first["terms.exr"]);
     // another command goes next to it, and finds its own place again
-    let first = contents(&out.join("cornell"));
+    let first = contents(&out.join("cornell-series"));
     for _ in 0..2 {
         desk.ok(&line(5));
-        assert_eq!(folders(), ["cornell", "cornell-2"]);
-        assert!(contents(&out.join("cornell")) == first, "nothing in the first folder changed");
+        assert_eq!(folders(), ["cornell-series", "cornell-series-2"]);
+        assert!(contents(&out.join("cornell-series")) == first, "nothing in the first folder changed");
     }
     // -o with another run's content is refused
-    let said = desk.run(&format!("{} -o fredholm-out/cornell", line(6)));
+    let said = desk.run(&format!("{} -o fredholm-out/cornell-series", line(6)));
     assert_eq!(said.code, 3);
     insta::assert_snapshot!(said.err, @r"
-    error: the output folder holds something else
-      --> fredholm-out/cornell
+    error: the output folder holds another run's output
+      --> fredholm-out/cornell-series
     help: choose another with -o, or replace it with --force
     ");
-    assert!(contents(&out.join("cornell")) == first, "nothing in the refused folder changed");
+    assert!(contents(&out.join("cornell-series")) == first, "nothing in the refused folder changed");
     // --force replaces it, and leaves nothing of the old run and everything of anybody else's
-    std::fs::write(out.join("cornell/notes.txt"), "mine").unwrap();
-    desk.ok("render cornell --spp 4 --size 8x8 -q -o fredholm-out/cornell --force");
-    let mut now = desk.summary("fredholm-out/cornell").files;
+    std::fs::write(out.join("cornell-series/notes.txt"), "mine").unwrap();
+    desk.ok("render cornell --spp 4 --size 8x8 -q -o fredholm-out/cornell-series --force");
+    let mut now = desk.summary("fredholm-out/cornell-series").files;
     assert!(!now.contains(&"T00.png".into()));
     now.push("notes.txt".into());
     now.sort();
-    assert_eq!(names(&out.join("cornell")), now);
+    assert_eq!(names(&out.join("cornell-series")), now);
 }
 
 #[test]

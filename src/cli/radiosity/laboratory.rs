@@ -1,9 +1,9 @@
 //! A scene and its matrix, for what takes it apart.
 
+use super::args::Radiosity;
 use crate::cli::base::{Failure, note};
 use crate::cli::open::Opened;
 use crate::cli::session::Session;
-use crate::cli::solve::RunArgs;
 use crate::cli::{notes, preflight};
 use fredholm::engine::Settings;
 use fredholm::engine::by_matrix::{self, Matrix, MatrixError};
@@ -25,7 +25,7 @@ pub struct Laboratory<R = solver::Radiosity> {
 
 impl Laboratory {
     /// Loads, meshes and computes form factors as a matrix; `None` if interrupted.
-    pub fn new(args: &RunArgs, what: &str) -> Result<Option<Self>, Failure> {
+    pub fn new(args: &Radiosity, what: &str) -> Result<Option<Self>, Failure> {
         Laboratory::prepare(args, what, Factors::Dense, |opened, s, progress| {
             let Opened { description, scene, .. } = opened;
             let matrix = by_matrix::dense_matrix(description, scene, s.patches, s.grading, 0, progress)?;
@@ -36,7 +36,7 @@ impl Laboratory {
 
 impl Laboratory<Stored> {
     /// The same as stored rays.
-    pub fn sampled(args: &RunArgs, what: &str, per_row: u32) -> Result<Option<Self>, Failure> {
+    pub fn sampled(args: &Radiosity, what: &str, per_row: u32) -> Result<Option<Self>, Failure> {
         Laboratory::prepare(args, what, Factors::Rays(per_row), |opened, s, progress| {
             let Opened { description, scene, .. } = opened;
             let matrix = by_matrix::sampled_matrix(description, scene, s.patches, per_row, s, progress)?;
@@ -47,16 +47,16 @@ impl Laboratory<Stored> {
 
 impl<R> Laboratory<R> {
     fn prepare(
-        args: &RunArgs,
+        args: &Radiosity,
         what: &str,
         factors: Factors,
         make: impl FnOnce(&Opened, &Settings, Progress<'_>) -> Result<(usize, Matrix<R>), MatrixError>,
     ) -> Result<Option<Self>, Failure> {
         let mut session = Session::new(&args.shared, args.frame.seed)?;
         let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size)?;
-        let opened = Opened { scene: opened.scene.select_lights(args.lights), ..opened };
+        let opened = Opened { scene: opened.scene.select_lights(args.pixels.lights), ..opened };
         preflight::has_a_matrix(&opened.description, &opened.scene, factors)?;
-        let (patches, grading, seed) = (args.patches.unwrap_or(600) as usize, args.grading, args.frame.seed);
+        let (patches, grading, seed) = (args.mesh.patches.unwrap_or(600) as usize, args.mesh.grading, args.frame.seed);
         let settings = Settings { patches, factors, grading, max_bounces: 0, seed, ..Settings::default() };
         preflight::rows_fit_in_memory(&opened.scene, &settings)?;
         session.make_folder(&format!("{}-{what}", opened.description.name))?;

@@ -19,11 +19,10 @@ const BOUNCES: usize = 12;
 
 /// Takes T apart, writes and prints.
 pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
-    let run = &args.run;
-    let Some(lab) = Laboratory::new(run, "modes")? else { return Ok(Ending::Interrupted) };
+    let Some(lab) = Laboratory::new(args, "modes")? else { return Ok(Ending::Interrupted) };
     let settings = Settings {
-        spp: run.frame.spp.unwrap_or(64),
-        seed: run.frame.seed,
+        spp: args.frame.spp.unwrap_or(64),
+        seed: args.frame.seed,
         max_bounces: count + 1,
         ..Settings::default()
     };
@@ -50,7 +49,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
         "command": lab.session.command(),
         "scene": lab.opened.description.name,
         "scene_hash": lab.opened.hash,
-        "seed": run.frame.seed,
+        "seed": args.frame.seed,
         "patches": lab.patches,
         "channels": modes::machine(&spectra),
     });

@@ -5,6 +5,7 @@ use super::folder::{self, MARK, mark, write};
 use super::words::{brief, introduction};
 use crate::cli::base::{Ending, Failure, paragraphs, print, usage};
 use fredholm::engine::by_rays::Sampled;
+use fredholm::math::names::suggest;
 use fredholm::report::ReportError;
 use fredholm::report::figures::signature::{self, Signature};
 use fredholm::report::image::contact_sheet::{self, Cell};
@@ -60,8 +61,9 @@ pub fn run(args: &Zoo, bug: &'static Bug) -> Result<Ending, Failure> {
 /// The scene that shows the mistake, or the one that was asked for.
 fn stage(args: &Zoo, bug: &Bug) -> Result<Stage, Failure> {
     let Some(name) = &args.scene else { return Ok(bug.exposed_by) };
-    let scene = builtin::find(name)
-        .ok_or_else(|| usage(&format!("`{name}` is no built-in scene"), "`fredholm info` lists them"))?;
+    let scene = builtin::find(name).ok_or_else(|| {
+        usage(&format!("`{name}` is no built-in scene"), &suggest(name, "built-in scenes", builtin::names()))
+    })?;
     Ok(Stage { label: scene.name, scene: scene.name, set: &[] })
 }
 

@@ -4,10 +4,8 @@
 //! `shapes.5.emission`, `camera.size[0]`. VALUE is TOML; a bare word counts as a string. All but the last step of
 //! KEY must exist; whether a new last step is legal is decided where the table is read, like any other key.
 
-use super::{
-    nearest::suggest,
-    tree::{Node, Value, parse_override},
-};
+use super::tree::{Node, Value, parse_override};
+use crate::math::names::suggest;
 use crate::scene::SceneError;
 
 /// Replaces or adds one value.
