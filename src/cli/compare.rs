@@ -39,7 +39,9 @@ pub struct Compare {
     /// δ: plus this fraction of the whole image
     #[arg(long, default_value_t = 1e-4, value_name = "X", value_parser = fraction, help_heading = HOW)]
     pub of_total: f64,
-    /// Probability that equal results are found to differ
+    /// Probability of a false difference
+    ///
+    /// The probability that equal results are found to differ anywhere.
     #[arg(long, default_value_t = 1e-3, value_name = "P", value_parser = probability, help_heading = HOW)]
     pub alpha: f64,
     /// Output folder [default: fredholm-out/compare]

@@ -24,7 +24,7 @@ Without SCENE, the built-in scenes are listed. With a file, errors in the file a
 /// Arguments of `info`.
 #[derive(Clone, Debug, Args)]
 pub struct Info {
-    /// Built-in scene, .toml or .obj file
+    /// Built-in scene, .toml or .obj
     #[arg(help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     pub scene: Option<String>,
     /// Changes to the scene.

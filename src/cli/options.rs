@@ -62,7 +62,7 @@ impl Changes {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = WHAT)]
 pub struct Frame {
-    /// Built-in scene, .toml or .obj file
+    /// Built-in scene, .toml or .obj
     ///
     /// `fredholm info` lists the built-in scenes. scenes/README.md describes the .toml format.
     #[arg(value_name = "SCENE", default_value = "cornell", value_hint = ValueHint::FilePath)]

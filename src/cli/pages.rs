@@ -61,22 +61,47 @@ pub fn man(args: &Man, all: &Command) -> Result<Ending, Failure> {
     Ok(Ending::Ok)
 }
 
-/// Writes the page of a command, then those of its subcommands.
+/// Writes the page of a command, `fredholm check bias`, then those of its subcommands.
 fn write(
     command: Command,
-    name: &str,
+    path: &str,
     out: &mut impl FnMut(&str, &[u8]) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let subcommands: Vec<Command> = command.get_subcommands().cloned().collect();
-    out(&format!("{name}.1"), &page(command.display_name(name.to_owned()))?)?;
+    let name = path.replace(' ', "-");
+    out(&format!("{name}.1"), &page(command.display_name(name).bin_name(path.to_owned()))?)?;
     subcommands.into_iter().try_for_each(|s| {
-        let name = format!("{name}-{}", s.get_name());
-        write(s, &name, out)
+        let path = format!("{path} {}", s.get_name());
+        write(s, &path, out)
     })
 }
 
 fn page(command: Command) -> Result<Vec<u8>, Failure> {
     let mut page = vec![];
-    clap_mangen::Man::new(command.disable_help_subcommand(true)).render(&mut page)?;
-    Ok(page)
+    let source = format!("fredholm {}", env!("CARGO_PKG_VERSION"));
+    clap_mangen::Man::new(command.disable_help_subcommand(true)).source(source).render(&mut page)?;
+    Ok(unfilled(&String::from_utf8_lossy(&page)).into_bytes())
+}
+
+/// The page with indented lines left as they are: examples, one per line.
+fn unfilled(page: &str) -> String {
+    let mut lines: Vec<&str> = vec![];
+    let mut inside = false;
+    for line in page.lines() {
+        if line.starts_with("  ") != inside {
+            lines.push(if inside { ".fi" } else { ".nf" });
+            inside = !inside;
+        }
+        lines.push(line);
+    }
+    lines.join("\n") + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn examples_stay_one_per_line() {
+        let page = super::unfilled("Examples:\n  a\n  b\n\nText.\n");
+        assert_eq!(page, "Examples:\n.nf\n  a\n  b\n.fi\n\nText.\n");
+    }
 }

@@ -46,7 +46,7 @@ const USUAL: &str = "none,lecture,constant:0.1@0,constant:0.2@0,constant:0.3@0,c
 /// Arguments of `roulette`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Args {
-    /// Built-in scene, .toml or .obj file
+    /// Built-in scene, .toml or .obj
     #[arg(value_name = "SCENE", default_value = "cornell", help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     pub scene: String,
     /// Schedules to compare [default: nine usual ones]
@@ -73,18 +73,20 @@ pub struct Args {
     /// By default the size of the scene, reduced to at most 64 pixels a side.
     #[arg(long, value_name = "WxH", value_parser = size, help_heading = WHAT)]
     pub size: Option<[u32; 2]>,
-    /// K: schedules are predicted up to this vertex
+    /// K: predict up to this vertex
     #[arg(long, value_name = "K", default_value_t = 16, help_heading = WHAT, value_parser = clap::value_parser!(u16).range(1..=64))]
     pub max_bounces: u16,
     /// Seed: the same seed gives the same bits
     #[arg(long, value_name = "N", default_value_t = 0, help_heading = WHAT)]
     pub seed: u64,
-    /// Light by scatter, connect, mis or mis-power
+    /// Light: scatter, connect, mis, mis-power
     ///
     /// The technique by which a path finds light.
     #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Technique>(TECHNIQUES))]
     pub technique: Technique,
-    /// Selection of a light: uniform or power
+    /// Light choice: uniform or power
+    ///
+    /// How a connection selects a light.
     #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Selection>(LIGHTS))]
     pub lights: Selection,
     /// Directions: uniform, cosine or bsdf

@@ -36,7 +36,7 @@ worse guides in place of B, which shows what a guide is worth (walk.png, walk.cs
 /// Arguments of `walk`.
 #[derive(Clone, Debug, Args)]
 pub struct Walk {
-    /// Built-in scene, .toml or .obj file
+    /// Built-in scene, .toml or .obj
     #[arg(value_name = "SCENE", default_value = "cornell", help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     pub scene: String,
     /// About how many patches the matrix has
@@ -53,13 +53,13 @@ pub struct Walk {
     /// Seed: the same seed gives the same bits
     #[arg(long, value_name = "N", default_value_t = 0, help_heading = WHAT)]
     pub seed: u64,
-    /// Estimator: prefix, absorption, zero-variance, …
+    /// Estimator: prefix, zero-variance, …
     #[arg(long, value_parser = one_of::<Study>(WALKERS), value_name = "NAME", default_value = "prefix", help_heading = HOW)]
     pub estimator: Study,
     /// Children of every vertex of the branching estimator
     #[arg(long, value_name = "N", default_value_t = 2, hide_short_help = true, help_heading = HOW, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub branching: u32,
-    /// Light by scatter, connect, mis or mis-power
+    /// Light: scatter, connect, mis, mis-power
     ///
     /// The technique by which a walk finds light.
     #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Technique>(TECHNIQUES))]

@@ -26,20 +26,20 @@ contribute to a mean, or fewer are expected, nothing is rejected.";
 /// Arguments of `check bias`.
 #[derive(Clone, Debug, Args)]
 pub struct Bias {
-    /// Built-in scene, .toml or .obj file
+    /// Built-in scene or scene file
     #[arg(long, value_name = "SCENE", default_value = "cornell", help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     pub(super) scene: String,
-    /// Checked: prefix, single, light, path, …
+    /// Checked: prefix, light, path, …
     ///
     /// The estimator that is checked.
     #[arg(long, value_name = "NAME", default_value = "prefix", help_heading = WHAT, value_parser = name_of(CHECKED))]
     pub(super) estimator: String,
-    /// An estimator, path, or a finished run
+    /// An estimator, path, or a run
     ///
     /// The reference: an estimator, the path tracer, or the output folder of a finished run.
     #[arg(long, value_name = "NAME|DIR", default_value = "path", help_heading = WHAT)]
     pub(super) against: String,
-    /// K: check the terms k = 0..=K and the tail
+    /// K: check k = 0..=K and the tail
     #[arg(long, value_name = "K", default_value_t = 8, help_heading = WHAT, value_parser = clap::value_parser!(u16).range(0..=1000))]
     pub(super) max_bounces: u16,
     /// Time limit: 20s, 5m [default: 60s]
@@ -50,7 +50,7 @@ pub struct Bias {
     /// At most N samples per pixel of each side
     #[arg(long, value_name = "N", help_heading = WHAT, value_parser = clap::value_parser!(u32).range(1..=1 << 30))]
     pub(super) spp: Option<u32>,
-    /// Light by scatter, connect, mis or mis-power
+    /// Light: scatter, connect, mis, mis-power
     ///
     /// The technique by which a path finds light.
     #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Technique>(TECHNIQUES))]
@@ -80,7 +80,9 @@ pub struct Bias {
     /// Children of every vertex of a branching estimator
     #[arg(long, value_name = "N", default_value_t = 2, hide_short_help = true, help_heading = HOW, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(super) branching: u32,
-    /// Probability of a false alarm, whenever the check ends
+    /// Probability of a false alarm
+    ///
+    /// It holds whenever the check ends.
     #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = probability, help_heading = HOW)]
     pub(super) alpha: f64,
     /// δ as a fraction of the term

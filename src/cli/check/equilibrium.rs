@@ -45,7 +45,7 @@ const PICTURE: u32 = 32;
 /// Arguments of `check equilibrium`.
 #[derive(Clone, Debug, Args)]
 pub struct Equilibrium {
-    /// Built-in scene, .toml or .obj file
+    /// Built-in scene, .toml or .obj
     #[arg(value_name = "SCENE", default_value = "cornell", help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     scene: String,
     /// Number of points
@@ -56,17 +56,17 @@ pub struct Equilibrium {
     /// A pixel of the picture has 1/32 of them.
     #[arg(long, value_name = "N", default_value_t = 131_072, help_heading = WHAT, value_parser = clap::value_parser!(u32).range(32..=1 << 28))]
     spp: u32,
-    /// Weight of the explicit step, to break the equation
+    /// Weight of the explicit step
     ///
     /// With a FACTOR other than 1 the equation is false on purpose, and the test must reject it.
     #[arg(long = "break", value_name = "FACTOR", default_value_t = 1.0, help_heading = WHAT)]
     factor: f32,
-    /// Light by scatter, connect, mis or mis-power
+    /// Light: scatter, connect, mis, mis-power
     ///
     /// The technique by which the path tracer for L finds light.
     #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Technique>(TECHNIQUES))]
     technique: Technique,
-    /// Russian roulette for L; it must end paths
+    /// Roulette for L; it must end paths
     #[arg(long, value_name = "RULE", default_value = "albedo@2", help_heading = HOW)]
     roulette: Roulette,
     /// Directions: uniform, cosine or bsdf
@@ -74,10 +74,14 @@ pub struct Equilibrium {
     /// The density of the sampled directions at a surface.
     #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Sampling>(SAMPLINGS))]
     sampling: Sampling,
-    /// Probability to reject an equation that holds
+    /// Probability of a false alarm
+    ///
+    /// The probability to reject an equation that holds.
     #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = probability, help_heading = HOW)]
     alpha: f64,
-    /// δ of the means over points, as a fraction of T L
+    /// δ of the means, as a fraction of T L
+    ///
+    /// Means are taken over points.
     #[arg(long, value_name = "X", default_value_t = 0.02, value_parser = probability, help_heading = HOW)]
     delta: f64,
     #[command(flatten)]

@@ -74,13 +74,15 @@ pub struct Diagnose {
     /// [default: 8 million paths in all]
     #[arg(long, value_name = "N", help_heading = HOW, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     pub spp: Option<u32>,
-    /// Paths for all candidates in one stage
+    /// Paths for all candidates per stage
     #[arg(long, default_value_t = Effort::default().paths, value_name = "N", help_heading = HOW)]
     pub paths: u64,
-    /// Probability that a correct renderer is called wrong
+    /// Probability of a false alarm
+    ///
+    /// The probability that a correct renderer is called wrong.
     #[arg(long, default_value_t = 1e-3, value_name = "P", value_parser = probability, help_heading = HOW)]
     pub alpha: f64,
-    /// Seed of the reference and of the candidates
+    /// Seed of reference and candidates
     #[arg(long, default_value_t = 0, value_name = "N", help_heading = HOW)]
     pub seed: u64,
     /// Changes to the scene, output, threads.

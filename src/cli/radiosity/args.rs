@@ -30,6 +30,9 @@ pub struct Radiosity {
     /// mesh writes mesh.csv, mesh-terms.csv and norms.csv; matrix also writes F.npy.
     #[arg(long, value_enum, value_name = "WHAT", conflicts_with_all = ["solver", "modes"], help_heading = WHAT)]
     pub export: Option<Export>,
+    /// How the samples of the picture are drawn.
+    #[command(flatten)]
+    pub pixels: Pixels,
     /// red, green or blue, for --solver and --modes
     ///
     /// [default: the channel with the largest spectral radius, where solvers converge most slowly]
@@ -43,9 +46,6 @@ pub struct Radiosity {
     /// The mesh and its form factors.
     #[command(flatten)]
     pub mesh: Mesh,
-    /// How the samples of the picture are drawn.
-    #[command(flatten)]
-    pub pixels: Pixels,
     /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,

@@ -132,7 +132,7 @@ impl Default for Terms {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = HOW)]
 pub struct Light {
-    /// Light by scatter, connect, mis or mis-power
+    /// Light: scatter, connect, mis, mis-power
     ///
     /// The technique by which a path finds light.
     #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", value_parser = one_of::<Technique>(TECHNIQUES))]
@@ -165,10 +165,12 @@ pub struct Pixels {
     /// The density of the sampled directions at a surface.
     #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", value_parser = one_of::<Sampling>(SAMPLINGS))]
     pub sampling: Sampling,
-    /// Selection of a light: uniform or power
+    /// Light choice: uniform or power
+    ///
+    /// How a connection selects a light.
     #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", value_parser = one_of::<Selection>(LIGHTS))]
     pub lights: Selection,
-    /// Samples of a pixel: independent or sobol
+    /// Points: independent, sobol
     ///
     /// How the samples of a pixel are spread.
     #[arg(long, default_value_t = Points::Independent, value_name = "NAME", value_parser = one_of::<Points>(POINTS))]

@@ -110,12 +110,14 @@ pub struct Sweep {
     /// [default: none for k ≤ K, then albedo]
     #[arg(long = "roulette", value_name = "RULE,…", help_heading = HOW)]
     pub schedules: Option<String>,
-    /// Samples of a pixel: independent or sobol
+    /// Points: independent, sobol
     ///
     /// How the samples of a pixel are spread. [default: independent] With --over spp it may be a list.
     #[arg(long = "points", value_name = "NAME,…", help_heading = HOW)]
     pub spreads: Option<String>,
-    /// Selection of a light: uniform or power
+    /// Light choice: uniform or power
+    ///
+    /// How a connection selects a light.
     #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Selection>(LIGHTS))]
     pub lights: Selection,
     /// Directions: uniform, cosine or bsdf
