@@ -71,10 +71,10 @@ fn a_finished_run_of_another_scene_is_told_apart() {
 fn what_makes_no_sense_is_refused() {
     let desk = Desk::new();
     for (line, code, word) in [
-        ("check bias --estimator nonsense", 2, "no estimator"),
+        ("check bias --estimator nonsense", 2, "`nonsense` is none of single"),
         ("check bias --against no-such-folder", 2, "folder"),
         ("check bias --alpha 2", 2, "between 0 and 1"),
-        ("check bias --time soon", 2, "20s"),
+        ("check bias --time soon", 2, "30s"),
         ("check bias --scene nowhere.toml", 3, "nowhere"),
         ("check equilibrium cornell --roulette none", 2, "cut at K"),
         ("check equilibrium cornell --break 0", 2, "above 0"),

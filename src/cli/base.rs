@@ -1,6 +1,6 @@
-//! How a command ends, and how it speaks: results to stdout, everything else to stderr.
+//! How a command ends and what it prints: results to stdout, everything else to stderr.
 
-/// How a command ends when it does not end well.
+/// An error that ends a command.
 pub enum Failure {
     /// Something is wrong with the scene or a file: exit code 3.
     Input(String),
@@ -15,21 +15,21 @@ impl<E: std::error::Error> From<E> for Failure {
 }
 
 impl Failure {
-    /// Something is wrong with the scene or a file, in words that may say so already.
+    /// Something is wrong with the scene or a file. Adds `error: ` to the text unless it is there.
     pub fn input(text: &str) -> Self {
         Self::Input(if text.starts_with("error: ") { text.into() } else { format!("error: {text}") })
     }
 }
 
-/// The arguments do not make sense together: what is wrong, and what would help.
+/// The error for arguments that do not make sense together: what is wrong, and what to do.
 pub fn usage(what: &str, help: &str) -> Failure {
     Failure::Usage(format!("error: {what}\nhelp: {help}"))
 }
 
-/// How a command ends well, or nearly.
+/// How a command ends if nothing prevents its work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// All is well.
+    /// Success.
     Ok,
     /// A comparison failed.
     Failed,
@@ -37,7 +37,7 @@ pub enum Ending {
     Interrupted,
 }
 
-/// Prints to stdout, with a final newline. A reader that has seen enough (`| head`) is no error.
+/// Prints to stdout, with a final newline. A closed pipe (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), Failure> {
     use std::io::{ErrorKind, Write};
     let mut out = std::io::stdout().lock();
@@ -49,13 +49,13 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints a note to stderr; if nobody listens there, so be it.
+/// Prints a note to stderr. A closed stderr is no error.
 pub fn note(text: &str) {
     use std::io::Write;
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 
-/// Blocks of text with one blank line between them; empty ones leave nothing.
+/// Joins blocks of text with one blank line between them; empty blocks are left out.
 pub fn paragraphs<S: AsRef<str>>(blocks: &[S]) -> String {
     let blocks = blocks.iter().map(|b| b.as_ref().trim_end()).filter(|b| !b.is_empty());
     blocks.collect::<Vec<_>>().join("\n\n")
@@ -111,7 +111,7 @@ pub fn counted(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
-/// Names as a list of files.
+/// The names as owned strings, for the list of files.
 pub fn names<const N: usize>(all: [&str; N]) -> Vec<String> {
     all.map(String::from).into()
 }

@@ -1,7 +1,7 @@
 //! `fredholm compare A B`: compares two results, with a verdict for every term and a map of z = difference/standard error.
 
 use super::base::{Ending, Failure, wrapped, wrapped_after};
-use super::options::{Manner, fraction, probability};
+use super::options::{HOW, Manner, OUTPUT, WHAT, fraction, probability};
 use super::session::Session;
 use super::{notes, verdict, write};
 use clap::Args;
@@ -15,30 +15,45 @@ use fredholm::terms::{Functional, Series, World};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+/// Below `compare --help`.
+pub const HELP: &str = "Examples:
+  fredholm series cornell --seed 1 -o a
+  fredholm series cornell --seed 2 -o b
+  fredholm compare a b
+
+Agrees: the difference is proved smaller than δ = 2 % of the term + 1e-4 of the whole image. Differs: the difference is proved not \
+to be zero. Inconclusive: more samples are needed; the text says how many. The exit code is 0 only if the results agree.";
+
 /// Arguments of `compare`.
 #[derive(Clone, Debug, Args)]
 pub struct Compare {
     /// A result: an output folder or its summary.json
+    #[arg(help_heading = WHAT, value_hint = clap::ValueHint::AnyPath)]
     pub a: PathBuf,
     /// Another result
+    #[arg(help_heading = WHAT, value_hint = clap::ValueHint::AnyPath)]
     pub b: PathBuf,
-    /// δ as a fraction of the term
-    #[arg(long, default_value_t = 0.02, value_name = "FRACTION", value_parser = fraction)]
+    /// δ: this fraction of the term
+    #[arg(long, default_value_t = 0.02, value_name = "X", value_parser = fraction, help_heading = HOW)]
     pub of_term: f64,
-    /// δ as a fraction of the whole image, added
-    #[arg(long, default_value_t = 1e-4, value_name = "FRACTION", value_parser = fraction)]
+    /// δ: plus this fraction of the whole image
+    #[arg(long, default_value_t = 1e-4, value_name = "X", value_parser = fraction, help_heading = HOW)]
     pub of_total: f64,
-    /// Chance that equal results are told apart anywhere
-    #[arg(long, default_value_t = 1e-3, value_name = "P", value_parser = probability)]
+    /// Probability of a false difference
+    ///
+    /// The probability that equal results are found to differ anywhere.
+    #[arg(long, default_value_t = 1e-3, value_name = "P", value_parser = probability, help_heading = HOW)]
     pub alpha: f64,
-    /// Where the z map goes [default: fredholm-out/compare]
-    #[arg(short, long, value_name = "DIR")]
+    /// Output folder [default: fredholm-out/compare]
+    ///
+    /// The map of z = difference/standard error is written there.
+    #[arg(short, long, value_name = "DIR", help_heading = OUTPUT, value_hint = clap::ValueHint::DirPath)]
     pub out: Option<PathBuf>,
-    /// Replace what another run left in the output folder
-    #[arg(long)]
+    /// Replace another run's output
+    #[arg(long, help_heading = OUTPUT)]
     pub force: bool,
     /// Print JSON instead of tables
-    #[arg(long)]
+    #[arg(long, help_heading = OUTPUT)]
     pub json: bool,
 }
 

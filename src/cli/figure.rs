@@ -1,12 +1,13 @@
 //! `fredholm figure ID`: makes a figure by its name. Each is a recipe here, or another command that writes it.
 
 use super::base::{Ending, Failure, names, paragraphs, print, usage, wrapped};
-use super::options::{Changes, Manner, size};
+use super::options::{Changes, Manner, OUTPUT, WHAT, size};
 use super::progress::stop_flag;
 use super::session::Session;
 use super::{preflight, sweep};
 use clap::{Args, Parser};
 use fredholm::engine::Settings;
+use fredholm::math::names::suggest;
 use fredholm::report::figures::stages as report;
 use fredholm::report::text::summary::Summary;
 use fredholm::report::write_atomically;
@@ -14,43 +15,45 @@ use fredholm::study::stages::{Grown, KAJIYA, NOISE, Recipe, Stage, reference_see
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
-/// Examples and what is written.
-pub const EXAMPLES: &str = "Examples:
+/// Below `figure --help`.
+pub const HELP: &str = "Examples:
   fredholm figure --list
   fredholm figure kajiya-series
   fredholm figure noise-paths -o slides/noise --seed 3
   fredholm figure --all -o figures
 
-Written: one folder per figure, with pictures, the numbers as CSV, and summary.json. Every figure
-carries the command that makes it. An image of few paths looks darker than one of many only because
-the screen cuts off what is above white; mean and mean shown are both printed.";
+Each figure is a folder with pictures, the numbers as CSV, and summary.json. Every figure carries the command that makes it. An \
+image of few paths looks darker than one of many only because the screen cuts off values above white; the mean and the mean shown \
+are both printed.";
 
 /// Arguments of `figure`.
 #[derive(Clone, Debug, Args)]
 pub struct Figure {
-    /// Which figure; --list names them
-    #[arg(value_name = "ID", conflicts_with_all = ["list", "all"])]
+    /// Name of the figure; --list prints the names
+    #[arg(value_name = "NAME", conflicts_with_all = ["list", "all"], help_heading = WHAT)]
     pub id: Option<String>,
-    /// Name the figures
-    #[arg(long)]
+    /// List the figures
+    #[arg(long, help_heading = WHAT)]
     pub list: bool,
-    /// Make every figure, each in a folder of its own
-    #[arg(long, conflicts_with = "list")]
+    /// Make every figure, each in its own folder
+    #[arg(long, conflicts_with = "list", help_heading = WHAT)]
     pub all: bool,
-    /// Output folder [default: fredholm-out/<ID>]; with --all, of all
-    #[arg(short, long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Seed: same seed, same bits
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u64,
     /// Image size in pixels [default: the figure's]
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", value_parser = size, help_heading = WHAT)]
     pub size: Option<[u32; 2]>,
-    /// Replace what another run left in the output folder
-    #[arg(long)]
+    /// Seed: the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = WHAT)]
+    pub seed: u64,
+    /// Output folder [default: fredholm-out/NAME]
+    ///
+    /// With --all, the folder for all figures.
+    #[arg(short, long, value_name = "DIR", help_heading = OUTPUT, value_hint = clap::ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Replace another run's output
+    #[arg(long, help_heading = OUTPUT)]
     pub force: bool,
-    /// No progress
-    #[arg(short, long)]
+    /// Print no progress
+    #[arg(short, long, help_heading = OUTPUT)]
     pub quiet: bool,
 }
 
@@ -156,8 +159,8 @@ pub fn run(args: &Figure) -> Result<Ending, Failure> {
     let chosen: Vec<&Kind> = FIGURES.iter().filter(|f| args.all || args.id.as_deref() == Some(f.id())).collect();
     if chosen.is_empty() {
         let ids: Vec<_> = FIGURES.iter().map(Kind::id).collect();
-        let what = format!("no figure is called `{}`", args.id.as_deref().unwrap_or_default());
-        return Err(usage(&what, &format!("figures are {}", ids.join(", "))));
+        let id = args.id.as_deref().unwrap_or_default();
+        return Err(usage(&format!("no figure is called `{id}`"), &suggest(id, "figures", &ids)));
     }
     let mut ending = Ending::Ok;
     for figure in chosen {

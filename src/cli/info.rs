@@ -1,7 +1,7 @@
 //! `fredholm info [SCENE]`: materials and lights of a scene, and the bounds on ‖T‖ that hold before anything is rendered.
 
 use super::base::{Ending, Failure, and, counted, paragraphs, print, wrapped, wrapped_after};
-use super::options::{Changes, Manner};
+use super::options::{Changes, Manner, OUTPUT, WHAT};
 use super::session::Session;
 use super::{notes, open};
 use clap::Args;
@@ -13,16 +13,25 @@ use fredholm::scene::description::{Description, Geometry, LightDescription, Shap
 use fredholm::scene::{Scene, SurfaceSensor, builtin};
 use serde_json::json;
 
+/// Below `info --help`.
+pub const HELP: &str = "Examples:
+  fredholm info
+  fredholm info cornell
+  fredholm info box.toml
+
+Without SCENE, the built-in scenes are listed. With a file, errors in the file are reported.";
+
 /// Arguments of `info`.
 #[derive(Clone, Debug, Args)]
 pub struct Info {
-    /// Built-in scene, .toml, or .obj; nothing lists the built-in scenes
+    /// Built-in scene, .toml or .obj
+    #[arg(help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     pub scene: Option<String>,
-    /// How the scene is changed.
+    /// Changes to the scene.
     #[command(flatten)]
     pub changes: Changes,
     /// Print JSON instead of text
-    #[arg(long)]
+    #[arg(long, help_heading = OUTPUT)]
     pub json: bool,
 }
 

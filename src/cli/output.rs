@@ -4,7 +4,7 @@ use super::base::Failure;
 use fredholm::report::text::summary;
 use std::path::{Path, PathBuf};
 
-/// The folder for this command: created, and safe to write into.
+/// The output folder of this command: exists, and holds nothing of another run.
 pub fn folder(asked: Option<&Path>, name: &str, command: &str, force: bool) -> Result<PathBuf, Failure> {
     let folder = match asked {
         Some(dir) if dir.exists() && !dir.is_dir() => {
@@ -12,7 +12,7 @@ pub fn folder(asked: Option<&Path>, name: &str, command: &str, force: bool) -> R
         }
         Some(dir) if !force && !ours(dir, command) => {
             let help = "choose another with -o, or replace it with --force";
-            return Err(refused("the output folder holds something else", dir, help));
+            return Err(refused("the output folder holds another run's output", dir, help));
         }
         Some(dir) => dir.to_path_buf(),
         None => {
@@ -22,7 +22,7 @@ pub fn folder(asked: Option<&Path>, name: &str, command: &str, force: bool) -> R
             std::iter::once(base.join(name)).chain(numbered).find(free).unwrap_or(base)
         }
     };
-    // a folder that cannot be written is better found now than after the last sample
+    // finds a folder that cannot be written before the render, not after it
     let probe = folder.join(format!(".fredholm.{}.tmp", std::process::id()));
     std::fs::create_dir_all(&folder)
         .and_then(|()| std::fs::write(&probe, "").and_then(|()| std::fs::remove_file(&probe)))
@@ -36,7 +36,7 @@ fn refused(what: &str, dir: &Path, help: &str) -> Failure {
     Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", dir.display()))
 }
 
-/// Whether a folder is empty, absent, or the output of this very command.
+/// Returns true if a folder is empty, absent, or the output of the same command.
 fn ours(dir: &Path, command: &str) -> bool {
     if std::fs::read_dir(dir).map_or(!dir.exists(), |mut files| files.next().is_none()) {
         return true;
@@ -44,21 +44,21 @@ fn ours(dir: &Path, command: &str) -> bool {
     summary::read(&dir.join("summary.json")).is_ok_and(|s| s.command == command)
 }
 
-/// The files that the last run left in this folder, by its own account.
+/// The files of the last run in this folder, from its summary.
 pub fn left_by_the_last_run(folder: &Path) -> Vec<String> {
     summary::read(&folder.join("summary.json")).map_or(vec![], |s| s.files)
 }
 
-/// Removes what the last run left and this one did not replace, so that a folder never shows two results.
+/// Removes files of the last run that this run did not replace, so that a folder never shows two results.
 pub fn remove_stale(folder: &Path, old: &[String], new: &[String]) {
     let plain = |name: &&String| Path::new(name).file_name().is_some_and(|n| n == name.as_str());
     for name in old.iter().filter(|n| !new.contains(n)).filter(plain) {
-        // what cannot be removed was perhaps removed by someone else; the new files are whole either way
+        // a file that cannot be removed may be gone already; the new files are complete either way
         let _ = std::fs::remove_file(folder.join(name));
     }
 }
 
-/// The command line as anyone would type it again: without what does not change the result.
+/// The command line without options that do not change the result, such as `--out` and `--threads`.
 pub fn canonical_command() -> String {
     let words: Vec<String> = std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()).collect();
     canonical(&words)

@@ -1,4 +1,4 @@
-//! What is refused before a run starts, because it could only end badly.
+//! Checks before a run starts: refuses runs that cannot succeed, and notes what a run will not show.
 
 use super::base::{Failure, note, usage};
 use fredholm::engine::Settings;
@@ -14,7 +14,7 @@ use fredholm::study::roulette::Schedule;
 use fredholm::terms::World;
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
-/// The sums of all terms, pixels and replicates are held at once: better refused now than killed later.
+/// Refuses a film that needs more memory than is free: the sums of all terms, pixels and replicates are held at the same time.
 pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
     let replicates = u64::from(settings.spp.min(16));
     let bytes = u64::from(w) * u64::from(h) * (settings.max_bounces as u64 + 2) * (replicates + 2) * 24;
@@ -22,7 +22,7 @@ pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failu
     fits(bytes, &what, "choose a smaller --size or --max-bounces")
 }
 
-/// A guide steers walks from the eye, at surfaces that scatter by the cosine.
+/// Refuses a guide that has no effect: it guides walks from the eye, at surfaces where directions are drawn by the cosine.
 pub fn can_be_guided(
     scene: &Scene,
     estimators: &[Estimator],
@@ -31,27 +31,33 @@ pub fn can_be_guided(
 ) -> Result<(), Failure> {
     let wrong = |what: &str, help: &str| Err(usage(what, help));
     if estimators.iter().any(|e| e.begins() != Begins::AtEye) {
-        return wrong("a guide steers walks from the eye only", "use --estimator prefix, single or branching");
+        return wrong("a guide acts on walks from the eye only", "use --estimator prefix, single or branching");
     }
     if !worlds.iter().any(|w| matches!(w, World::Terms | World::Path)) {
-        return wrong("--guide is for rays, and none are asked for", "leave --guide out, or use `fredholm series`");
+        return wrong(
+            "--guide is for rays, and --worlds radiosity traces no paths",
+            "leave --guide out, or add terms or path to --worlds",
+        );
     }
     if settings.sampling == Sampling::Uniform {
-        return wrong("a guide replaces the cosine, and --sampling uniform has none", "leave --sampling out");
+        return wrong(
+            "a guide replaces the cosine density, which --sampling uniform does not use",
+            "leave --sampling out",
+        );
     }
     let sides = reflecting(scene);
     if sides > POSSIBLE {
-        let what = format!("{sides} sides make at least as many patches, more than the {POSSIBLE} a guide may have");
+        let what = format!("the scene has {sides} sides, each at least one patch; a guide may have {POSSIBLE} patches");
         return wrong(&what, "leave --guide out");
     }
     Ok(())
 }
 
-/// N^K rays for every path grow beyond all patience long before they grow beyond memory.
+/// Refuses a tree of more than 10¹¹ rays at its deepest level, which would take days.
 pub fn tree_can_be_walked(estimator: Estimator, settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
     const MOST: f64 = 1e11;
     let Estimator::Branching { children } = estimator else { return Ok(()) };
-    // of a render by the clock only the first pass must be possible
+    // with --time, only the first pass must be possible
     let spp = if settings.time.is_some() { settings.spp.min(16) } else { settings.spp };
     let paths = f64::from(w) * f64::from(h) * f64::from(spp);
     let deepest = f64::from(children).powi(settings.max_bounces as i32) * paths;
@@ -65,8 +71,8 @@ pub fn tree_can_be_walked(estimator: Estimator, settings: &Settings, [w, h]: [u3
     )))
 }
 
-/// A matrix holds Lambertian surfaces of one colour that are lit by surfaces. Not asked for by name it is left out, with a
-/// word, where the scene has others.
+/// A matrix can hold only Lambertian surfaces of one colour that are lit by surfaces. If the scene has others, the matrix is
+/// refused if it was asked for by name, and otherwise left out with a note.
 pub fn suits_a_matrix(description: &Description, worlds: &mut Vec<World>, asked: bool) -> Result<(), Failure> {
     let Err(why) = description.radiosity_suits() else { return Ok(()) };
     if !worlds.contains(&World::Radiosity) {
@@ -74,9 +80,9 @@ pub fn suits_a_matrix(description: &Description, worlds: &mut Vec<World>, asked:
     }
     if asked {
         let help = if description.lights.is_empty() {
-            "--lambertian takes all its surfaces for Lambertian; rays take it as it is: --worlds terms,path"
+            "--lambertian makes all its surfaces Lambertian; `fredholm series --worlds terms,path` renders it as it is"
         } else {
-            "rays take it as it is: --worlds terms,path"
+            "`fredholm series --worlds terms,path` renders it as it is"
         };
         return Err(Failure::Usage(format!("error: no radiosity matrix can hold this scene: {why}\nhelp: {help}")));
     }
@@ -85,7 +91,7 @@ pub fn suits_a_matrix(description: &Description, worlds: &mut Vec<World>, asked:
     Ok(())
 }
 
-/// Refuses what would only be dark, and says what will be missing.
+/// Refuses a render that would be black, and notes which light an estimator cannot find.
 pub fn light_is_seen(
     scene: &Scene,
     estimators: &[Estimator],
@@ -97,7 +103,7 @@ pub fn light_is_seen(
     let from_eye = |e: &Option<Estimator>| e.is_none_or(|e| e.begins() == Begins::AtEye);
     if settings.technique == Technique::Scatter && scene.lights.all_delta() && walks.iter().any(from_eye) {
         return Err(Failure::Usage(
-            "error: no ray ever hits a point or a direction, and nothing else emits light here\n\
+            "error: no ray ever hits a point light or a directional light, and the scene has no other lights\n\
              help: use --technique connect or mis"
                 .into(),
         ));
@@ -120,8 +126,8 @@ pub fn light_is_seen(
 /// Most patches that a matrix or a guide may have.
 const POSSIBLE: usize = 20_000;
 
-/// A side of a primitive is at least one patch, and the matrix is dense. Where the radiosity was not asked for by name it is
-/// left out of scenes with many primitives; asked for by name it is refused beyond what any machine holds.
+/// Every side of a primitive is at least one patch of the dense matrix. If the scene has too many, the matrix is refused if it
+/// was asked for by name, and otherwise left out with a note.
 pub fn fits_in_a_matrix(scene: &Scene, factors: Factors, worlds: &mut Vec<World>, asked: bool) -> Result<(), Failure> {
     const COMFORTABLE: usize = 4000;
     if let Factors::Rays(_) = factors {
@@ -133,54 +139,55 @@ pub fn fits_in_a_matrix(scene: &Scene, factors: Factors, worlds: &mut Vec<World>
     }
     if asked {
         return Err(Failure::Usage(format!(
-            "error: {sides} sides make a matrix of at least {sides}², more than the {POSSIBLE}² it may have\n\
-             help: store rays instead: --factors rays; or leave the radiosity world out: --worlds terms,path"
+            "error: the scene has {sides} sides, so a dense matrix has at least {sides}² entries; {POSSIBLE}² are possible\n\
+             help: use --factors rays, or solve without a matrix: `fredholm series --worlds terms,path`"
         )));
     }
     worlds.retain(|w| *w != World::Radiosity);
     note(&format!(
-        "note: no radiosity: {sides} sides are many for a dense matrix (--worlds terms,path,radiosity insists)"
+        "note: no radiosity: {sides} sides are many for a dense matrix (to force it: --worlds terms,path,radiosity)"
     ));
     Ok(())
 }
 
-/// Beyond this a matrix is refused.
+/// Most patches of a dense matrix.
 const MOST_DENSE: u32 = 20_000;
-/// Beyond this rays are stored unless a matrix is asked for.
+/// With more patches than this, rays are stored by default.
 const DENSE: u32 = 10_000;
-/// Rays of a row unless told otherwise.
+/// Rays of a row by default.
 const RAYS: u32 = 256;
 
-/// Rays of a row, where rays are stored.
+/// Rays of a row if rays are stored: the number given, or the default.
 pub fn rays(asked: Option<u32>) -> u32 {
     asked.unwrap_or(RAYS)
 }
 
-/// How form factors are held.
+/// How form factors are held: as asked, or by the number of patches. Refuses options that contradict each other.
 pub fn factors(form: Option<Form>, per_row: Option<u32>, patches: u32) -> Result<Factors, Failure> {
     let dense = form.map_or(patches <= DENSE, |f| f != Form::Rays);
     if dense && patches > MOST_DENSE {
         return Err(Failure::Usage(format!(
-            "error: {patches} patches make a matrix of {patches}², more than the {MOST_DENSE}² it may have\n\
+            "error: {patches} patches make a dense matrix of {patches}² entries; {MOST_DENSE}² are possible\n\
              help: use --factors rays"
         )));
     }
     if dense && per_row.is_some() && form != Some(Form::Both) {
         return Err(Failure::Usage(
-            "error: --rays is for stored rays, and this is a matrix\nhelp: add --factors rays or --factors both".into(),
+            "error: --rays is for stored rays, and this matrix is dense\nhelp: add --factors rays or --factors both"
+                .into(),
         ));
     }
     Ok(if dense { Factors::Dense } else { Factors::Rays(rays(per_row)) })
 }
 
-/// A dense matrix that was asked for by name can be had.
+/// Refuses a scene that a matrix cannot hold, for commands that need one.
 pub fn has_a_matrix(description: &Description, scene: &Scene, factors: Factors) -> Result<(), Failure> {
     let mut worlds = vec![World::Radiosity];
     suits_a_matrix(description, &mut worlds, true)?;
     fits_in_a_matrix(scene, factors, &mut worlds, true)
 }
 
-/// What a study of one way of sampling asks: it sees light, its trees can be walked, its film fits, and light gets out.
+/// All checks for one way of sampling: it finds light, its tree is not too large, its film fits, and light gets out.
 pub fn can_be_sampled(scene: &Scene, estimator: Option<Estimator>, settings: &Settings) -> Result<(), Failure> {
     let size = scene.camera.size;
     let world = [if estimator.is_some() { World::Terms } else { World::Path }];
@@ -191,33 +198,33 @@ pub fn can_be_sampled(scene: &Scene, estimator: Option<Estimator>, settings: &Se
     light_is_lost(scene, settings, &world)
 }
 
-/// A schedule where nothing else will do: the study keeps all samples of its terms, or compares them, and has none to find.
+/// The schedule that is given, for studies that cannot search for the optimal one.
 pub fn fixed(asked: Option<&Schedule>) -> Result<Option<Roulette>, Failure> {
     match asked {
         Some(Schedule::Optimal(_)) => Err(Failure::Usage(
-            "error: --roulette optimal has no part in this\nhelp: `fredholm roulette SCENE --optimise` finds it; give its table here".into(),
+            "error: this command cannot search for the optimal roulette\nhelp: `fredholm roulette SCENE --optimise` finds it; give its table here".into(),
         )),
         asked => needs_no_guide(asked).map(|()| asked.and_then(Schedule::given)),
     }
 }
 
-/// A schedule that goes by what is expected needs a guide, and there is none.
+/// Refuses a schedule that needs the expected values of a guide, where there is no guide.
 pub fn needs_no_guide(asked: Option<&Schedule>) -> Result<(), Failure> {
     match asked {
         Some(Schedule::ByExpectation(end)) => Err(usage(
-            &format!("--roulette {end} needs the light that a guide expects, and there is no guide"),
+            &format!("--roulette {end} needs the expected values of a guide, and there is no guide"),
             "add --guide radiosity (series, render), or choose albedo",
         )),
         _ => Ok(()),
     }
 }
 
-/// Sides that reflect or emit: each is one patch at least.
+/// Number of sides that reflect or emit: each is at least one patch.
 fn reflecting(scene: &Scene) -> usize {
     (0..scene.sides()).filter(|&s| scene.takes_part(s)).count()
 }
 
-/// Rows, patches, terms and solution are held at once.
+/// Refuses a matrix that needs more memory than is free: rows, patches, terms and solution are held at the same time.
 pub fn rows_fit_in_memory(scene: &Scene, settings: &Settings) -> Result<(), Failure> {
     let n = settings.patches.max(reflecting(scene)) as u64;
     // measured: a patch of the mesh takes about 400 bytes, a vector over the patches 24, a stored ray 3
@@ -229,22 +236,22 @@ pub fn rows_fit_in_memory(scene: &Scene, settings: &Settings) -> Result<(), Fail
     fits(bytes, &format!("the rows of {n} patches"), "choose fewer --patches or --rays")
 }
 
-/// Refuses what needs more memory than is free. Where the system does not say what is free, the allocator has the last word.
+/// Refuses what needs more memory than is free. If the system does not tell how much is free, nothing is refused.
 fn fits(bytes: u64, what: &str, help: &str) -> Result<(), Failure> {
     let Some(free) = available().filter(|free| bytes > *free) else { return Ok(()) };
     let [need, have] = [bytes, free].map(|b| b as f64 / f64::from(1 << 30));
     Err(Failure::Usage(format!("error: {what} need {need:.1} GiB of memory; {have:.1} GiB are free\nhelp: {help}")))
 }
 
-/// Bytes of memory that are free; nothing where the system does not say.
+/// Bytes of free memory; `None` if the system does not tell.
 fn available() -> Option<u64> {
     let memory = MemoryRefreshKind::nothing().with_ram();
     let system = System::new_with_specifics(RefreshKind::nothing().with_memory(memory));
     Some(system.available_memory()).filter(|bytes| *bytes > 0)
 }
 
-/// Refuses a scene in which light never gets out, if anything longer than K is asked for: `L = E + T L` has no solution, and paths
-/// that only absorption ends would never end. Says what long paths cost.
+/// Refuses a scene in which light never gets out, if paths longer than K are asked for: `L = E + T L` then has no solution, and
+/// paths that end by absorption alone never end. Notes the cost of long paths.
 pub fn light_is_lost(scene: &Scene, settings: &Settings, worlds: &[World]) -> Result<(), Failure> {
     let has = |world| worlds.contains(&world);
     let walked = [
@@ -260,8 +267,8 @@ pub fn light_is_lost(scene: &Scene, settings: &Settings, worlds: &[World]) -> Re
     }
     if let Some((vertex, q)) = scene.last_resort().filter(|_| walked.iter().any(|r| r.fixed(usize::MAX).is_none())) {
         note(&format!(
-            "note: an albedo is 1, or only known to be at most 1: from vertex {vertex} on paths end with q ≥ {q}\n\
-             (second moments of light lose more than {:.2} at a vertex, so that the variance stays finite)",
+            "note: an albedo is 1, or only known to be at most 1: from vertex {vertex} on, paths end with q ≥ {q}\n\
+             (the second moment of light then loses more than {:.2} at a vertex, so that the variance stays finite)",
             4.0 * q
         ));
     }
@@ -281,13 +288,13 @@ pub fn light_is_lost(scene: &Scene, settings: &Settings, worlds: &[World]) -> Re
                     paths * each
                 )
             };
-            note(&format!("note: paths are long, {} rays each in the mean{time}", rays.round()));
+            note(&format!("note: paths are long: {} rays on average{time}", rays.round()));
         }
     }
     Ok(())
 }
 
-/// Below this albedo nobody has to be told how long paths are.
+/// Largest albedo at which the length of paths is not worth a note.
 const LONG: f32 = 0.99;
-/// Rays of a path that are many.
+/// Rays per path above which a note is printed.
 const MANY: f64 = 200.0;

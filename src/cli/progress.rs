@@ -1,4 +1,4 @@
-//! Progress with an ETA on stderr, and Ctrl-C.
+//! Progress on stderr with the estimated time left, and Ctrl-C.
 
 use super::base::note;
 use fredholm::progress::{Listener, Progress};
@@ -19,13 +19,13 @@ pub fn stop_flag() -> &'static AtomicBool {
             if set.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
-            note("\ninterrupted: saving what exists (again: stop at once)");
+            note("\ninterrupted: saving what exists (Ctrl-C again: stop without saving)");
         });
         flag
     })
 }
 
-/// A bar on a terminal; elsewhere a line per 10 % for work that takes more than two seconds.
+/// A progress bar on a terminal; elsewhere one line per 10 % for work that takes more than two seconds.
 pub struct Bar {
     quiet: bool,
     bar: Mutex<Option<ProgressBar>>,

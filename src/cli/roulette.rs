@@ -2,8 +2,9 @@
 //! finds the best one for the whole image and for indirect light.
 
 use super::base::{Ending, Failure, names, usage};
+use super::choices::{AIMS, LIGHTS, SAMPLINGS, TECHNIQUES};
 use super::open::Opened;
-use super::options::{Shared, among, one_of, size, values};
+use super::options::{HOW, Shared, WHAT, one_of, size, values};
 use super::preflight;
 use super::session::Session;
 use fredholm::engine::Settings;
@@ -25,29 +26,27 @@ use fredholm::study::roulette::{self, Aim, Optimal, Radii, Relative, Schedule};
 use fredholm::terms::World;
 use fredholm::terms::cross_moments::Recorded;
 
-/// Text below the help.
-pub const EXAMPLES: &str = "Examples:
-  fredholm roulette cornell                        which of nine schedules is best, predicted
-  fredholm roulette cornell --verify               each also rendered: are the predictions right?
-  fredholm roulette cornell --optimise             the best schedules, and how much they gain
+/// Below `roulette --help`.
+pub const HELP: &str = "Examples:
+  fredholm roulette cornell
+  fredholm roulette cornell --verify
+  fredholm roulette cornell --optimise
   fredholm roulette cornell --optimise --for indirect
   fredholm roulette furnace --schedules none,constant:0.1@0,table:0,0.2,0.4
 
-What is optimised: the efficiency 1/(variance × rays) of one sample. The variance is averaged over
-pixels and channels. --for says of which quantity:
-  whole     the whole image, all terms T^k E: the schedule `optimal`
-  indirect  indirect light, the terms k ≥ 2:  the schedule `optimal-indirect`
-The two differ where T0, emission seen directly, dominates the variance (in cornell the edge of the
-lamp). Ending paths cannot reduce T0. The whole-image optimum then ends most paths at once, because
-new camera paths are worth more, and indirect light becomes noisier. `--roulette optimal` of the
-other commands means the whole image; they also accept optimal-indirect.
+--optimise maximises the efficiency 1/(variance × rays) of one sample. The variance is averaged over pixels and channels. --for says \
+of which quantity: `whole` means the whole image, all terms T^k E (the schedule `optimal`); `indirect` means indirect light, the \
+terms k ≥ 2 (the schedule `optimal-indirect`). The two differ where T0, emission seen directly, dominates the variance, as the edge of \
+the lamp does in cornell. Ending paths cannot reduce the variance of T0. The optimum for the whole image then ends most paths at \
+once, because new camera paths are worth more, and indirect light becomes noisier. `--roulette optimal` of the other commands means \
+the whole image; they also accept `optimal-indirect`.
 
-Paths are recorded without roulette up to vertex K. Every schedule whose q does not depend on the
-path is predicted up to vertex K; from there on all continue with q = 1 − the largest albedo of the
-scene. albedo and throughput depend on the path: they can only be measured.
+Paths are recorded without roulette up to vertex K. A schedule that does not depend on the path is predicted up to vertex K; beyond \
+K, all schedules continue with q = 1 − the largest albedo of the scene. albedo and throughput depend on the path, so they are only \
+measured.
 
-Written: roulette.csv, roulette.svg, roulette.png, summary.json (with the cross moments).
-Exit code 1: a measured variance contradicts its prediction.";
+The command writes roulette.csv, roulette.svg, roulette.png and summary.json (with the cross moments). Exit code 1: a measured \
+variance contradicts its prediction.";
 
 /// Schedules that are compared unless others are given.
 const USUAL: &str = "none,lecture,constant:0.1@0,constant:0.2@0,constant:0.3@0,constant:0.5@0,constant:0.3@2,\
@@ -56,49 +55,60 @@ const USUAL: &str = "none,lecture,constant:0.1@0,constant:0.2@0,constant:0.3@0,c
 /// Arguments of `roulette`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Args {
-    /// Built-in scene, .toml, or .obj
-    #[arg(value_name = "SCENE", default_value = "cornell")]
+    /// Built-in scene, .toml or .obj
+    #[arg(value_name = "SCENE", default_value = "cornell", help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     pub scene: String,
-    /// Schedules to compare, with commas [default: nine usual ones]
+    /// Schedules to compare [default: nine usual ones]
     ///
-    /// none, lecture, constant:Q[@V], table:q0,q1,…, albedo[@V], throughput[@V], optimal,
-    /// optimal-indirect
-    #[arg(long, value_name = "SCHEDULE,…", verbatim_doc_comment)]
+    /// A list separated by commas: none, lecture, constant:Q[@V], table:q0,q1,…, albedo[@V], throughput[@V], optimal, optimal-indirect.
+    /// `fredholm series --help` describes them.
+    #[arg(long, value_name = "RULE,…", help_heading = WHAT)]
     pub schedules: Option<String>,
-    /// Render every schedule and compare what is measured with what was predicted
-    #[arg(long)]
+    /// Render every schedule, and check the predictions
+    #[arg(long, help_heading = WHAT)]
     pub verify: bool,
-    /// Find the best schedule, and measure its gain over the lecture's and over albedo roulette
-    #[arg(long, visible_alias = "optimize")]
-    pub optimise: bool,
-    /// The quantity whose variance × rays counts: whole or indirect [default: both]
+    /// Find the best schedule, and measure its gain
     ///
-    /// whole: the whole image, all terms T^k E. indirect: indirect light, the terms k ≥ 2.
-    #[arg(long = "for", value_name = "QUANTITY", value_parser = one_of::<Aim>(Aim::ALL), hide_possible_values = true,
-        verbatim_doc_comment)]
+    /// The gain is measured over the lecture's roulette and over albedo roulette. --optimize is the same option.
+    #[arg(long, alias = "optimize", help_heading = WHAT)]
+    pub optimise: bool,
+    /// Optimise: whole or indirect [default: both]
+    ///
+    /// The quantity whose variance × rays is minimised.
+    #[arg(long = "for", value_name = "WHAT", value_parser = one_of::<Aim>(AIMS), help_heading = WHAT)]
     pub aim: Option<Aim>,
-    /// Samples per pixel, of the recording and of every render
-    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(4..=1 << 20))]
+    /// Samples per pixel of every render
+    ///
+    /// The recording has the same number of samples.
+    #[arg(long, value_name = "N", default_value_t = 128, help_heading = WHAT, value_parser = clap::value_parser!(u32).range(4..=1 << 20))]
     pub spp: u32,
-    /// Seed: same seed, same bits, for any number of threads
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub seed: u64,
-    /// Image size in pixels [default: the scene's, made smaller to at most 64 pixels a side]
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    /// Image size in pixels [default: at most 64 a side]
+    ///
+    /// By default the size of the scene, reduced to at most 64 pixels a side.
+    #[arg(long, value_name = "WxH", value_parser = size, help_heading = WHAT)]
     pub size: Option<[u32; 2]>,
-    /// K: schedules are predicted up to this vertex
-    #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u16).range(1..=64))]
+    /// K: predict up to this vertex
+    #[arg(long, value_name = "K", default_value_t = 16, help_heading = WHAT, value_parser = clap::value_parser!(u16).range(1..=64))]
     pub max_bounces: u16,
-    /// How light is found.
-    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help = among("How light is found", Technique::ALL))]
+    /// Seed: the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = WHAT)]
+    pub seed: u64,
+    /// Light: scatter, connect, mis, mis-power
+    ///
+    /// The technique by which a path finds light.
+    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Technique>(TECHNIQUES))]
     pub technique: Technique,
-    /// How a light is selected.
-    #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", help = among("How a light is selected", Selection::ALL))]
+    /// Light choice: uniform or power
+    ///
+    /// How a connection selects a light.
+    #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Selection>(LIGHTS))]
     pub lights: Selection,
-    /// How directions are drawn.
-    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help = among("How directions are drawn", Sampling::ALL))]
+    /// Directions: uniform, cosine or bsdf
+    ///
+    /// The density of the sampled directions at a surface.
+    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Sampling>(SAMPLINGS))]
     pub sampling: Sampling,
-    /// Scene, output, threads.
+    /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
 }

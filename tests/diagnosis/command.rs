@@ -193,7 +193,7 @@ fn bad_input_is_refused_in_words() {
         ("diagnose small.exr", 2, "--against"),
         ("diagnose small.exr --against cornell --alpha 2", 2, "`2` is not between 0 and 1"),
         ("diagnose small.exr --against cornell --gain -1", 2, "unexpected argument '-1'"),
-        ("diagnose small.exr --against cornell --gain=-1", 2, "`-1` is not a number from 0 on"),
+        ("diagnose small.exr --against cornell --gain=-1", 2, "`-1` is not a number of at least 0"),
         ("diagnose small.exr --against cornell --scale 10", 2, "`10` is not SCALE=FILE"),
         ("diagnose small.exr wide.exr --as bounces --against cornell", 2, "do not end in numbers"),
         ("diagnose nowhere.exr --against cornell", 3, "check the name, or render it first"),

@@ -32,9 +32,9 @@ fn what_a_guide_cannot_do_is_refused() {
     for (line, why) in [
         ("series cornell --guide radiosity --estimator light", "walks from the eye only"),
         ("series cornell --guide radiosity --sampling uniform", "replaces the cosine"),
-        ("radiosity cornell --guide radiosity", "none are asked for"),
-        ("sweep cornell --over spp --guide radiosity", "has no part in a sweep"),
-        ("sweep cornell --over spp --time 1s", "has no part in a sweep"),
+        ("radiosity cornell --guide radiosity", "unexpected argument '--guide'"),
+        ("sweep cornell --over spp --guide radiosity", "unexpected argument '--guide'"),
+        ("sweep cornell --over spp --time 1s", "unexpected argument '--time'"),
         ("series cornell --time 1s --spp 4", "cannot be used with"),
         ("series cornell --time soon", "is not a time such as 30s"),
     ] {

@@ -33,7 +33,7 @@ fn what_makes_no_sense_is_refused() {
         ("--over split --equal-rays", "about the same rays already"),
         ("--over split --technique mis,connect", "--technique takes one value here"),
         ("--over spp --pilot 64", "--pilot is for --over split"),
-        ("--over spp --patches 100", "--patches has no part in a sweep"),
+        ("--over spp --patches 100", "unexpected argument '--patches'"),
         ("--over branching --values 1000", "1000 children at every vertex make 2.1e18 rays at depth 4"),
     ] {
         let said = run(desk.path(), &format!("sweep cornell {line}"));
@@ -56,7 +56,7 @@ fn outputs_are_safe() {
     assert_eq!((sweep("-o a"), sweep("-o a")), (0, 0));
     assert_eq!((sweep("-o a --seed 1"), sweep("-o a --seed 1 --force")), (3, 0));
     assert_eq!((sweep(""), sweep("--seed 1")), (0, 0));
-    for name in ["furnace-points", "furnace-points-2"] {
+    for name in ["furnace-sweep-points", "furnace-sweep-points-2"] {
         assert!(desk.path().join("fredholm-out").join(name).join("sweep.csv").exists(), "{name}");
     }
     let said = run(desk.path(), &format!("sweep furnace --over points {SMALL} -o a --force --json"));

@@ -50,7 +50,7 @@ pub(super) fn run(args: &Bias) -> Result<Ending, Failure> {
     let spp = args.batch.unwrap_or_else(|| 4096u32.div_ceil(w * h));
     let (first, against) = sides(args, finished, spp)?;
     check_sides(&loaded.scene, &first, &against)?;
-    session.make_folder(&format!("bias-{}", loaded.description.name))?;
+    session.make_folder(&format!("{}-bias", loaded.description.name))?;
 
     let limits = [Some(first.limits(&loaded.scene)), against.limits(&loaded.scene)];
     let gap = match &limits {

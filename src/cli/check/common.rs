@@ -1,29 +1,33 @@
-//! Options that every check has, and the scene they load.
+//! Arguments of every check.
 
 use crate::cli::base::Failure;
 use crate::cli::open::Opened;
-use crate::cli::options::{Shared, size};
+use crate::cli::options::{Shared, WHAT, size};
 use crate::cli::session::Session;
 use clap::Args;
 use fredholm::engine::known::resort::with_last_resort;
 use fredholm::scene::Scene;
 
-/// Options that every check has.
+/// Arguments of every check.
 #[derive(Clone, Debug, Args)]
 pub struct Common {
-    /// Seed: same seed and same number of samples, same bits, for any number of threads
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    /// Seed: the same seed gives the same bits
+    ///
+    /// The number of threads does not matter; the number of samples must be the same, too.
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = WHAT)]
     pub seed: u64,
-    /// Image size in pixels [default: the scene's shape, small]
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    /// Image size in pixels [default: small]
+    ///
+    /// By default the scene's shape with few pixels.
+    #[arg(long, value_name = "WxH", value_parser = size, help_heading = WHAT)]
     pub size: Option<[u32; 2]>,
-    /// Scene, output, threads.
+    /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
 }
 
 impl Common {
-    /// Loads the scene; without `--size` the image has at most `most` pixels on each side.
+    /// Loads the scene, with at most `most` pixels a side unless a size is given.
     pub fn load(&self, session: &mut Session, name: &str, most: u32) -> Result<Opened, Failure> {
         let mut opened = session.open(name, &self.shared.changes, None)?;
         let size = self.size.unwrap_or_else(|| small(opened.description.camera.size, most));
@@ -33,7 +37,7 @@ impl Common {
     }
 }
 
-/// A size of the same aspect ratio with at most `most` pixels on each side.
+/// The same shape with at most `most` pixels on each side.
 fn small([w, h]: [u32; 2], most: u32) -> [u32; 2] {
     let largest = w.max(h);
     if largest <= most {

@@ -2,7 +2,8 @@
 
 use super::common::Common;
 use crate::cli::base::{Ending, Failure, counted, names, note, usage, wrapped};
-use crate::cli::options::{among, probability};
+use crate::cli::choices::{SAMPLINGS, TECHNIQUES};
+use crate::cli::options::{HOW, WHAT, one_of, probability};
 use crate::cli::session::Session;
 use crate::cli::{notes, preflight, write};
 use clap::Args;
@@ -23,17 +24,20 @@ use fredholm::study::equilibrium::{self, Balance, Group, Judgement, Origin, judg
 use fredholm::terms::{TermImage, World};
 use serde_json::json;
 
-pub(super) const EXAMPLES: &str = "Examples:
+/// Below `check equilibrium --help`.
+pub(super) const HELP: &str = "Examples:
   fredholm check equilibrium cornell
-  fredholm check equilibrium cornell --break 1.02     one side made 2 % too large: the check must find it
+  fredholm check equilibrium cornell --break 1.02
   fredholm check equilibrium box.toml --points 256 --spp 262144
 
-L is estimated by the path tracer. E + T L is estimated by one explicit bounce and then the path tracer,
-with different random numbers. Half of the points are uniform on all surfaces with cosine-distributed
-directions, half are what random pixels see. Tested at level α: every point (Holm), the mean over each
-half, and whether the p-values of all points are uniform.
+L is estimated by the path tracer. E + T L is estimated by one explicit step, followed by the path tracer with independent random \
+numbers. Half of the points are uniform on all surfaces with cosine-distributed directions; the other half are seen through random \
+pixels. Three hypotheses are tested at level α: every point (Holm's correction), the mean over each half, and that the p-values of \
+all points are uniform.
 
-It cannot find an error of T that is on both sides: a wrong L' with L' = E + 1.02 T L' passes, too.";
+--break 1.02 makes the explicit step 2 % too large, and the test must find it.
+
+The test cannot see an error in T that both sides share, because L' = E + 1.02 T L' holds, too.";
 
 /// Width and height of the picture: few pixels with many samples each, so that rare hits of a lamp do not show as a pattern.
 const PICTURE: u32 = 32;
@@ -41,33 +45,45 @@ const PICTURE: u32 = 32;
 /// Arguments of `check equilibrium`.
 #[derive(Clone, Debug, Args)]
 pub struct Equilibrium {
-    /// Built-in scene, .toml, or .obj
-    #[arg(value_name = "SCENE", default_value = "cornell")]
+    /// Built-in scene, .toml or .obj
+    #[arg(value_name = "SCENE", default_value = "cornell", help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     scene: String,
     /// Number of points
-    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(2..=65536))]
+    #[arg(long, value_name = "N", default_value_t = 128, help_heading = WHAT, value_parser = clap::value_parser!(u32).range(2..=65536))]
     points: u32,
-    /// Samples of each side at every point; the picture has 1/32 of them in every pixel
-    #[arg(long, value_name = "N", default_value_t = 131_072, value_parser = clap::value_parser!(u32).range(32..=1 << 28))]
+    /// Samples of each side at every point
+    ///
+    /// A pixel of the picture has 1/32 of them.
+    #[arg(long, value_name = "N", default_value_t = 131_072, help_heading = WHAT, value_parser = clap::value_parser!(u32).range(32..=1 << 28))]
     spp: u32,
-    /// How L finds light.
-    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help = among("How L finds light", Technique::ALL))]
-    technique: Technique,
-    /// Russian roulette inside L; it must end paths
-    #[arg(long, value_name = "SCHEDULE", default_value = "albedo@2")]
-    roulette: Roulette,
-    /// How directions are drawn.
-    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help = among("How directions are drawn", Sampling::ALL))]
-    sampling: Sampling,
-    /// Chance to reject the equation though it holds
-    #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = probability)]
-    alpha: f64,
-    /// Margin δ: how much the two sides may differ, averaged over the points, as a fraction of T L
-    #[arg(long, value_name = "FRACTION", default_value_t = 0.02, value_parser = probability)]
-    delta: f64,
-    /// Breaks the equation on purpose: the step by hand weighs FACTOR times what it should
-    #[arg(long = "break", value_name = "FACTOR", default_value_t = 1.0)]
+    /// Weight of the explicit step
+    ///
+    /// With a FACTOR other than 1 the equation is false on purpose, and the test must reject it.
+    #[arg(long = "break", value_name = "FACTOR", default_value_t = 1.0, help_heading = WHAT)]
     factor: f32,
+    /// Light: scatter, connect, mis, mis-power
+    ///
+    /// The technique by which the path tracer for L finds light.
+    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Technique>(TECHNIQUES))]
+    technique: Technique,
+    /// Roulette for L; it must end paths
+    #[arg(long, value_name = "RULE", default_value = "albedo@2", help_heading = HOW)]
+    roulette: Roulette,
+    /// Directions: uniform, cosine or bsdf
+    ///
+    /// The density of the sampled directions at a surface.
+    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Sampling>(SAMPLINGS))]
+    sampling: Sampling,
+    /// Probability of a false alarm
+    ///
+    /// The probability to reject an equation that holds.
+    #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = probability, help_heading = HOW)]
+    alpha: f64,
+    /// δ of the means, as a fraction of T L
+    ///
+    /// Means are taken over points.
+    #[arg(long, value_name = "X", default_value_t = 0.02, value_parser = probability, help_heading = HOW)]
+    delta: f64,
     #[command(flatten)]
     common: Common,
 }
@@ -97,7 +113,7 @@ pub(super) fn run(args: &Equilibrium) -> Result<Ending, Failure> {
         ..Settings::default()
     };
     can_be_tested(args, &loaded.scene, &settings)?;
-    session.make_folder(&format!("equilibrium-{}", loaded.description.name))?;
+    session.make_folder(&format!("{}-equilibrium", loaded.description.name))?;
     let found = balance(args, &loaded.scene, &settings, &session);
     session.clear();
     let files = write_all(&session, &found)?;

@@ -9,10 +9,17 @@ mod sides;
 use super::base::{Ending, Failure};
 use clap::{Args, Subcommand};
 
+/// Below `check --help`.
+pub const HELP: &str = "Examples:
+  fredholm check bias --estimator prefix --against path
+  fredholm check equilibrium cornell
+
+Exit code 1: a bias was found, or the equation was rejected.";
+
 /// Arguments of `check`.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// What is checked
+    /// The check to run
     #[command(subcommand)]
     pub what: What,
 }
@@ -20,11 +27,11 @@ pub struct Check {
 /// What can be checked.
 #[derive(Debug, Subcommand)]
 pub enum What {
-    /// Are two estimators equal? Watched until it is decided, and stopped at any moment
-    #[command(after_help = bias_args::EXAMPLES)]
+    /// Tests if two estimators are equal, until that is decided
+    #[command(after_long_help = bias_args::HELP)]
     Bias(bias_args::Bias),
-    /// Does L = E + T L hold, point by point?
-    #[command(after_help = equilibrium::EXAMPLES)]
+    /// Tests if L = E + T L holds, point by point
+    #[command(after_long_help = equilibrium::HELP)]
     Equilibrium(equilibrium::Equilibrium),
 }
 

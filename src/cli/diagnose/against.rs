@@ -3,7 +3,7 @@
 use super::args::Diagnose;
 use super::suspects::size_mismatch;
 use crate::cli::base::{Failure, note, usage};
-use crate::cli::solve::RunArgs;
+use crate::cli::solve::{Render, Series, Tour};
 use crate::cli::{notes, open, preflight};
 use clap::{Parser, Subcommand};
 use fredholm::diagnosis::candidates::own_seed;
@@ -105,24 +105,26 @@ struct Rendered {
     #[command(subcommand)]
     command: Option<Renders>,
     #[command(flatten)]
-    tour: RunArgs,
+    tour: Tour,
 }
 
 #[derive(Subcommand)]
 enum Renders {
-    Tour(RunArgs),
-    Series(RunArgs),
-    Render(RunArgs),
+    Tour(Tour),
+    Series(Series),
+    Render(Render),
 }
 
 /// The scene that a command of this program renders, or `None` if it renders none or the scene cannot be loaded.
 fn scene_of(command: &str) -> Option<Description> {
     let Rendered { command, tour } = Rendered::try_parse_from(shlex::split(command)?).ok()?;
-    let args = match command {
-        None => tour,
-        Some(Renders::Tour(args) | Renders::Series(args) | Renders::Render(args)) => args,
+    let (frame, shared) = match command {
+        None => (tour.frame, tour.shared),
+        Some(Renders::Tour(args)) => (args.frame, args.shared),
+        Some(Renders::Series(args)) => (args.frame, args.shared),
+        Some(Renders::Render(args)) => (args.frame, args.shared),
     };
-    Some(load::scene(&args.frame.scene, &args.shared.changes.options(None)).ok()?.description)
+    Some(load::scene(&frame.scene, &shared.changes.options(None)).ok()?.description)
 }
 
 impl Source {

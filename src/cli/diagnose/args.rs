@@ -1,60 +1,91 @@
-//! What `diagnose` takes.
+//! Arguments of `diagnose`.
 
-use crate::cli::options::{Shared, fraction, probability};
+use crate::cli::options::{HOW, Shared, WHAT, fraction, probability};
 use clap::Args;
 use fredholm::diagnosis::Effort;
 use std::path::PathBuf;
 
+/// Below `diagnose --help`.
+pub const HELP: &str = "Examples:
+  fredholm diagnose mine.exr --against cornell
+  fredholm diagnose T00.exr T01.exr T02.exr T03.exr --against box.toml
+  fredholm diagnose r_4.exr r_16.exr r_64.exr --against cornell
+  fredholm diagnose mine.exr --scale 10=large.exr --against cornell
+  fredholm diagnose mine.png --gain 2 --against fredholm-out/cornell
+  fredholm diagnose zoo-out/*.exr --against cornell
+
+The pictures are compared with the right terms, region by region. If they differ, every known mistake is rendered in the same \
+scene, and each mistake that contradicts the pictures is excluded. The answer is the name of the mistake that remains, or a short \
+list that this data cannot distinguish.
+
+A file with the terms in layers T00, T01, … carries the most information. The whole image alone carries less, 8 bits the least.
+
+Exit code 0: correct, as far as the data can tell. Exit code 1: something is wrong.";
+
 /// How several files belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Grouping {
-    /// By their names
+    #[value(help = "by their names")]
     Auto,
-    /// Each by itself
+    #[value(help = "each file separately")]
     Separate,
-    /// Numbered terms of one render
+    #[value(help = "numbered terms of one render")]
     Bounces,
-    /// One render at growing samples per pixel
+    #[value(help = "one render at growing samples per pixel")]
     Spp,
 }
 
 /// Arguments of `diagnose`.
 #[derive(Clone, Debug, Args)]
 pub struct Diagnose {
-    /// Pictures of one scene: EXR with layers, EXR, PNG, JPEG or HDR
+    /// Pictures of one scene: EXR, PNG, JPEG or HDR
     ///
-    /// Files named T00.exr, T01.exr, … are taken for the terms of one render, files named r_16.exr,
-    /// r_64.exr, … for one render at growing samples per pixel, all others each for itself (--as).
-    #[arg(required = true, value_name = "RENDER", verbatim_doc_comment)]
+    /// An EXR may have layers. Files named T00.exr, T01.exr, … are read as the terms of one render, files named r_16.exr, r_64.exr,
+    /// … as one render at growing samples per pixel, and all others separately; --as changes that.
+    #[arg(required = true, value_name = "RENDER", help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     pub renders: Vec<PathBuf>,
-    /// What they should show: a built-in scene, .toml, .obj, or the output folder of a run
-    #[arg(long, value_name = "SCENE|DIR")]
+    /// The scene, or the output folder of a run
+    ///
+    /// The right answer: a built-in scene, a .toml or .obj file, or the output folder of a run.
+    #[arg(long, value_name = "SCENE|DIR", help_heading = WHAT)]
     pub against: String,
-    /// How several files belong together: auto, separate, bounces, spp
-    #[arg(long = "as", value_enum, default_value = "auto", value_name = "HOW", hide_possible_values = true)]
+    /// auto, separate, bounces or spp
+    ///
+    /// How several files belong together.
+    #[arg(long = "as", value_enum, default_value = "auto", value_name = "HOW", help_heading = WHAT)]
     pub grouping: Grouping,
-    /// The same render of the scene made so many times larger: --scale 10=FILE
-    #[arg(long, value_name = "S=FILE", value_parser = scale)]
+    /// The same scene S times as large: --scale 10=FILE
+    ///
+    /// A render by the same program of the scene made S times as large. It shows mistakes that depend on the unit of length.
+    #[arg(long, value_name = "S=FILE", value_parser = scale, help_heading = WHAT)]
     pub scale: Option<(f64, PathBuf)>,
-    /// Divide the pictures by this first; 0: exposure unknown [default: 1; 0 for 8-bit pictures]
-    #[arg(long, value_name = "G", value_parser = fraction)]
+    /// Divide the pictures by G first
+    ///
+    /// 0 means that the exposure is unknown. [default: 1; 0 for 8-bit pictures]
+    #[arg(long, value_name = "G", value_parser = fraction, help_heading = WHAT)]
     pub gain: Option<f64>,
-    /// K of the reference where the file has no terms [default: as the file says, or 8]
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=64))]
+    /// K of the reference, if the file has no terms
+    ///
+    /// [default: as the file says, or 8]
+    #[arg(long, value_name = "K", help_heading = HOW, value_parser = clap::value_parser!(u16).range(0..=64))]
     pub max_bounces: Option<u16>,
-    /// Samples per pixel of the reference [default: 8 million paths in all]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
+    /// Samples per pixel of the reference
+    ///
+    /// [default: 8 million paths in all]
+    #[arg(long, value_name = "N", help_heading = HOW, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     pub spp: Option<u32>,
-    /// Paths that all candidates together may take in one stage
-    #[arg(long, default_value_t = Effort::default().paths, value_name = "N")]
+    /// Paths for all candidates per stage
+    #[arg(long, default_value_t = Effort::default().paths, value_name = "N", help_heading = HOW)]
     pub paths: u64,
-    /// Chance that a correct renderer is called wrong
-    #[arg(long, default_value_t = 1e-3, value_name = "P", value_parser = probability)]
+    /// Probability of a false alarm
+    ///
+    /// The probability that a correct renderer is called wrong.
+    #[arg(long, default_value_t = 1e-3, value_name = "P", value_parser = probability, help_heading = HOW)]
     pub alpha: f64,
-    /// Seed of the reference and of the candidates
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    /// Seed of reference and candidates
+    #[arg(long, default_value_t = 0, value_name = "N", help_heading = HOW)]
     pub seed: u64,
-    /// Scene, output, threads.
+    /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
 }

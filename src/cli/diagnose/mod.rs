@@ -11,7 +11,7 @@ mod text;
 use super::base::{Ending, Failure, usage};
 use super::session::Session;
 use against::{Right, Source};
-pub use args::Diagnose;
+pub use args::{Diagnose, HELP};
 use found::Diagnosed;
 use fredholm::diagnosis::candidates::Members;
 use fredholm::diagnosis::picture::{Code, Pictures};
@@ -41,7 +41,7 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
         return Err(size_mismatch("--scale", large.pictures.size, first.file.pictures.size));
     }
     session.about(&source.name, &source.hash);
-    session.make_folder("diagnose")?;
+    session.make_folder(&format!("{}-diagnose", source.name))?;
     let judged = judge(args, &suspects, scaled.as_ref(), &source, session.progress())?;
     session.clear();
     let Judged { found, label, rare_paths } = judged;

@@ -1,7 +1,8 @@
-//! What `radiosity` takes.
+//! Arguments of `radiosity`.
 
-use crate::cli::options::one_of;
-use crate::cli::solve::RunArgs;
+use crate::cli::choices::{CHANNELS, SOLVERS};
+use crate::cli::options::{Frame, MATRIX, Shared, WHAT, one_of};
+use crate::cli::solve::{Mesh, Pixels, Request};
 use crate::cli::write::Export;
 use clap::Args;
 use fredholm::solver::comparison::Solvers;
@@ -10,35 +11,51 @@ use fredholm::terms::Channel;
 /// Arguments of `radiosity`.
 #[derive(Clone, Debug, Args)]
 pub struct Radiosity {
-    /// Solve (I − T) L = E step by step instead: all, neumann, cg, …
-    ///
-    /// neumann: partial sums of Σ TᵏE; jacobi: the same unless patches see themselves;
-    /// gauss-seidel, sor: patch by patch; southwell: progressive shooting, brightest first;
-    /// chebyshev: needs the ends of the spectrum; cg: conjugate gradients in the weight 1/ρ;
-    /// gmres; lu: the direct solve that all others are held against.
-    /// With --factors rays there is no lu, and no cg, because T is self-adjoint only within its
-    /// noise: all others are held against GMRES to rounding.
-    #[arg(long, value_parser = one_of::<Solvers>(Solvers::choices()), value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
-    pub solver: Option<Solvers>,
-    /// red, green or blue, for --solver and --modes [default: the slowest]
-    ///
-    /// The slowest is that of the largest spectral radius.
-    #[arg(long, value_parser = one_of::<Channel>(Channel::ALL), value_name = "NAME", hide_possible_values = true)]
-    pub channel: Option<Channel>,
-    /// Also write every step of every solver, into the output folder
-    #[arg(long, value_name = "NAME.csv", requires = "solver", value_parser = csv_name)]
-    pub history: Option<String>,
-    /// Show the spectrum of T and its N leading modes instead of L
-    #[arg(long, value_name = "N", conflicts_with = "solver", value_parser = clap::value_parser!(u16).range(1..=64))]
-    pub modes: Option<u16>,
-    /// Also write patches and terms for other programs; with `matrix` also F
-    ///
-    /// mesh: mesh.csv, mesh-terms.csv, norms.csv; matrix: F.npy, too.
-    #[arg(long, value_enum, value_name = "WHAT", conflicts_with_all = ["solver", "modes"], hide_possible_values = true)]
-    pub export: Option<Export>,
-    /// What is solved.
+    /// Scene, samples, size, K, seed.
     #[command(flatten)]
-    pub run: RunArgs,
+    pub frame: Frame,
+    /// Compare solvers of (I − T) L = E: all, cg, gmres, …
+    ///
+    /// Solves step by step and renders nothing. With --factors rays there is no lu and no cg, because T is self-adjoint only within
+    /// its noise; all others are then compared with GMRES solved to rounding.
+    #[arg(long, value_parser = one_of::<Solvers>(SOLVERS), value_name = "NAME", help_heading = WHAT)]
+    pub solver: Option<Solvers>,
+    /// The spectrum of T and its N leading modes
+    ///
+    /// Solves the eigenproblem and shows the modes in place of L.
+    #[arg(long, value_name = "N", conflicts_with = "solver", help_heading = WHAT, value_parser = clap::value_parser!(u16).range(1..=64))]
+    pub modes: Option<u16>,
+    /// Also write patches and terms: mesh or matrix
+    ///
+    /// mesh writes mesh.csv, mesh-terms.csv and norms.csv; matrix also writes F.npy.
+    #[arg(long, value_enum, value_name = "WHAT", conflicts_with_all = ["solver", "modes"], help_heading = WHAT)]
+    pub export: Option<Export>,
+    /// How the samples of the picture are drawn.
+    #[command(flatten)]
+    pub pixels: Pixels,
+    /// red, green or blue, for --solver and --modes
+    ///
+    /// [default: the channel with the largest spectral radius, where solvers converge most slowly]
+    #[arg(long, value_parser = one_of::<Channel>(CHANNELS), value_name = "NAME", help_heading = MATRIX)]
+    pub channel: Option<Channel>,
+    /// With --solver: write every step of every solver
+    ///
+    /// The file goes into the output folder.
+    #[arg(long, value_name = "NAME.csv", requires = "solver", help_heading = MATRIX, value_parser = csv_name)]
+    pub history: Option<String>,
+    /// The mesh and its form factors.
+    #[command(flatten)]
+    pub mesh: Mesh,
+    /// Changes to the scene, output, threads.
+    #[command(flatten)]
+    pub shared: Shared,
+}
+
+impl From<&Radiosity> for Request {
+    fn from(r: &Radiosity) -> Self {
+        let Radiosity { frame, mesh, pixels, shared, .. } = r.clone();
+        Self { frame, worlds: vec![], terms: Default::default(), light: Default::default(), pixels, mesh, shared }
+    }
 }
 
 fn csv_name(s: &str) -> Result<String, String> {

@@ -1,9 +1,9 @@
 //! The scene, its mesh with T, and the output folder: what `--solver` and `--modes` start from.
 
+use super::args::Radiosity;
 use crate::cli::base::{Failure, note};
 use crate::cli::open::Opened;
 use crate::cli::session::Session;
-use crate::cli::solve::RunArgs;
 use crate::cli::{notes, preflight};
 use fredholm::engine::Settings;
 use fredholm::engine::by_matrix::{self, Matrix, MatrixError};
@@ -24,9 +24,8 @@ pub struct Laboratory<R = solver::Radiosity> {
 }
 
 impl Laboratory {
-    /// Loads the scene, meshes it and computes the form factors as a matrix; `what` ends the name of the output folder. `None` if
-    /// interrupted.
-    pub fn new(args: &RunArgs, what: &str) -> Result<Option<Self>, Failure> {
+    /// Loads, meshes and computes form factors as a matrix; `None` if interrupted.
+    pub fn new(args: &Radiosity, what: &str) -> Result<Option<Self>, Failure> {
         Laboratory::prepare(args, what, Factors::Dense, |opened, s, progress| {
             let Opened { description, scene, .. } = opened;
             let matrix = by_matrix::dense_matrix(description, scene, s.patches, s.grading, 0, progress)?;
@@ -36,8 +35,8 @@ impl Laboratory {
 }
 
 impl Laboratory<Stored> {
-    /// Loads the scene, meshes it and stores `per_row` rays for every patch. `None` if interrupted.
-    pub fn sampled(args: &RunArgs, what: &str, per_row: u32) -> Result<Option<Self>, Failure> {
+    /// The same as stored rays.
+    pub fn sampled(args: &Radiosity, what: &str, per_row: u32) -> Result<Option<Self>, Failure> {
         Laboratory::prepare(args, what, Factors::Rays(per_row), |opened, s, progress| {
             let Opened { description, scene, .. } = opened;
             let matrix = by_matrix::sampled_matrix(description, scene, s.patches, per_row, s, progress)?;
@@ -48,16 +47,16 @@ impl Laboratory<Stored> {
 
 impl<R> Laboratory<R> {
     fn prepare(
-        args: &RunArgs,
+        args: &Radiosity,
         what: &str,
         factors: Factors,
         make: impl FnOnce(&Opened, &Settings, Progress<'_>) -> Result<(usize, Matrix<R>), MatrixError>,
     ) -> Result<Option<Self>, Failure> {
         let mut session = Session::new(&args.shared, args.frame.seed)?;
         let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size)?;
-        let opened = Opened { scene: opened.scene.select_lights(args.lights), ..opened };
+        let opened = Opened { scene: opened.scene.select_lights(args.pixels.lights), ..opened };
         preflight::has_a_matrix(&opened.description, &opened.scene, factors)?;
-        let (patches, grading, seed) = (args.patches.unwrap_or(600) as usize, args.grading, args.frame.seed);
+        let (patches, grading, seed) = (args.mesh.patches.unwrap_or(600) as usize, args.mesh.grading, args.frame.seed);
         let settings = Settings { patches, factors, grading, max_bounces: 0, seed, ..Settings::default() };
         preflight::rows_fit_in_memory(&opened.scene, &settings)?;
         session.make_folder(&format!("{}-{what}", opened.description.name))?;

@@ -16,8 +16,8 @@ pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
         (Some(name), _) => solvers::run(args, name),
         (None, Some(count)) => modes::run(args, count.into()),
         (None, None) if args.channel.is_some() => {
-            Err(usage("--channel is for --solver and --modes, and none of them is asked for", "add one of them"))
+            Err(usage("--channel is for --solver and --modes, and neither is given", "add one of them"))
         }
-        (None, None) => solve::radiosity(&args.run, args.export),
+        (None, None) => solve::radiosity(&args.into(), args.export),
     }
 }

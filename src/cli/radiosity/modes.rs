@@ -23,11 +23,10 @@ const SHOWN: usize = 10;
 
 /// Finds the spectrum of T in every channel, writes the files and prints the text.
 pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
-    let run = &args.run;
-    let Some(lab) = Laboratory::new(run, "modes")? else { return Ok(Ending::Interrupted) };
+    let Some(lab) = Laboratory::new(args, "modes")? else { return Ok(Ending::Interrupted) };
     let settings = Settings {
-        spp: run.frame.spp.unwrap_or(64),
-        seed: run.frame.seed,
+        spp: args.frame.spp.unwrap_or(64),
+        seed: args.frame.seed,
         max_bounces: count + 1,
         ..Settings::default()
     };
@@ -54,7 +53,7 @@ pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
         "command": lab.session.command(),
         "scene": lab.opened.description.name,
         "scene_hash": lab.opened.hash,
-        "seed": run.frame.seed,
+        "seed": args.frame.seed,
         "patches": lab.patches,
         "channels": modes::machine(&spectra),
     });

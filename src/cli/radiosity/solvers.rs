@@ -29,7 +29,7 @@ pub fn run(args: &Radiosity, name: Solvers) -> Result<Ending, Failure> {
     let factors = factors(args, name)?;
     match factors {
         Factors::Dense => {
-            let Some(lab) = Laboratory::new(&args.run, "solvers")? else { return Ok(Ending::Interrupted) };
+            let Some(lab) = Laboratory::new(args, "solvers")? else { return Ok(Ending::Interrupted) };
             let (study, radiosity) = (Study::new(args, &lab, name), &lab.matrix.radiosity);
             let operator = radiosity.operator(study.channel as usize);
             study.run(
@@ -38,7 +38,7 @@ pub fn run(args: &Radiosity, name: Solvers) -> Result<Ending, Failure> {
             )
         }
         Factors::Rays(per_row) => {
-            let lab = Laboratory::sampled(&args.run, "solvers", per_row)?;
+            let lab = Laboratory::sampled(args, "solvers", per_row)?;
             let Some(lab) = lab else { return Ok(Ending::Interrupted) };
             let (study, Stored { patches, rays }) = (Study::new(args, &lab, name), &lab.matrix.radiosity);
             let operator = rays.operator(patches.iter().map(|p| p.reflectance[study.channel as usize]).collect());
@@ -51,10 +51,10 @@ pub fn run(args: &Radiosity, name: Solvers) -> Result<Ending, Failure> {
 /// How the form factors are stored; a usage error if the solver cannot work on them.
 fn factors(args: &Radiosity, name: Solvers) -> Result<Factors, Failure> {
     let wrong = |what: &str, help: &str| Err(usage(what, help));
-    if args.run.factors == Some(Form::Both) {
+    if args.mesh.factors == Some(Form::Both) {
         return wrong("solvers work on one matrix at a time", "use --factors dense or --factors rays");
     }
-    let factors = preflight::factors(args.run.factors, args.run.rays, args.run.patches.unwrap_or(600))?;
+    let factors = preflight::factors(args.mesh.factors, args.mesh.rays, args.mesh.patches.unwrap_or(600))?;
     match (factors, name) {
         (Factors::Rays(_), Solvers::One(Solver::ConjugateGradients)) => wrong(
             "conjugate gradients need a self-adjoint T, and that of stored rays is so only within its noise",
@@ -212,7 +212,7 @@ impl<'a, R> Study<'a, R> {
             "command": lab.session.command(),
             "scene": lab.opened.description.name,
             "scene_hash": lab.opened.hash.clone(),
-            "seed": args.run.frame.seed,
+            "seed": args.frame.seed,
             "threads": rayon::current_num_threads(),
             "patches": lab.patches,
             "rays": lab.matrix.sampling.map(|s| s.per_row),

@@ -1,6 +1,16 @@
-//! What everything that renders takes.
+//! Arguments of `tour`, `series`, `render` and `radiosity`, in groups: each command takes the groups that act there.
+//!
+//! | group | options | tour | series | render | radiosity |
+//! |---|---|---|---|---|---|
+//! | [`Frame`], [`Shared`] | scene, samples, size, K, seed; output | yes | yes | yes | yes |
+//! | [`Worlds`] | the ways to solve | yes | yes | | |
+//! | [`Terms`] | estimator of the terms | | yes | | |
+//! | [`Light`] | technique, guide, roulette | yes | yes | yes | |
+//! | [`Pixels`] | directions, lights, points, time | yes | yes | yes | yes |
+//! | [`Mesh`] | patches, form factors | yes | yes | | yes |
 
-use crate::cli::options::{Frame, Shared, among, duration, grading, one_of};
+use crate::cli::choices::{ESTIMATORS, FORMS, GUIDES, LIGHTS, POINTS, SAMPLINGS, TECHNIQUES, WORLDS};
+use crate::cli::options::{Frame, HOW, MATRIX, Shared, WHAT, duration, grading, one_of};
 use clap::Args;
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::Estimator;
@@ -13,174 +23,292 @@ use fredholm::study::roulette::Schedule;
 use fredholm::terms::World;
 use std::time::Duration;
 
-/// The names of the estimators.
-const ESTIMATORS: [&str; 5] = ["single", "prefix", "branching", "light", "bidirectional"];
-
-/// Arguments of everything that renders.
+/// Arguments of `tour`.
 #[derive(Clone, Debug, Args)]
-pub struct RunArgs {
-    /// What is rendered.
+pub struct Tour {
+    /// Scene, samples, size, K, seed.
     #[command(flatten)]
     pub frame: Frame,
-    /// Estimator of the terms: prefix, single, light, … [default: prefix]
-    ///
-    /// single: each term from paths of its own; prefix: all terms from the prefixes of one path;
-    /// branching: a tree, --branching children at every vertex; light: particles from the lights;
-    /// bidirectional: walks from both ends, joined in every way. The tour runs the first two.
-    #[arg(long, value_parser = one_of::<Estimator>(ESTIMATORS), value_name = "NAME", hide_possible_values = true, verbatim_doc_comment)]
-    pub estimator: Option<Estimator>,
-    /// With --estimator bidirectional: every strategy apart
-    ///
-    /// Writes strategies.png, strategies-alone.png and strategies.exr, and prints a table:
-    /// for each term, what is found with s = 0 to k + 1 vertices walked from the light.
-    #[arg(long, verbatim_doc_comment)]
-    pub strategies: bool,
-    /// Children of every vertex of --estimator branching
-    ///
-    /// Term k takes N^k rays.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub branching: u32,
-    /// How samples lie in a pixel.
-    #[arg(long, default_value_t = Points::Independent, value_name = "NAME", help = among(POINTS.0, Points::ALL),
-        long_help = among(POINTS.0, Points::ALL) + POINTS.1)]
-    pub points: Points,
-    /// What tells rays where to look.
-    #[arg(long, default_value_t = Guiding::Bsdf, value_parser = one_of::<Guiding>(Guiding::ALL), value_name = "NAME",
-        hide_possible_values = true, help = among(GUIDE.0, Guiding::ALL), long_help = among(GUIDE.0, Guiding::ALL) + GUIDE.1)]
-    pub guide: Guiding,
-    /// Time for each world of rays, instead of --spp: 30s, 5m
-    ///
-    /// Passes are added while they are expected to end in time; a guide's preparation counts.
-    /// The first pass, 16 samples per pixel, is always finished. The result is, bit for bit, that
-    /// of --spp with the number of samples that was reached.
-    #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with = "spp", verbatim_doc_comment)]
-    pub time: Option<Duration>,
-    /// How light is found.
-    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", help = among(TECHNIQUE.0, Technique::ALL),
-        long_help = among(TECHNIQUE.0, Technique::ALL) + TECHNIQUE.1)]
-    pub technique: Technique,
-    /// How a light is selected.
-    #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", help = among("How a light is selected", Selection::ALL))]
-    pub lights: Selection,
-    /// How directions are drawn.
-    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help = among("How directions are drawn", Sampling::ALL))]
-    pub sampling: Sampling,
-    /// Russian roulette: none, lecture, constant:Q@V, … (all: --help)
-    ///
-    /// [default: render: lecture; else none for k ≤ K, then albedo]
-    ///
-    /// q is the probability of TERMINATION, tested at vertex v = 0, 1, … after it is scored:
-    ///   none                 never; nothing longer than K is estimated
-    ///   lecture              q = 0, 0, then 0.5
-    ///   constant:Q[@V]       q = Q from vertex V on (2)
-    ///   table:q0,q1,…        as listed, the last for all that follow
-    ///   albedo[@V]           q = 1 − albedo from vertex V on (2)
-    ///   throughput[@V]       q = 1 − throughput from vertex V on (2)
-    ///   contribution[@V]     needs --guide: q = 1 − expected of the rest/expected of the pixel,
-    ///                        at most 0.9, from vertex V on (1)
-    ///   window[@V]           needs --guide, from vertex V on (0), for w = expected of the rest/expected
-    ///                        of the pixel: below 0.5 q = 1 − 2w, at most 0.9; above 1 the path splits
-    ///                        into w walks in the mean, at most 8
-    ///                        (both: prefix and path tracer; single and branching end by albedo,
-    ///                        and so does a path at surfaces that the guide knows nothing of)
-    ///   optimal              the table with the most efficiency, found by a pilot of 2^18 paths
-    #[arg(long, value_name = "SCHEDULE", verbatim_doc_comment)]
-    pub roulette: Option<Schedule>,
-    /// Which worlds to solve.
-    #[arg(long, value_parser = one_of::<World>(World::ALL), value_delimiter = ',', value_name = "WORLD,…",
-        hide_possible_values = true, help = among(WORLDS.0, World::ALL), long_help = among(WORLDS.0, World::ALL) + WORLDS.1)]
-    pub worlds: Vec<World>,
-    /// About how many patches the matrix has [default: 600; tour: 2400]
-    ///
-    /// Up to 20000 for a dense matrix, 2000000 for stored rays.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
-    pub patches: Option<u32>,
-    /// How much narrower patches get towards edges where faces meet: 1 (not) to 8
-    ///
-    /// Widths across an edge go like distance^(1 − 1/G); about 1.5 to 2 give eigenvalues and sums
-    /// their order 2 in h where edges are all that spoils it. Quadrilaterals are graded, whole
-    /// faces and pieces cut by others; triangles and curved surfaces keep patches of equal area.
-    #[arg(long, value_name = "G", default_value_t = 1.0, value_parser = grading, verbatim_doc_comment)]
-    pub grading: f64,
-    /// How form factors are held: dense, rays or both
-    ///
-    /// dense: a matrix, deterministic; rays: rows of stored rays, with an error bar;
-    /// both: the matrix, and how far rays on the same patches are from it.
-    /// [default: dense up to 10000 patches, rays beyond]
-    #[arg(long, value_parser = one_of::<Form>(Form::ALL), value_name = "HOW", hide_possible_values = true, verbatim_doc_comment)]
-    pub factors: Option<Form>,
-    /// Rays of every patch, where they are stored [default: 256]
-    ///
-    /// 2 to 65536; powers of two are best.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=65_536))]
-    pub rays: Option<u32>,
-    /// Show patches as they are, without gathering a last bounce from them
-    #[arg(long)]
-    pub read_patches: bool,
-    /// Fit the order of convergence of the radiosity from three meshes
-    #[arg(long)]
-    pub orders: bool,
-    /// Scene, output, threads.
+    /// The ways to solve the scene.
+    #[command(flatten)]
+    pub worlds: Worlds,
+    /// How paths find light and when they end.
+    #[command(flatten)]
+    pub light: Light,
+    /// How samples are drawn.
+    #[command(flatten)]
+    pub pixels: Pixels,
+    /// The matrix.
+    #[command(flatten)]
+    pub mesh: Mesh,
+    /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
 }
 
-const POINTS: (&str, &str) = (
-    "How samples lie in a pixel",
-    "\n\nindependent: they know nothing of each other; sobol: Owen-scrambled Sobol points,\none scramble per replicate.",
-);
+/// Arguments of `series`: all groups.
+#[derive(Clone, Debug, Args)]
+pub struct Series {
+    /// Scene, samples, size, K, seed.
+    #[command(flatten)]
+    pub frame: Frame,
+    /// The ways to solve the scene.
+    #[command(flatten)]
+    pub worlds: Worlds,
+    /// The estimator of the terms.
+    #[command(flatten)]
+    pub terms: Terms,
+    /// How paths find light and when they end.
+    #[command(flatten)]
+    pub light: Light,
+    /// How samples are drawn.
+    #[command(flatten)]
+    pub pixels: Pixels,
+    /// The matrix.
+    #[command(flatten)]
+    pub mesh: Mesh,
+    /// Changes to the scene, output, threads.
+    #[command(flatten)]
+    pub shared: Shared,
+}
 
-const GUIDE: (&str, &str) = (
-    "What tells rays where to look",
-    "\n\nbsdf: the surface alone; radiosity: at Lambertian surfaces directions are drawn from what a
-radiosity solution of the scene (--patches, default 4000) expects from them, mixed with
-the cosine, and a connection chooses its lamp by what each sends to the patch (in place
-of --lights uniform). Other surfaces scatter as before. The matrix is only a guide: it takes
-every surface for Lambertian and glass for black; what it gets wrong costs noise, never a
-bias. Goes well with --roulette window.",
-);
+/// Arguments of `render`.
+#[derive(Clone, Debug, Args)]
+pub struct Render {
+    /// Scene, samples, size, K, seed.
+    #[command(flatten)]
+    pub frame: Frame,
+    /// How paths find light and when they end.
+    #[command(flatten)]
+    pub light: Light,
+    /// How samples are drawn.
+    #[command(flatten)]
+    pub pixels: Pixels,
+    /// Changes to the scene, output, threads.
+    #[command(flatten)]
+    pub shared: Shared,
+}
 
-const TECHNIQUE: (&str, &str) = (
-    "How light is found",
-    "\n\nscatter: paths must hit it; connect: next-event estimation (and hits after a mirror);
-mis: both, weighed by the balance heuristic; mis-power: by the power heuristic.",
-);
+/// The ways to solve the scene, each called a world.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = WHAT)]
+pub struct Worlds {
+    /// Ways to solve: terms,path,radiosity [default: all]
+    ///
+    /// This program calls each way a world. A list is separated by commas.
+    #[arg(long, value_parser = one_of::<World>(WORLDS), value_delimiter = ',', value_name = "WORLD,…")]
+    pub worlds: Vec<World>,
+}
 
-const WORLDS: (&str, &str) = (
-    "Which worlds to solve, with commas",
-    "\n\nterms: each term by its own estimator; path: the full path tracer;
-radiosity: the matrix over patches. [default: all; render and radiosity: their own]",
-);
+/// The estimator of the terms.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = HOW)]
+pub struct Terms {
+    /// Estimator of the terms: prefix, single, light, …
+    ///
+    /// [default: prefix]
+    #[arg(long, value_parser = one_of::<Estimator>(ESTIMATORS), value_name = "NAME")]
+    pub estimator: Option<Estimator>,
+    /// Children of every vertex of the branching estimator
+    ///
+    /// Term k takes N^k rays.
+    #[arg(long, value_name = "N", default_value_t = 2, hide_short_help = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub branching: u32,
+    /// Show every strategy of the bidirectional estimator separately
+    ///
+    /// For each term, the strategies have s = 0 to k + 1 vertices walked from the light. A table is printed, and
+    /// strategies.png, strategies-alone.png and strategies.exr are written.
+    #[arg(long, hide_short_help = true)]
+    pub strategies: bool,
+}
 
-impl RunArgs {
-    /// What is rendered with unless a schedule is given: `fallback`, in the terms only after K.
+impl Default for Terms {
+    fn default() -> Self {
+        Self { estimator: None, branching: 2, strategies: false }
+    }
+}
+
+/// How paths find light, what guides them and when they end.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = HOW)]
+pub struct Light {
+    /// Light: scatter, connect, mis, mis-power
+    ///
+    /// The technique by which a path finds light.
+    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", value_parser = one_of::<Technique>(TECHNIQUES))]
+    pub technique: Technique,
+    /// Roulette: none, lecture, constant:Q@V, albedo, …
+    #[arg(long, value_name = "RULE", long_help = ROULETTE)]
+    pub roulette: Option<Schedule>,
+    /// Guide for rays: bsdf or radiosity
+    ///
+    /// With `radiosity` a rough radiosity solution (4000 patches; `series --patches N` changes that) says where light comes from.
+    /// At Lambertian surfaces it mixes those directions with the cosine, and it selects lights by what they send to the patch, in
+    /// place of --lights. Other surfaces scatter as before. The guide treats every surface as Lambertian and glass as black. Its
+    /// errors cost noise, never bias. It works well with --roulette window.
+    #[arg(long, default_value_t = Guiding::Bsdf, value_parser = one_of::<Guiding>(GUIDES), value_name = "NAME")]
+    pub guide: Guiding,
+}
+
+impl Default for Light {
+    fn default() -> Self {
+        Self { technique: Technique::Mis, roulette: None, guide: Guiding::Bsdf }
+    }
+}
+
+/// How samples are drawn, and for how long.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = HOW)]
+pub struct Pixels {
+    /// Directions: uniform, cosine or bsdf
+    ///
+    /// The density of the sampled directions at a surface.
+    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", value_parser = one_of::<Sampling>(SAMPLINGS))]
+    pub sampling: Sampling,
+    /// Light choice: uniform or power
+    ///
+    /// How a connection selects a light.
+    #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", value_parser = one_of::<Selection>(LIGHTS))]
+    pub lights: Selection,
+    /// Points: independent, sobol
+    ///
+    /// How the samples of a pixel are spread.
+    #[arg(long, default_value_t = Points::Independent, value_name = "NAME", value_parser = one_of::<Points>(POINTS))]
+    pub points: Points,
+    /// Time per way to solve, in place of --spp: 30s, 5m
+    ///
+    /// Passes are added while they are expected to end in time; the preparation of a guide counts. The first pass of 16 samples
+    /// per pixel is always finished. The result has the same bits as --spp with the number of samples that was reached.
+    #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with = "spp")]
+    pub time: Option<Duration>,
+}
+
+/// The mesh, its form factors, and how they are shown.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = MATRIX)]
+pub struct Mesh {
+    /// About how many patches [default: 600; tour: 2400]
+    ///
+    /// At most 20000 for a dense matrix, at most 2000000 for stored rays.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
+    pub patches: Option<u32>,
+    /// Form factors: dense, rays or both
+    ///
+    /// How form factors are computed and held. [default: dense up to 10000 patches, rays beyond]
+    #[arg(long, value_parser = one_of::<Form>(FORMS), value_name = "HOW")]
+    pub factors: Option<Form>,
+    /// Stored rays per patch [default: 256]
+    ///
+    /// From 2 to 65536; powers of two are best.
+    #[arg(long, value_name = "N", hide_short_help = true, value_parser = clap::value_parser!(u32).range(2..=65_536))]
+    pub rays: Option<u32>,
+    /// How much narrower patches are near edges: 1 (not) to 8
+    ///
+    /// The width of a patch at distance d from an edge grows like d^(1 − 1/G). Values from 1.5 to 2 give eigenvalues and sums their
+    /// order 2 in h if only the edges spoil it. Quadrilaterals are graded, both whole faces and pieces cut by others; triangles and
+    /// curved surfaces keep patches of equal area.
+    #[arg(long, value_name = "G", default_value_t = 1.0, hide_short_help = true, value_parser = grading)]
+    pub grading: f64,
+    /// Show patches without gathering a last bounce from them
+    #[arg(long, hide_short_help = true)]
+    pub read_patches: bool,
+    /// Fit the order of convergence from three meshes
+    #[arg(long, hide_short_help = true)]
+    pub orders: bool,
+}
+
+impl Default for Mesh {
+    fn default() -> Self {
+        Self { patches: None, factors: None, rays: None, grading: 1.0, read_patches: false, orders: false }
+    }
+}
+
+/// Long help for `--roulette`: the schedules.
+const ROULETTE: &str = "Russian roulette: when paths end
+
+q is the probability of TERMINATION. It is tested at vertex v = 0, 1, … after the vertex is scored. Default: lecture for \
+`render`; for other commands none up to k = K, then albedo.
+
+none              never; nothing longer than K is estimated
+lecture           q = 0, 0, then 0.5
+constant:Q[@V]    q = Q from vertex V on (default V = 2)
+table:q0,q1,…     q as listed; the last value for all later vertices
+albedo[@V]        q = 1 − albedo from vertex V on (2)
+throughput[@V]    q = 1 − throughput from vertex V on (2)
+contribution[@V]  q = 1 − w, at most 0.9, from vertex V on (1)
+window[@V]        from vertex V on (0): q = 1 − 2w, at most 0.9, if
+                  w < 0.5; a split into w walks on average, at most
+                  8, if w > 1
+optimal           the most efficient table, from 2^18 pilot paths
+
+contribution and window need --guide radiosity: w is the expected value of the rest of the path, divided by the expected value \
+of the pixel. Both act on the prefix estimator and the path tracer; single and branching end by albedo, and so does every path \
+at a surface that the guide does not know.";
+
+/// What a command solves, with every group of options.
+#[derive(Clone, Debug)]
+pub struct Request {
+    pub frame: Frame,
+    pub worlds: Vec<World>,
+    pub terms: Terms,
+    pub light: Light,
+    pub pixels: Pixels,
+    pub mesh: Mesh,
+    pub shared: Shared,
+}
+
+impl From<&Tour> for Request {
+    fn from(t: &Tour) -> Self {
+        let Tour { frame, worlds, light, pixels, mesh, shared } = t.clone();
+        Self { frame, worlds: worlds.worlds, terms: Terms::default(), light, pixels, mesh, shared }
+    }
+}
+
+impl From<&Series> for Request {
+    fn from(s: &Series) -> Self {
+        let Series { frame, worlds, terms, light, pixels, mesh, shared } = s.clone();
+        Self { frame, worlds: worlds.worlds, terms, light, pixels, mesh, shared }
+    }
+}
+
+impl From<&Render> for Request {
+    fn from(r: &Render) -> Self {
+        let Render { frame, light, pixels, shared } = r.clone();
+        Self { frame, worlds: vec![], terms: Terms::default(), light, pixels, mesh: Mesh::default(), shared }
+    }
+}
+
+impl Request {
+    /// The settings of a run. Without `--roulette`, paths of the path tracer end by `fallback`, and paths of the terms by
+    /// `fallback` after K.
     pub fn settings(&self, fallback: Roulette, patches: u32, factors: Factors) -> Settings {
-        let max_bounces = usize::from(self.frame.max_bounces.unwrap_or(8));
-        let asked = self.roulette.as_ref().and_then(Schedule::given);
-        let by_expectation = match self.roulette {
+        let Self { frame, light, pixels, mesh, .. } = self;
+        let max_bounces = usize::from(frame.max_bounces.unwrap_or(8));
+        let asked = light.roulette.as_ref().and_then(Schedule::given);
+        let by_expectation = match light.roulette {
             Some(Schedule::ByExpectation(end)) => Some(end),
             _ => None,
         };
         Settings {
-            spp: self.frame.spp.unwrap_or(if self.time.is_some() { 1 << 24 } else { 256 }),
-            time: self.time,
-            seed: self.frame.seed,
-            points: self.points,
+            spp: frame.spp.unwrap_or(if pixels.time.is_some() { 1 << 24 } else { 256 }),
+            time: pixels.time,
+            seed: frame.seed,
+            points: pixels.points,
             max_bounces,
-            technique: self.technique,
-            sampling: self.sampling,
+            technique: light.technique,
+            sampling: pixels.sampling,
             roulette: asked.clone().unwrap_or(fallback.clone().after(max_bounces)),
             path_roulette: asked.unwrap_or(fallback),
             by_expectation,
             patches: patches as usize,
             factors,
-            read_patches: self.read_patches,
-            grading: self.grading,
+            read_patches: mesh.read_patches,
+            grading: mesh.grading,
         }
     }
 
-    /// The estimator of the terms that was asked for.
+    /// The estimator given with `--estimator`.
     pub fn estimator(&self) -> Option<Estimator> {
-        self.estimator.map(|e| e.with_children(self.branching))
+        self.terms.estimator.map(|e| e.with_children(self.terms.branching))
     }
 }

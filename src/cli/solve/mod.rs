@@ -1,6 +1,7 @@
 //! The commands `tour`, `series`, `render` and `radiosity`: load a scene, solve it, compare the results, write and print them.
 
 mod args;
+pub mod help;
 mod text;
 
 use super::base::{Ending, Failure, usage};
@@ -8,7 +9,7 @@ use super::open::Opened;
 use super::session::Session;
 use super::write::{self, Export};
 use super::{notes, preflight};
-pub use args::RunArgs;
+pub use args::{Mesh, Pixels, Render, Request, Series, Tour};
 use fredholm::engine::by_rays::Estimator;
 use fredholm::engine::discretisation::{Factors, Form};
 use fredholm::engine::guided::{self, Guiding};
@@ -17,8 +18,10 @@ use fredholm::study::roulette::Schedule;
 use fredholm::study::run::{Asked, Run};
 use fredholm::terms::World;
 
-/// The defaults of a command.
+/// What a command computes by default.
 struct Default {
+    /// The command's name in the default output folder; empty for the tour.
+    name: &'static str,
     worlds: &'static [World],
     both_estimators: bool,
     size: Option<[u32; 2]>,
@@ -31,6 +34,7 @@ struct Default {
 
 /// The defaults of `series`: all three results.
 const SERIES: Default = Default {
+    name: "-series",
     worlds: &World::ALL,
     both_estimators: false,
     size: None,
@@ -45,31 +49,33 @@ const NEXT: &str = "Next: fredholm chapter 1 (the book, run), fredholm series ve
       fredholm diagnose YOURS.exr --against cornell (is your own renderer right?)";
 
 /// `tour`: all three results, the terms by two estimators.
-pub fn tour(args: &RunArgs) -> Result<Ending, Failure> {
-    solve(args, &Default { both_estimators: true, size: Some([192, 192]), patches: 3600, next: NEXT, ..SERIES })
+pub fn tour(args: &Tour) -> Result<Ending, Failure> {
+    let tour = Default { name: "", both_estimators: true, size: Some([192, 192]), patches: 3600, next: NEXT, ..SERIES };
+    solve(&args.into(), &tour)
 }
 
 /// `series`: each T^k E and the sum.
-pub fn series(args: &RunArgs) -> Result<Ending, Failure> {
-    solve(args, &SERIES)
+pub fn series(args: &Series) -> Result<Ending, Failure> {
+    solve(&args.into(), &SERIES)
 }
 
 /// `render`: the full path tracer, with the roulette of the lecture.
-pub fn render(args: &RunArgs) -> Result<Ending, Failure> {
-    solve(args, &Default { worlds: &[World::Path], roulette: Roulette::LECTURE, ..SERIES })
+pub fn render(args: &Render) -> Result<Ending, Failure> {
+    let render = Default { name: "-render", worlds: &[World::Path], roulette: Roulette::LECTURE, ..SERIES };
+    solve(&args.into(), &render)
 }
 
 /// `radiosity`: the matrix.
-pub fn radiosity(args: &RunArgs, export: Option<Export>) -> Result<Ending, Failure> {
-    solve(args, &Default { worlds: &[World::Radiosity], export, ..SERIES })
+pub fn radiosity(args: &Request, export: Option<Export>) -> Result<Ending, Failure> {
+    solve(args, &Default { name: "-radiosity", worlds: &[World::Radiosity], export, ..SERIES })
 }
 
-fn solve(args: &RunArgs, default: &Default) -> Result<Ending, Failure> {
+fn solve(args: &Request, default: &Default) -> Result<Ending, Failure> {
     let mut session = Session::new(&args.shared, args.frame.seed)?;
     let built_in_size = if args.frame.scene == "cornell" { default.size } else { None };
     let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size.or(built_in_size))?;
     let mut run = plan(args, default, opened)?;
-    session.make_folder(&run.description.name)?;
+    session.make_folder(&format!("{}{}", run.description.name, default.name))?;
     session.preview(write::preview(&session.folder, session.caption()));
     run.solve(session.progress())?;
     if run.is_empty() {
@@ -83,12 +89,12 @@ fn solve(args: &RunArgs, default: &Default) -> Result<Ending, Failure> {
     Ok(session.ending(run.failed()))
 }
 
-/// Checks the arguments and turns them into a run that is not solved yet.
-fn plan(args: &RunArgs, default: &Default, opened: Opened) -> Result<Run, Failure> {
+/// The run that is asked for; refused if it cannot succeed.
+fn plan(args: &Request, default: &Default, opened: Opened) -> Result<Run, Failure> {
     let Opened { description, scene, .. } = opened;
-    let scene = scene.select_lights(args.lights);
-    let patches = args.patches.unwrap_or(default.patches);
-    let factors = preflight::factors(args.factors, args.rays, patches)?;
+    let scene = scene.select_lights(args.pixels.lights);
+    let patches = args.mesh.patches.unwrap_or(default.patches);
+    let factors = preflight::factors(args.mesh.factors, args.mesh.rays, patches)?;
     let settings = args.settings(default.roulette.clone(), patches, factors);
     let mut worlds = if args.worlds.is_empty() { default.worlds.to_vec() } else { args.worlds.clone() };
     let by_name = !args.worlds.is_empty() || default.worlds.len() == 1;
@@ -98,11 +104,11 @@ fn plan(args: &RunArgs, default: &Default, opened: Opened) -> Result<Run, Failur
     for &estimator in &estimators {
         preflight::tree_can_be_walked(estimator, &settings, description.camera.size)?;
     }
-    if args.strategies && estimators != [Estimator::Bidirectional] {
+    if args.terms.strategies && estimators != [Estimator::Bidirectional] {
         return Err(usage("only the bidirectional estimator has strategies", "add --estimator bidirectional"));
     }
-    match args.guide {
-        Guiding::Bsdf => preflight::needs_no_guide(args.roulette.as_ref())?,
+    match args.light.guide {
+        Guiding::Bsdf => preflight::needs_no_guide(args.light.roulette.as_ref())?,
         Guiding::Radiosity => preflight::can_be_guided(&scene, &estimators, &settings, &worlds)?,
     }
     preflight::light_is_seen(&scene, &estimators, &settings, &worlds)?;
@@ -119,12 +125,12 @@ fn plan(args: &RunArgs, default: &Default, opened: Opened) -> Result<Run, Failur
     Ok(Run::new(description, scene, settings, asked))
 }
 
-/// The estimators of the terms, or none if no terms are asked for.
-fn estimators(args: &RunArgs, default: &Default, worlds: &[World]) -> Result<Vec<Estimator>, Failure> {
+/// The estimators of the terms, if these are asked for.
+fn estimators(args: &Request, default: &Default, worlds: &[World]) -> Result<Vec<Estimator>, Failure> {
     match (worlds.contains(&World::Terms), args.estimator()) {
         (false, Some(_)) => Err(usage(
-            "--estimator is for the terms, which are not asked for",
-            "leave --estimator out, or use `fredholm series`",
+            "--estimator is for the terms, and --worlds leaves them out",
+            "leave --estimator out, or add terms to --worlds",
         )),
         (false, None) => Ok(vec![]),
         _ if default.both_estimators => Ok(vec![Estimator::Single, Estimator::Prefix]),
@@ -132,15 +138,16 @@ fn estimators(args: &RunArgs, default: &Default, worlds: &[World]) -> Result<Vec
     }
 }
 
-fn asked(args: &RunArgs, worlds: Vec<World>, estimators: Vec<Estimator>) -> Asked {
+fn asked(args: &Request, worlds: Vec<World>, estimators: Vec<Estimator>) -> Asked {
+    let Request { terms, light, mesh, .. } = args;
     Asked {
         worlds,
         estimators,
-        optimal_roulette: args.roulette.as_ref().and_then(Schedule::aim),
-        guide: (args.guide == Guiding::Radiosity).then(|| args.patches.map_or(guided::PATCHES, |n| n as usize)),
-        strategies: args.strategies,
-        against_rays: (args.factors == Some(Form::Both)).then(|| preflight::rays(args.rays)),
-        orders: args.orders,
+        optimal_roulette: light.roulette.as_ref().and_then(Schedule::aim),
+        guide: (light.guide == Guiding::Radiosity).then(|| mesh.patches.map_or(guided::PATCHES, |n| n as usize)),
+        strategies: terms.strategies,
+        against_rays: (mesh.factors == Some(Form::Both)).then(|| preflight::rays(mesh.rays)),
+        orders: mesh.orders,
         ..Asked::default()
     }
 }

@@ -1,43 +1,67 @@
-//! What `sweep` takes.
+//! Arguments of `sweep`.
 
 use crate::cli::base::{Failure, usage};
-use crate::cli::options::{Frame, Shared, among, duration, grading, one_of, values};
+use crate::cli::choices::{Choices, ESTIMATORS, LIGHTS, POINTS, SAMPLINGS, TECHNIQUES, names};
+use crate::cli::options::{Frame, HOW, MATRIX, Shared, WHAT, grading, one_of, values};
 use crate::cli::preflight::needs_no_guide;
+use crate::cli::suggest::wrong_value;
 use clap::{Args, ValueEnum};
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::Estimator;
-use fredholm::engine::discretisation::Form;
-use fredholm::engine::guided::Guiding;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::math::Points;
 use fredholm::math::names::list;
 use fredholm::scene::{Selection, bsdf::Sampling};
 use fredholm::study::roulette::Schedule;
-use fredholm::terms::World;
 use std::fmt;
 use std::str::FromStr;
-use std::time::Duration;
+
+/// Below `sweep --help`.
+pub const HELP: &str = "Examples:
+  fredholm sweep furnace --over branching --sampling uniform --spp 64
+  fredholm sweep cornell --over technique --max-bounces 4 --size 64x64
+  fredholm sweep cornell --over estimator --values prefix,single --equal-rays
+  fredholm sweep cornell --over patches
+  fredholm sweep cube --over patches --grading 1.5 --values 96,384,1536
+  fredholm sweep cornell --over patches --values 129,516,2064 --eigenvalues 6
+  fredholm sweep cornell --over spp --estimator single,prefix,path
+  fredholm sweep cornell --over spp --points independent,sobol --reference 4096
+  fredholm sweep cornell --over split --max-bounces 6 --size 64x64
+
+--over spp renders once for every combination of --estimator (also path), --technique, --roulette and --points, each of which \
+may be a list. Variance and squared error at 16, 32, 64, … samples are measured as the image fills. It writes variance.svg, \
+variance.png, sweep.csv and summary.json.
+
+--over split estimates the terms with an equal split of the samples (--estimator single), with the optimal split n ∝ σ/√c (σ is \
+the standard deviation of a term, c its cost), and from the prefixes of one path, each with about the same number of rays. \
+Variance × cost is predicted by a pilot run and measured. It writes split.csv, covariance.csv, covariance.svg, covariance.png \
+and summary.json.
+
+A sweep over branching has 32 samples per pixel and K = 4 by default.
+
+All others write sweep.csv, sweep.svg, sweep.png and summary.json. V is the variance of one sample, averaged over the pixels. \
+1/(V rays) is the efficiency: twice the efficiency means half the rays for the same error.";
 
 /// A setting that can be swept over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Over {
-    /// Children of every vertex
+    #[value(help = "children of every vertex: 1,2,3,4")]
     Branching,
-    /// Samples per pixel
+    #[value(help = "samples per pixel: 16,32,64,…")]
     Spp,
-    /// How light is found
+    #[value(help = "how paths find light: scatter,connect,mis,mis-power")]
     Technique,
-    /// How directions are drawn
+    #[value(help = "density of directions: uniform,cosine,bsdf")]
     Sampling,
-    /// How the terms are estimated
+    #[value(help = "prefix,single,branching,light,bidirectional")]
     Estimator,
-    /// How the samples of a pixel lie
+    #[value(help = "samples of a pixel: independent,sobol")]
     Points,
-    /// How paths end
+    #[value(help = "when paths end: none,lecture,albedo")]
     Roulette,
-    /// How fine the mesh of the matrix is
+    #[value(help = "patches of the matrix: 38,150,600,2400")]
     Patches,
-    /// Where the samples of separate terms go
+    #[value(help = "split of the samples among the terms; no values")]
     Split,
 }
 
@@ -50,108 +74,90 @@ impl fmt::Display for Over {
 /// Arguments of `sweep`.
 #[derive(Clone, Debug, Args)]
 pub struct Sweep {
-    /// branching, spp, split, technique, … (all: --help)
+    /// Setting: branching, spp, technique, patches, …
     ///
-    /// branching, spp, split, technique, sampling, estimator, points, roulette or patches
-    #[arg(long, value_enum, value_name = "SETTING", hide_possible_values = true)]
+    /// The setting that is swept over. The values behind each name are the default of --values.
+    #[arg(long, value_enum, value_name = "SETTING", help_heading = WHAT)]
     pub over: Over,
-    /// Its values, with commas
+    /// Values of the setting, separated by commas
     ///
-    /// With --over spp the numbers of samples to look at: multiples of 16.
-    /// [default: 1,2,3,4; 16,32,64,…; scatter,connect,mis,mis-power; uniform,cosine,bsdf;
-    /// prefix,single,branching,light,bidirectional; independent,sobol;
-    /// none,lecture,albedo; 38,150,600,2400]
-    #[arg(long, visible_alias = "schedules", value_name = "V,…", verbatim_doc_comment)]
+    /// With --over spp these are the numbers of samples at which errors are measured: multiples of 16. --schedules is another name
+    /// for this option.
+    #[arg(long, alias = "schedules", value_name = "V,…", help_heading = WHAT)]
     pub values: Option<String>,
-    /// Give every value the rays of the dearest, instead of the same spp
-    #[arg(long)]
-    pub equal_rays: bool,
-    /// With --over spp: squared error against a run's folder, or a render of so many samples
-    ///
-    /// Its own variance is subtracted, so that the squared error is unbiased.
-    /// A render of its own has another stream.
-    #[arg(long, value_name = "DIR|SPP", verbatim_doc_comment)]
-    pub reference: Option<String>,
-    /// With --over patches: the N largest and the N most negative eigenvalues on every mesh
-    ///
-    /// Of the channel with the largest spectral radius. Also written: eigenvalues.csv, .svg, .png.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16), verbatim_doc_comment)]
-    pub eigenvalues: Option<u16>,
-    /// Samples of the pilot of --over split [default: a quarter of --spp]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=1 << 24))]
-    pub pilot: Option<u32>,
-    /// Estimator of the terms: prefix, single, light, … [default: prefix]
-    ///
-    /// With --over spp a list, in which `path` is the full path tracer.
-    #[arg(long = "estimator", value_name = "NAME,…", verbatim_doc_comment)]
-    pub estimators: Option<String>,
-    /// How light is found.
-    #[arg(long = "technique", value_name = "NAME,…", help = usual("How light is found", Technique::ALL, "mis"),
-        long_help = usual("How light is found", Technique::ALL, "mis") + "\n\nWith --over spp a list.")]
-    pub techniques: Option<String>,
-    /// Russian roulette: none, lecture, constant:Q@V, … (all: series --help)
-    ///
-    /// With --over spp a list. [default: none for k ≤ K, then albedo]
-    #[arg(long = "roulette", value_name = "SCHEDULE,…", verbatim_doc_comment)]
-    pub schedules: Option<String>,
-    /// How samples lie in a pixel.
-    #[arg(long = "points", value_name = "NAME,…", help = usual("How samples lie in a pixel", Points::ALL, "independent"),
-        long_help = usual("How samples lie in a pixel", Points::ALL, "independent") + "\n\nWith --over spp a list.")]
-    pub spreads: Option<String>,
-    /// What is rendered.
+    /// Scene, samples, size, K, seed.
     #[command(flatten)]
     pub frame: Frame,
-    /// With --estimator bidirectional: every strategy apart
+    /// Estimator of the terms [default: prefix]
     ///
-    /// Writes strategies.png, strategies-alone.png and strategies.exr, and prints a table:
-    /// for each term, what is found with s = 0 to k + 1 vertices walked from the light.
-    #[arg(long, verbatim_doc_comment)]
-    pub strategies: bool,
-    /// Children of every vertex of --estimator branching
+    /// One of prefix, single, branching, light, bidirectional. With --over spp it may be a list, in which `path` is the full path
+    /// tracer.
+    #[arg(long = "estimator", value_name = "NAME,…", help_heading = HOW)]
+    pub estimators: Option<String>,
+    /// Children of every vertex of the branching estimator
     ///
     /// Term k takes N^k rays.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 2, hide_short_help = true, help_heading = HOW, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub branching: u32,
-    /// How a light is selected.
-    #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", help = among("How a light is selected", Selection::ALL))]
+    /// Light by scatter, connect, mis, … [default: mis]
+    ///
+    /// One of scatter, connect, mis, mis-power. With --over spp it may be a list.
+    #[arg(long = "technique", value_name = "NAME,…", help_heading = HOW)]
+    pub techniques: Option<String>,
+    /// Roulette: none, lecture, constant:Q@V, albedo, …
+    ///
+    /// `fredholm series --help` lists the rules. With --over spp it may be a list.
+    /// [default: none for k ≤ K, then albedo]
+    #[arg(long = "roulette", value_name = "RULE,…", help_heading = HOW)]
+    pub schedules: Option<String>,
+    /// Points: independent, sobol
+    ///
+    /// How the samples of a pixel are spread. [default: independent] With --over spp it may be a list.
+    #[arg(long = "points", value_name = "NAME,…", help_heading = HOW)]
+    pub spreads: Option<String>,
+    /// Light choice: uniform or power
+    ///
+    /// How a connection selects a light.
+    #[arg(long, default_value_t = Selection::Uniform, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Selection>(LIGHTS))]
     pub lights: Selection,
-    /// How directions are drawn.
-    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help = among("How directions are drawn", Sampling::ALL))]
+    /// Directions: uniform, cosine or bsdf
+    ///
+    /// The density of the sampled directions at a surface.
+    #[arg(long, default_value_t = Sampling::Bsdf, value_name = "NAME", help_heading = HOW, value_parser = one_of::<Sampling>(SAMPLINGS))]
     pub sampling: Sampling,
-    /// What is refused, or is for matrices.
-    #[command(flatten)]
-    pub aside: Aside,
-    /// Scene, output, threads.
+    /// Same number of rays for every value
+    ///
+    /// Gives every value the rays of the most expensive one, in place of the same number of samples.
+    #[arg(long, help_heading = HOW)]
+    pub equal_rays: bool,
+    /// With --over spp: reference for the squared error
+    ///
+    /// Either a run's output folder, or a number of samples per pixel for a separate render with independent random numbers. Its
+    /// own variance is subtracted, so that the squared error is unbiased.
+    #[arg(long, value_name = "DIR|SPP", help_heading = HOW)]
+    pub reference: Option<String>,
+    /// With --over split: samples of the pilot run
+    ///
+    /// [default: a quarter of --spp]
+    #[arg(long, value_name = "N", hide_short_help = true, help_heading = HOW, value_parser = clap::value_parser!(u32).range(16..=1 << 24))]
+    pub pilot: Option<u32>,
+    /// With --over patches: N eigenvalues from each end
+    ///
+    /// The N largest and the N most negative eigenvalues on every mesh, for the channel with the largest spectral radius. Also
+    /// writes eigenvalues.csv, eigenvalues.svg and eigenvalues.png.
+    #[arg(long, value_name = "N", help_heading = MATRIX, value_parser = clap::value_parser!(u16).range(1..=16))]
+    pub eigenvalues: Option<u16>,
+    /// With --over patches: as in `radiosity --help`
+    ///
+    /// How much narrower patches are near edges: 1 (not) to 8.
+    #[arg(long, value_name = "G", default_value_t = 1.0, hide_short_help = true, help_heading = MATRIX, value_parser = grading)]
+    pub grading: f64,
+    /// With --over patches: show patches without gathering
+    #[arg(long, hide_short_help = true, help_heading = MATRIX)]
+    pub read_patches: bool,
+    /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
-}
-
-/// Options of `series` that a sweep knows only to refuse them, or that are for --over patches.
-#[derive(Clone, Debug, Args)]
-pub struct Aside {
-    #[arg(long, hide = true, value_name = "G", default_value_t = 1.0, value_parser = grading)]
-    pub grading: f64,
-    #[arg(long, hide = true)]
-    pub read_patches: bool,
-    #[arg(long, hide = true, value_name = "NAME", default_value_t = Guiding::Bsdf, value_parser = one_of::<Guiding>(Guiding::ALL))]
-    guide: Guiding,
-    #[arg(long, hide = true, value_name = "TIME", value_parser = duration, conflicts_with = "spp")]
-    time: Option<Duration>,
-    #[arg(long, hide = true, value_name = "WORLD,…", value_delimiter = ',', value_parser = one_of::<World>(World::ALL))]
-    worlds: Vec<World>,
-    #[arg(long, hide = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
-    patches: Option<u32>,
-    #[arg(long, hide = true, value_name = "HOW", value_parser = one_of::<Form>(Form::ALL))]
-    factors: Option<Form>,
-    #[arg(long, hide = true, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=65_536))]
-    rays: Option<u32>,
-    #[arg(long, hide = true)]
-    orders: bool,
-}
-
-/// Help for an option with one usual value.
-fn usual(what: &str, names: impl IntoIterator<Item: fmt::Display>, value: &str) -> String {
-    format!("{} [default: {value}]", among(what, names))
 }
 
 /// An estimator of the terms by name, or none for the path tracer.
@@ -164,12 +170,12 @@ pub fn estimator(text: &str, children: u32) -> Result<Option<Estimator>, String>
 }
 
 impl Sweep {
-    /// K, where nothing is said 8, and 4 where the setting makes trees.
+    /// K: by default 8, or 4 in a sweep over branching, where the number of rays grows like N^K.
     pub fn max_bounces(&self) -> usize {
         self.frame.max_bounces.unwrap_or(if self.over == Over::Branching { 4 } else { 8 }).into()
     }
 
-    /// The settings that are no lists, with the usual schedules.
+    /// The settings that cannot be lists, with the default roulette.
     pub fn settings(&self, spp: u32) -> Settings {
         let (max_bounces, end) = (self.max_bounces(), Roulette::Albedo { from: 2 });
         Settings {
@@ -183,10 +189,10 @@ impl Sweep {
         }
     }
 
-    /// The options that may be lists, where they may not be.
+    /// The options that are lists in a sweep over spp, for sweeps in which each of them takes one value.
     pub fn one_of_each(&self) -> Result<One, Failure> {
         fn one<T>(
-            name: &str,
+            (name, known): (&str, Choices),
             list: Option<&String>,
             parse: impl Fn(&str) -> Result<T, String>,
         ) -> Result<Option<T>, Failure> {
@@ -195,42 +201,31 @@ impl Sweep {
                 let what = format!("{name} takes one value here, not `{list}`");
                 return Err(usage(&what, "lists are for --over spp; elsewhere the list is --values"));
             }
-            parse(list).map(Some).map_err(|why| usage(&why, &format!("give {name} one of them")))
+            parse(list).map(Some).map_err(|why| wrong_value(name, list, &why, &names(known)))
         }
         let of_terms = |s: &str| match estimator(s, self.branching)? {
             Some(estimator) => Ok(estimator),
             None => Err("`path` has one value for all terms, and is for --over spp".into()),
         };
-        let schedule = one("--roulette", self.schedules.as_ref(), Schedule::from_str)?;
+        let schedule = one(("--roulette", &[]), self.schedules.as_ref(), Schedule::from_str)?;
         needs_no_guide(schedule.as_ref())?;
         Ok(One {
-            estimator: one("--estimator", self.estimators.as_ref(), of_terms)?.unwrap_or(Estimator::Prefix),
-            technique: one("--technique", self.techniques.as_ref(), Technique::from_str)?.unwrap_or(Technique::Mis),
+            estimator: one(("--estimator", ESTIMATORS), self.estimators.as_ref(), of_terms)?
+                .unwrap_or(Estimator::Prefix),
+            technique: one(("--technique", TECHNIQUES), self.techniques.as_ref(), Technique::from_str)?
+                .unwrap_or(Technique::Mis),
             roulette: schedule,
-            points: one("--points", self.spreads.as_ref(), Points::from_str)?.unwrap_or_default(),
+            points: one(("--points", POINTS), self.spreads.as_ref(), Points::from_str)?.unwrap_or_default(),
         })
     }
 
-    /// Options that a sweep of the terms would silently ignore.
+    /// Refuses options that have no effect on this sweep.
     pub fn refuse_what_has_no_part(&self) -> Result<(), Failure> {
-        let aside = &self.aside;
-        let given = [
-            ("--worlds", !aside.worlds.is_empty()),
-            ("--patches", aside.patches.is_some()),
-            ("--read-patches", aside.read_patches),
-            ("--orders", aside.orders),
-            ("--strategies", self.strategies),
-            ("--guide", aside.guide != Guiding::Bsdf),
-            ("--time", aside.time.is_some()),
-        ];
-        if let Some((name, _)) = given.iter().find(|g| g.1) {
-            return Err(usage(&format!("{name} has no part in a sweep, which renders the terms"), "leave it out"));
-        }
         let (spp, split) = (self.over == Over::Spp, self.over == Over::Split);
         let refused = [
             (
-                self.eigenvalues.is_some() || aside.grading != 1.0,
-                "--eigenvalues and --grading are for matrices",
+                self.eigenvalues.is_some() || self.grading != 1.0 || self.read_patches,
+                "--eigenvalues, --grading and --read-patches are for matrices",
                 "leave them out, or use --over patches",
             ),
             (

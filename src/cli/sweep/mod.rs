@@ -9,7 +9,7 @@ mod values;
 
 use super::base::{Ending, Failure};
 use args::Over;
-pub use args::Sweep;
+pub use args::{HELP, Sweep};
 
 /// Sweeps over what was asked for.
 pub fn run(args: &Sweep) -> Result<Ending, Failure> {

@@ -24,11 +24,11 @@ pub fn run(args: &Sweep) -> Result<Ending, Failure> {
     let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size)?;
     let (description, scene) = (opened.description, opened.scene.select_lights(args.lights));
     preflight::has_a_matrix(&description, &scene, Factors::Dense)?;
-    let (grading, read_patches) = (args.aside.grading, args.aside.read_patches);
+    let (grading, read_patches) = (args.grading, args.read_patches);
     let settings = Settings { grading, read_patches, ..args.settings(256) };
     preflight::fits_in_memory(&settings, description.camera.size)?;
     preflight::light_is_lost(&scene, &settings, &[World::Terms])?;
-    session.make_folder(&format!("{}-patches", description.name))?;
+    session.make_folder(&format!("{}-sweep-patches", description.name))?;
     let eigenvalues = args.eigenvalues.unwrap_or(0).into();
     let found = refinement::refine(&description, &scene, &sizes, eigenvalues, &settings, session.progress())?;
     session.clear();

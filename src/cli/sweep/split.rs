@@ -21,7 +21,7 @@ pub fn run(args: &Sweep) -> Result<Ending, Failure> {
     let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size)?;
     let scene = opened.scene.select_lights(args.lights);
     preflight::can_be_sampled(&scene, Some(Estimator::Prefix), &settings)?;
-    session.make_folder(&format!("{}-split", opened.description.name))?;
+    session.make_folder(&format!("{}-sweep-split", opened.description.name))?;
     let pilot = args.pilot.unwrap_or(settings.spp / 4);
     let Some(study) = split::study(&scene, &settings, pilot, session.progress()) else {
         return Ok(session.nothing_to_save(": the comparison needs all its renders"));

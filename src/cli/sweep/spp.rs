@@ -4,8 +4,10 @@
 use super::args::{Sweep, estimator};
 use super::reference;
 use crate::cli::base::{Ending, Failure, names, usage};
+use crate::cli::choices::{CHECKED, Choices, POINTS, TECHNIQUES, names as names_of};
 use crate::cli::options::{number, values};
 use crate::cli::session::Session;
+use crate::cli::suggest::wrong_value;
 use crate::cli::{notes, preflight};
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Begins, Estimator};
@@ -50,7 +52,7 @@ pub fn run(args: &Sweep) -> Result<Ending, Failure> {
         preflight::can_be_sampled(&scene, case.estimator, &case.settings)?;
     }
     let planned = reference::plan(args, &scene, &description, &cases[0].settings)?;
-    session.make_folder(&format!("{}-spp", description.name))?;
+    session.make_folder(&format!("{}-sweep-spp", description.name))?;
     for case in &mut cases {
         let Some(aim) = case.optimal else { continue };
         if let Some(best) = roulette::optimal(&scene, &case.settings, aim, session.progress()) {
@@ -106,22 +108,28 @@ fn render(
 
 /// The values of a list, each with its text. Without a list: the default value and its label.
 fn listed<T>(
+    (option, known): (&str, Choices),
     given: Option<&String>,
     usual: (&str, T),
     parse: impl Fn(&str) -> Result<T, String>,
 ) -> Result<Vec<(String, T)>, Failure> {
     let Some(list) = given else { return Ok(vec![(usual.0.into(), usual.1)]) };
-    let one = |text: String| parse(&text).map(|v| (text, v)).map_err(|why| usage(&why, "separate values by commas"));
+    let one = |text: String| match parse(&text) {
+        Ok(value) => Ok((text, value)),
+        Err(why) => Err(wrong_value(option, &text, &why, &names_of(known))),
+    };
     values(list).into_iter().map(one).collect()
 }
 
 /// Every combination of the lists.
 fn cases(args: &Sweep, spp: u32) -> Result<Vec<Case>, Failure> {
     let by_name = |s: &str| estimator(s, args.branching);
-    let estimators = listed(args.estimators.as_ref(), ("prefix", Some(Estimator::Prefix)), by_name)?;
-    let techniques = listed(args.techniques.as_ref(), ("", Technique::Mis), Technique::from_str)?;
-    let schedules = listed(args.schedules.as_ref(), ("", None), |s| s.parse().map(Some))?;
-    let points = listed(args.spreads.as_ref(), ("", Points::Independent), Points::from_str)?;
+    let estimators =
+        listed(("--estimator", CHECKED), args.estimators.as_ref(), ("prefix", Some(Estimator::Prefix)), by_name)?;
+    let techniques =
+        listed(("--technique", TECHNIQUES), args.techniques.as_ref(), ("", Technique::Mis), Technique::from_str)?;
+    let schedules = listed(("--roulette", &[]), args.schedules.as_ref(), ("", None), |s| s.parse().map(Some))?;
+    let points = listed(("--points", POINTS), args.spreads.as_ref(), ("", Points::Independent), Points::from_str)?;
     let mut cases: Vec<Case> = vec![];
     for (e, estimator) in &estimators {
         for (t, technique) in &techniques {

@@ -7,6 +7,7 @@ use super::args::{Over, Sweep};
 use crate::cli::base::{Ending, Failure, names, note, usage};
 use crate::cli::options::{number, values};
 use crate::cli::session::Session;
+use crate::cli::suggest::question;
 use crate::cli::{notes, preflight};
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Estimator};
@@ -35,7 +36,7 @@ pub fn run(args: &Sweep) -> Result<Ending, Failure> {
     for case in &cases {
         preflight::can_be_sampled(&scene, Some(case.estimator), &case.settings)?;
     }
-    session.make_folder(&format!("{}-{}", opened.description.name, args.over))?;
+    session.make_folder(&format!("{}-sweep-{}", opened.description.name, args.over))?;
     prepare(args, &mut cases, &scene, session.progress())?;
 
     let (mut rows, mut series) = (vec![], vec![]);
@@ -121,7 +122,10 @@ fn cases(args: &Sweep) -> Result<Vec<Case>, Failure> {
         let optimal = one.roulette.as_ref().and_then(Schedule::aim);
         let mut case = Case { value, estimator: one.estimator, settings: common.clone(), optimal };
         let help = || format!("values of --over {} are such as --values {}", args.over, usual(args.over));
-        case.set(args.over, args.branching).map_err(|why| usage(&why, &help()))?;
+        let asked =
+            || question(&format!("--{}", args.over), &case.value, &usual(args.over).split(',').collect::<Vec<_>>());
+        let asked = asked().map_or(String::new(), |q| q + "\n      ");
+        case.set(args.over, args.branching).map_err(|why| usage(&why, &(asked + &help())))?;
         Ok(case)
     };
     values(args.values.as_deref().unwrap_or(usual(args.over))).into_iter().map(case).collect()

@@ -11,9 +11,9 @@ use fredholm::report::write_atomically;
 /// The files to write for other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Export {
-    /// Patches, terms and norms
+    #[value(help = "patches, terms and norms")]
     Mesh,
-    /// Also the form factors F
+    #[value(help = "F as well")]
     Matrix,
 }
 

@@ -8,7 +8,7 @@ mod quiz;
 mod words;
 
 use super::base::{Ending, Failure, print};
-pub use args::Zoo;
+pub use args::{HELP, Zoo};
 use fredholm::zoo;
 
 /// Lists the members, renders all or one of them, or plays the quiz.

@@ -5,6 +5,7 @@ use super::folder::{self, MARK, mark, write};
 use super::words::{self, brief, whole};
 use crate::cli::base::{Ending, Failure, print, usage, wrapped};
 use fredholm::engine::by_rays::Sampled;
+use fredholm::math::names::suggest;
 use fredholm::report::figures::signature::{self, Signature};
 use fredholm::report::image::contact_sheet::{self, Cell};
 use fredholm::report::image::picture::auto_gain_beside_lamps;
@@ -91,8 +92,9 @@ fn answer(bug: &Bug, shown: &Pair) -> String {
 /// The scene of `--scene`, or else the one that shows the mistake.
 fn stage(args: &Zoo, bug: &Bug) -> Result<Stage, Failure> {
     let Some(name) = &args.scene else { return Ok(bug.exposed_by) };
-    let scene = builtin::find(name)
-        .ok_or_else(|| usage(&format!("`{name}` is no built-in scene"), "`fredholm info` lists them"))?;
+    let scene = builtin::find(name).ok_or_else(|| {
+        usage(&format!("`{name}` is no built-in scene"), &suggest(name, "built-in scenes", builtin::names()))
+    })?;
     Ok(Stage { label: scene.name, scene: scene.name, set: &[] })
 }
 

@@ -1,16 +1,20 @@
 //! The members of the zoo and their ratios r_k in words.
 
 use crate::cli::base::{Failure, paragraphs, usage, wrapped, wrapped_after};
+use fredholm::math::names::{either, similar};
 use fredholm::report::half_width_95;
 use fredholm::report::text::table::significant;
 use fredholm::terms::Functional;
 use fredholm::zoo::signature::Ratio;
 use fredholm::zoo::{self, Bug};
 
-/// The usage error for a name that no member has.
+/// There is no member of that name: the error names the nearest ones.
 pub fn unknown(name: &str) -> Failure {
-    let near = zoo::all().into_iter().map(|b| (strsim::levenshtein(b.name, name), b.name)).min().map_or("", |n| n.1);
-    usage(&format!("the zoo has no `{name}`"), &format!("perhaps `{near}`; `fredholm zoo --list` shows all"))
+    let near = match similar(name, zoo::all().into_iter().map(|b| b.name).collect::<Vec<_>>()).as_slice() {
+        [] => String::new(),
+        near => format!("did you mean {}? ", either(near)),
+    };
+    usage(&format!("the zoo has no member `{name}`"), &format!("{near}`fredholm zoo --list` lists all members"))
 }
 
 /// All members, with a sentence above the list.

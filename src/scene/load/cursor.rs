@@ -3,10 +3,8 @@
 //!
 //! Every error names the value, the file and line (or the override) and the key, and says what to do.
 
-use super::{
-    nearest::suggest,
-    tree::{Node, Place, Value},
-};
+use super::tree::{Node, Place, Value};
+use crate::math::names::suggest;
 use crate::scene::SceneError;
 use glam::{DVec2, DVec3};
 use std::path::{Path, PathBuf};

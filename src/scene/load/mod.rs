@@ -15,10 +15,10 @@ pub mod keys;
 mod lights;
 mod materials;
 mod mesh;
+mod missing;
 mod mtl;
 mod mtl_material;
 mod mtl_surface;
-mod nearest;
 mod obj;
 mod obj_check;
 mod overrides;
@@ -31,8 +31,8 @@ use cursor::beside;
 pub use mtl_material::MtlMaterial;
 
 use super::{Description, SceneError, builtin, stand_in};
+use crate::math::names::suggest;
 use glam::DVec3;
-use nearest::suggest;
 use std::path::Path;
 use tree::{Node, Place, Value};
 
@@ -78,12 +78,10 @@ pub fn scene(name_or_path: &str, options: &Options) -> Result<Loaded, SceneError
     }
     let path = Path::new(name_or_path);
     match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
+        Some("toml" | "obj") if !path.exists() => Err(missing::file(path)),
         Some("toml") => toml(&read(path)?, path, options),
         Some("obj") => bare_obj(path, options),
-        _ => {
-            let what = format!("`{name_or_path}` is neither a built-in scene nor a .toml or .obj file");
-            Err(SceneError::new(what).help(suggest(name_or_path, "built-in scenes", builtin::names())))
-        }
+        _ => Err(missing::name(name_or_path)),
     }
 }
 

@@ -14,10 +14,10 @@ use super::{
     mesh::flat,
     mtl::{self, Entry, Statement, statements},
     mtl_surface,
-    nearest::nearest,
     obj_check::{check, number_of},
     read_lossy,
 };
+use crate::math::names::nearest;
 use crate::scene::{SceneError, description::BsdfDescription};
 use glam::{DVec2, DVec3};
 use std::{

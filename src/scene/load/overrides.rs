@@ -4,10 +4,8 @@
 //! `camera.size[0]`. VALUE is TOML; a bare word counts as a string. All steps of KEY except the last must exist. A new last
 //! step is added to its table, and is checked like any other key when the table is read.
 
-use super::{
-    nearest::suggest,
-    tree::{Node, Value, parse_override},
-};
+use super::tree::{Node, Value, parse_override};
+use crate::math::names::suggest;
 use crate::scene::SceneError;
 
 /// Replaces or adds the value of one override.

@@ -12,10 +12,10 @@ use super::{
     beside,
     cursor::{Cursor, LARGEST_LIGHT, SMALLEST_LENGTH},
     mesh::{FLAT, mesh, transform},
-    nearest::suggest,
     obj,
     tree::Place,
 };
+use crate::math::names::suggest;
 use crate::scene::{
     SceneError,
     description::{Geometry, Material, Shape, Sides},
