@@ -76,7 +76,7 @@ fn scenes_and_files_that_are_not_there_exit_with_3() {
     std::fs::write(desk.path().join("text_sky.toml"), sky("text.png")).unwrap();
     std::fs::write(desk.path().join("text.png"), "no picture").unwrap();
     for (line, said) in [
-        ("cornel", "`cornel` is neither a built-in scene nor a .toml or .obj file"),
+        ("series cornel", "`cornel` is neither a built-in scene nor a .toml or .obj file"),
         ("info cornel", "did you mean `cornell`"),
         ("series .", "`.` is neither a built-in scene"),
         ("series folder.toml", "folder.toml"),

@@ -76,7 +76,7 @@ fn paragraphs_have_no_orphans() {
             for three in lines.windows(3) {
                 let indent = |l: &str| l.len() - l.trim_start().len();
                 let [before, line, after] = [three[0], three[1], three[2]];
-                let within = [before, after].iter().all(|l| !l.trim().is_empty() && indent(l) == indent(line));
+                let within = three.iter().all(|l| !l.trim().is_empty() && indent(l) == indent(line));
                 let prose = |l: &str| l.split_whitespace().count() > 6 && !l.contains("  fredholm ");
                 if within && prose(before) && prose(after) {
                     assert!(line.split_whitespace().count() > 2, "{words} at {columns}: {line}");
@@ -94,7 +94,7 @@ fn options_are_grouped_and_only_those_that_act_are_listed() {
         assert!(at("\nWhat:\n") < at("\nHow:\n") && at("\nHow:\n") < text.len(), "{words}");
         assert!(text.contains("\nOutput:\n") && !text.contains("\nOptions:\n"), "{words}");
     }
-    let lists = |words, option| help(&format!("{words} --help"), 80).contains(&format!("--{option} "));
+    let lists = |words, option| help(&format!("{words} --help"), 80).contains(&format!("--{option}"));
     for (command, option, expected) in [
         ("series", "patches", true),
         ("series", "technique", true),

@@ -7,6 +7,7 @@ use super::open::Opened;
 use super::options::{HOW, Shared, WHAT, one_of, size, values};
 use super::preflight;
 use super::session::Session;
+use super::suggest::hint;
 use fredholm::engine::Settings;
 use fredholm::engine::by_matrix;
 use fredholm::engine::by_rays::Estimator;
@@ -259,8 +260,7 @@ fn schedules(args: &Args) -> Result<Vec<Asked>, Failure> {
     let list = args.schedules.as_deref().unwrap_or(USUAL);
     let mut all: Vec<Asked> = vec![];
     for name in values(list) {
-        let schedule: Schedule =
-            name.parse().map_err(|why: String| usage(&why, &format!("for example --schedules {USUAL}")))?;
+        let schedule: Schedule = name.parse().map_err(|why: String| usage(&why, &hint("--roulette", &name, &[])))?;
         all.push((name, schedule));
     }
     if args.optimise {

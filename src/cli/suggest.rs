@@ -156,7 +156,11 @@ pub fn hint(option: &str, word: &str, known: &[&str]) -> String {
     let all = (!known.is_empty()).then(|| format!("values of {option}: {}", list(known)));
     let question = question(option, word, known);
     let blocks: Vec<String> = question.into_iter().chain(all).collect();
-    if blocks.is_empty() { format!("choose another value of {option}") } else { blocks.join("\n      ") }
+    if blocks.is_empty() {
+        format!("`fredholm series --help` describes the values of {option}")
+    } else {
+        blocks.join("\n      ")
+    }
 }
 
 /// The error for a value that is wrong for a reason known already, with a suggestion.

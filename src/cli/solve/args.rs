@@ -142,8 +142,8 @@ pub struct Light {
     pub roulette: Option<Schedule>,
     /// Guide for rays: bsdf or radiosity
     ///
-    /// With `radiosity` a rough radiosity solution (4000 patches; `series --patches N` changes that) says where light comes from.
-    /// At Lambertian surfaces it mixes those directions with the cosine, and it selects lights by what they send to the patch, in
+    /// With `radiosity`, a rough radiosity solution of 4000 patches says where light comes from; `series` and `tour` can change that
+    /// number. At Lambertian surfaces it mixes those directions with the cosine, and it selects lights by what they send to the patch, in
     /// place of --lights. Other surfaces scatter as before. The guide treats every surface as Lambertian and glass as black. Its
     /// errors cost noise, never bias. It works well with --roulette window.
     #[arg(long, default_value_t = Guiding::Bsdf, value_parser = one_of::<Guiding>(GUIDES), value_name = "NAME")]
