@@ -126,7 +126,9 @@ fn some(lines: Vec<String>) -> String {
 fn people(d: &Description, scene: &Scene) -> String {
     let materials = d.materials.iter().map(|m| {
         let sides = if m.sides == Sides::Both { "both sides" } else { "front only" };
-        format!("  {:16} {}, {sides}", m.name, m.bsdf.words())
+        // blanks that wrapping keeps
+        let text = format!("\u{a0}\u{a0}{:\u{a0}<16} {}, {sides}", m.name, m.bsdf.words());
+        wrapped_after(&text, &" ".repeat(19))
     });
     let lamp = |l: Lamp<'_>| {
         format!(

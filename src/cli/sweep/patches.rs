@@ -106,9 +106,8 @@ fn people(session: &Session, found: &Refinement, record: &Summary) -> String {
              edges, ±{band:.4}; only these can belong to the scene."
         ));
         let above = wrapped(
-            "The leading eigenvalues by number of patches. Where h halves, a step ratio below 0.5 shows a limit, which belongs \
-             to the scene. In the band, and just outside it because corners widen it, eigenvalues drift: they belong to the \
-             mesh.",
+            "The leading eigenvalues by number of patches. Where h halves, a step ratio below 0.5 shows a limit; in the band, \
+             and just outside it because corners widen it, eigenvalues drift with the mesh.",
         );
         let with = |rows: usize| format!("{above}\n{}", drift::table(found, rows));
         tables.push(with(EIGENVALUES));
@@ -141,7 +140,10 @@ fn finest(found: &Refinement) -> String {
     let Some(mesh) = found.meshes.last() else { return String::new() };
     let truth = Quantity::Indirect.mean(&found.truth).mean.element_sum() / 3.0;
     let (e, s) = found.mean_error(mesh, Quantity::Indirect);
-    let off = report::percent(e / truth, s / truth);
+    let off = match s.is_finite() {
+        true => report::percent(e / truth, s / truth),
+        false => format!("{:+.2} %, with an error that is not known", 100.0 * e / truth),
+    };
     format!("With {} patches the mean of indirect light (k ≥ 2) is off by {off}.", mesh.patches)
 }
 
@@ -158,7 +160,9 @@ fn radius(found: &Refinement) -> String {
 
 /// The errors of the terms from k = 2 on, with a sentence above the table.
 fn errors(found: &Refinement, max_bounces: usize, spp: u64) -> String {
-    let terms = (2..=max_bounces).take(TERMS).map(Quantity::Term);
+    // fewer terms where a table of eigenvalues follows
+    let most = if channel(found).is_some() { TERMS / 3 } else { TERMS };
+    let terms = (2..=max_bounces).take(most).map(Quantity::Term);
     let quantities: Vec<Quantity> = terms.chain([Quantity::Indirect]).collect();
     let above = format!(
         "Image means by rays ({spp} spp), and how far radiosity is off, in percent of them (± standard error), for meshes of \
