@@ -1,5 +1,6 @@
 //! The answer of a run, and the small tables behind it: for the terminal and for the page.
 
+use super::base::{wrapped, wrapped_after};
 use fredholm::engine::by_rays::Sampled;
 use fredholm::engine::radius::radius_limit;
 use fredholm::math::CHANNELS;
@@ -39,28 +40,8 @@ pub fn head(run: &Run) -> String {
 
 /// A sentence for each comparison.
 pub fn comparisons(run: &Run) -> String {
-    let lines = run.verdicts.iter().map(|v| wrapped(&sentence(v.sides, &v.comparison), WIDTH));
+    let lines = run.verdicts.iter().map(|v| format!("  {}", wrapped_after(&sentence(v.sides, &v.comparison), "    ")));
     lines.collect::<Vec<_>>().join("\n")
-}
-
-/// Columns of a sentence.
-const WIDTH: usize = 96;
-
-/// A sentence in lines of at most `width` columns where its words allow it, indented by two columns, then by four.
-fn wrapped(sentence: &str, width: usize) -> String {
-    let mut lines = vec!["  ".to_owned()];
-    for word in sentence.split(' ') {
-        let line = lines.last().map_or(0, |line| line.chars().count());
-        if line + word.chars().count() >= width {
-            lines.push("    ".into());
-        }
-        if let Some(line) = lines.last_mut() {
-            let gap = if line.trim().is_empty() { "" } else { " " };
-            *line += gap;
-            *line += word;
-        }
-    }
-    lines.join("\n")
 }
 
 /// One result and nothing to compare it with.
@@ -121,29 +102,28 @@ pub fn terms(run: &Run) -> Option<Grid> {
     Some(grid)
 }
 
-/// The observed rate beside the spectral radius of the same channel.
+/// The observed rate beside the spectral radius of the same channel, and why the two columns of ratios differ.
 pub fn decay(run: &Run) -> String {
     let c = run.slowest_channel();
     let colour = CHANNELS[c];
-    let mut out = String::new();
+    let mut sentences = vec![];
     if let Some(Ok(fit)) = run.observed_rate_in(c) {
         let (first, last) = (fit.window.start, fit.window.end - 1);
-        out += &format!(
-            "Over all surfaces {colour} falls by the factor {} per bounce (k = {first} to {last}).\n",
-            plus_minus(fit.rate, fit.std_error, 2)
-        );
+        let rate = plus_minus(fit.rate, fit.std_error, 2);
+        sentences
+            .push(format!("Over all surfaces {colour} falls by the factor {rate} per bounce (k = {first} to {last})."));
     }
-    let Some(r) = &run.radiosity else { return out };
-    let (radius, bound) = (r.matrix.spectral[c].radius, run.guaranteed_rate()[c]);
-    let limit = radius_limit(&r.radii).map(|l| l[c].clone());
-    let limit = limit.map_or(String::new(), |l| format!(", {} for h → 0", plus_minus(l.value, l.half_width, 1)));
-    out += &format!(
-        "The spectral radius of T in {colour} is {radius:.4} on this mesh{limit}; the albedos\n\
-         guarantee only ≤ {bound:.3}. The ratios of the norm rise to it, because T is self-adjoint in\n\
-         that norm. The ratios of the picture wander, because each bounce lights other\n\
-         surfaces and the camera sees only some of them.\n"
-    );
-    out
+    if let Some(r) = &run.radiosity {
+        let (radius, bound) = (r.matrix.spectral[c].radius, run.guaranteed_rate()[c]);
+        let limit = radius_limit(&r.radii).map(|l| l[c]);
+        let limit = limit.map_or(String::new(), |l| format!(", {} for h → 0", plus_minus(l.value, l.half_width, 1)));
+        sentences.push(format!(
+            "The spectral radius of T in {colour} is {radius:.4} on this mesh{limit}; the albedos guarantee {bound:.3}. Ratios \
+             of the norm rise to it, because T is self-adjoint in that norm; ratios of the picture wander, because each \
+             bounce lights other surfaces."
+        ));
+    }
+    if sentences.is_empty() { String::new() } else { wrapped(&sentences.join(" ")) + "\n" }
 }
 
 /// Which bounce lights what, and how many bounces are enough.

@@ -45,8 +45,7 @@ const SERIES: Default = Default {
 };
 
 /// The suggestions at the end of the tour.
-const NEXT: &str = "Next: fredholm chapter 1 (the book, run), fredholm series veach-ajar (a harder scene),
-      fredholm diagnose YOURS.exr --against cornell (is your own renderer right?)";
+const NEXT: &str = "Next: fredholm chapter 1, series veach-ajar, diagnose YOURS.exr --against cornell";
 
 /// `tour`: all three results, the terms by two estimators.
 pub fn tour(args: &Tour) -> Result<Ending, Failure> {

@@ -21,15 +21,11 @@ pub fn people(run: &Run, summary: &Summary, session: &Session, next: &str) -> St
     tables.extend(answer::grids(run).iter().map(Grid::to_string));
     tables.extend(notes::orders(run).map(|grid| grid.to_string()));
     tables.push(notes::warnings(run).iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n"));
-    tables.push(next.to_owned());
     let page = session.folder.join("index.html");
     let files = format!("{} files after {:.0} s; open {}", summary.files.len(), summary.seconds, page.display());
-    session.text_ending(
-        &format!("{}\n{}", answer::head(run), answer::comparisons(run)),
-        &tables,
-        &details(run, summary),
-        &files,
-    )
+    let last = if next.is_empty() { files } else { format!("{next}\n{files}") };
+    let answer = format!("{}\n{}", answer::head(run), answer::comparisons(run));
+    session.text_ending(&answer, &tables, &details(run, summary), &last)
 }
 
 /// Every number behind the answer.

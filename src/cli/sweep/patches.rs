@@ -162,7 +162,7 @@ fn radius(found: &Refinement) -> String {
 /// The errors of the terms from k = 2 on, with a sentence above the table.
 fn errors(found: &Refinement, max_bounces: usize, spp: u64) -> String {
     // fewer terms where a table of eigenvalues follows
-    let most = if channel(found).is_some() { TERMS / 2 } else { TERMS };
+    let most = if channel(found).is_some() { TERMS / 3 } else { TERMS };
     let terms = (2..=max_bounces).take(most).map(Quantity::Term);
     let quantities: Vec<Quantity> = terms.chain([Quantity::Indirect]).collect();
     let above = format!(

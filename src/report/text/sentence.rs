@@ -38,7 +38,7 @@ fn reach(row: &Verdict) -> Option<f64> {
 fn accuracy(found: &Comparison) -> String {
     let parts = match found.rows.len() {
         1 => String::new(),
-        n => format!(", and so do all {n} parts"),
+        n => format!("; all {n} parts agree"),
     };
     bound(found).map_or(parts.clone(), |x| format!(" to ± {} %{parts}", significant(100.0 * x, 2)))
 }

@@ -16,8 +16,8 @@
 //! | a + ib | √((η + ik)² − s²): η + ik times the cosine of the angle inside the metal | [`conductor`] |
 //! | F_out, F_in | R averaged over cosine-weighted directions, for light from outside and from inside | [`hemispherical`] |
 //!
-//! The differences c − g and η²c − g lose all their digits when little is reflected. Written with e = η² − 1 they are −e/(c
-//! + g) and e((η² + 1)c² − 1)/(η²c + g), which lose none. a² = ½(√(t² + 4η²k²) + t) with t = η² − k² − s² has the same
+//! The differences c − g and η²c − g lose all their digits when little is reflected. Written with e = η² − 1 they are
+//! −e/(c + g) and e((η² + 1)c² − 1)/(η²c + g), which lose none. a² = ½(√(t² + 4η²k²) + t) with t = η² − k² − s² has the same
 //! problem for t < 0, so it is then computed as η²k²/b².
 //!
 //! References: Born and Wolf, *Principles of Optics* (7th ed. 1999), sections 1.5 and 14.2; Walsh, *The reflection factor

@@ -28,9 +28,9 @@ pub(super) fn verdicts(terms: &[Sampled], path: Option<&Sampled>, radiosity: Opt
         RunVerdict { name, sides, comparison }
     };
     let Some(first) = terms.first().map(|t| &t.series) else { return vec![] };
-    let other = terms.get(1).map(|other| {
-        judge("single − prefix", ["each term from its own paths", "all terms from one path"], first, &other.series, &[])
-    });
+    let other = terms
+        .get(1)
+        .map(|other| judge("single − prefix", ["separate paths", "shared paths"], first, &other.series, &[]));
     let path = path.map(|path| judge("terms − path", ["series", "path tracer"], first, &path.series, &[]));
     let matrix = radiosity.map(|r| {
         let (fine, coarse) = (&r.fine.series, &r.coarse.series);

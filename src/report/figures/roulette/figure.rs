@@ -41,9 +41,12 @@ fn work(noise: &Noise, aim: Aim) -> Value {
     Value { value, std_error: value * e.std_error / e.value }
 }
 
+/// A panel: heading, unit, and the value of a row that it shows.
+type Shown<'a> = (&'a str, &'a str, &'a dyn Fn(&Noise) -> Value);
+
 fn lines(page: &Canvas, rows: &[Row], height: f64) -> Drawn {
     let level = |i: usize| (rows.len() - i) as f64;
-    let of: [(&str, &str, &dyn Fn(&Noise) -> Value); 3] = [
+    let of: [Shown; 3] = [
         ("Cost", "rays per path", &|n| n.rays),
         ("Whole image", "V · rays (less is better)", &|n| work(n, Aim::Whole)),
         ("Indirect light, k ≥ 2", "V · rays (less is better)", &|n| work(n, Aim::Indirect)),
