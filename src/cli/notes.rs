@@ -98,7 +98,7 @@ pub fn matrix_facts(r: &Discrete) -> String {
     out
 }
 
-/// The accuracy of stored rays.
+/// The line that states the error of the solution when form factors are estimated from stored rays.
 fn sampling(s: &SampledRows) -> String {
     let mut out = format!(
         "{} rays per patch: relative L² error of L − E over the patches {:.1e}; {} steps of the solver",

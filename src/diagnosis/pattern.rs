@@ -152,7 +152,7 @@ impl Pattern {
 pub struct Constant {
     /// The constant c.
     pub value: f64,
-    /// Standard error of ln c.
+    /// Standard error of ln c, where c is the fitted constant: the relative error of c.
     pub relative_error: f64,
 }
 

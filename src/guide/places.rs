@@ -41,7 +41,7 @@ struct Grid {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     At(u32),
-    /// No patch: the point is covered, or this side has no patches.
+    /// No patch: another surface covers the point, or the mesh has no patches on this side of the surface.
     Nowhere,
     /// The primitive is a sphere or a disk and has no grid: search the mesh instead.
     Curved,

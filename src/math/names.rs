@@ -30,7 +30,8 @@ pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     scored.filter(|&(d, _)| d <= far).min_by_key(|&(d, _)| d).map(|(_, k)| k)
 }
 
-/// The names that `word` may stand for: the [nearest], then up to three more that contain it or begin with its first part.
+/// The names that `word` may stand for, at most four: first the [nearest] one, then those that contain `word` or begin with the
+/// part of it before a hyphen.
 ///
 /// ```
 /// use fredholm::math::names::similar;

@@ -143,7 +143,7 @@ impl Tournament {
         }
     }
 
-    /// The first leaf with the largest value; `None` if all are 0.
+    /// The index of the largest value in this binary tree of maxima, the first one if several are equal; `None` if all are 0.
     fn first(&self) -> Option<usize> {
         let most = *self.nodes.get(1).filter(|m| **m > 0.0)?;
         let mut at = 1;

@@ -134,9 +134,9 @@ impl Detector {
         self.tracks.len()
     }
 
-    /// Takes in one batch of both sides. The second is the same every time if it was finished before. The first functional
-    /// is the image mean; the others are matched by name. The first call decides which quantities are compared: those that
-    /// both sides have.
+    /// Adds one batch of samples of both sides, as image means and other functionals (weighted sums over pixels). The first
+    /// functional is the image mean; the others are matched by name. If the second side is a finished result, every call passes
+    /// the same value for it. The first call fixes the quantities to compare: those that both sides have.
     pub fn push(&mut self, first: &[Functional], second: &[Functional]) {
         if self.batches == 0 {
             self.open(first, second);

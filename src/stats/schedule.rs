@@ -109,7 +109,7 @@ pub fn reach(schedule: &Roulette, last: usize) -> Option<Vec<f64>> {
     Some(all)
 }
 
-/// Noise and cost of one sample.
+/// Variance and cost (in rays) of one sample under a schedule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Noise {
     /// V of each term k = 0..=K.

@@ -36,7 +36,8 @@ pub struct Scatter {
     pub channels: DVec3,
     /// ⟨(x_r − m)(m − X)⟩, by replicate; empty without a reference.
     cross: Vec<f64>,
-    /// ⟨(m − X)²⟩ − ⟨se_X²⟩; NaN without a reference.
+    /// Mean square error of the image m against the reference X: ⟨(m − X)²⟩ − ⟨se_X²⟩, averaged over pixels, where the second
+    /// term removes the noise of the reference; NaN without a reference.
     error: f64,
     /// Standard error of the mean square error that comes from the noise of the reference image.
     pub reference_error: f64,

@@ -76,7 +76,7 @@ pub struct Bug {
     pub place: &'static str,
     /// The wrong result, in closed form where it is known.
     pub expected: &'static str,
-    /// Description of the signature r_k.
+    /// How the mistake shows in the ratios r_k = T_k wrong / T_k correct.
     pub signature: &'static str,
     /// r_k on the scene that shows the mistake. None if the value depends on the scene.
     pub ratio: fn(k: usize) -> Option<f64>,

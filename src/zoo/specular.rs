@@ -65,7 +65,7 @@ pub static BUGS: [Bug; 4] = [
         what: "paths end at a total reflection inside glass",
         place: "glass: no sample where Snell's law has no solution, instead of a reflection with weight 1",
         expected: "black areas in glass objects with corners; in a ball seen from outside, no total reflection occurs",
-        signature: "1 up to k = 1, then below 1, falling with k",
+        signature: "r_k = 1 for k = 0 and 1, then r_k < 1 and falls with k",
         ratio: unknown,
         technique: Technique::Connect,
         ends: Ends::AtK,

@@ -128,7 +128,7 @@ fn plan(args: &Request, default: &Default, opened: Opened) -> Result<Run, Failur
 fn estimators(args: &Request, default: &Default, worlds: &[World]) -> Result<Vec<Estimator>, Failure> {
     match (worlds.contains(&World::Terms), args.estimator()) {
         (false, Some(_)) => Err(usage(
-            "--estimator is for the terms, and --worlds leaves them out",
+            "--estimator selects how the terms T^k E are estimated, but --worlds asks for no terms",
             "leave --estimator out, or add terms to --worlds",
         )),
         (false, None) => Ok(vec![]),

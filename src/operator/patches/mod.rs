@@ -281,7 +281,7 @@ fn suits(scene: &Description, listed: &[(usize, Primitive)]) -> Result<(), Scene
             let e = SceneError::new("a radiosity matrix can only hold Lambertian surfaces of one colour");
             return Err(e
                 .key(format!("materials.{}", material.name))
-                .help("run without radiosity, or use a Lambertian material of one colour"));
+                .help("run without radiosity, or use a Lambertian material without texture"));
         }
         if !(p.area() > 0.0 && p.area().is_finite()) {
             let what = format!(

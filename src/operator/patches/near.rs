@@ -15,7 +15,7 @@ use glam::DVec3;
 use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2, ray::Ray};
 use std::sync::Arc;
 
-/// Boxes are enlarged by this share of the scene's size, which is far more than the rounding error of `f32`.
+/// Boxes are enlarged by this fraction of the scene's size, which is far more than the rounding error of `f32`.
 const MARGIN: f64 = 1e-5;
 
 /// The tree over the boxes of all primitives.

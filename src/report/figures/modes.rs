@@ -124,7 +124,7 @@ pub fn ratio_table(s: &Spectrum) -> String {
     aligned(&rows, &[Side::Right; 3])
 }
 
-/// All numbers of the tables as JSON.
+/// All numbers of the tables as a JSON value, for `--json`.
 pub fn machine(all: &[Spectrum]) -> Value {
     let one = |s: &Spectrum| {
         let modes = s.modes.iter().map(|m| {

@@ -276,7 +276,7 @@ pub fn draw(c: &Covariance, slots: usize, title: &str, caption: &Caption) -> Res
             number_to(sum / trace, 3)
         );
         page.text(&note, (24.0, side + 130.0), Words { size: 12.5, ..Words::default() })?;
-        let key = "blue: positive · orange: negative; the depth of the colour grows with the root of the size · empty: a term without noise";
+        let key = "blue: positive · orange: negative; the stronger the colour, the larger the value (square-root scale) · empty: a term without noise";
         page.text(key, (24.0, side + 150.0), Words { size: 12.5, color: GREY, ..Words::default() })
     })
 }

@@ -3,7 +3,7 @@
 use super::number::{mark, p_value, significant};
 use crate::stats::{Comparison, Outcome, Verdict};
 
-/// The outcome of a comparison of `a` with `b`, with its mark: ✓ agrees, ✗ differs, ? inconclusive.
+/// The outcome of a comparison of the two results named in `sides`, with its mark: ✓ agrees, ✗ differs, ? inconclusive.
 ///
 /// ```
 /// use fredholm::report::text::sentence::sentence;

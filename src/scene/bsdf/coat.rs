@@ -111,7 +111,8 @@ fn integrated(interface: &Interface, facets: &Microfacets, mu: f64) -> f64 {
     sum / (STEPS * STEPS / 2) as f64
 }
 
-/// T at the nodes, nowhere above the exact value.
+/// The transmittance T of the coat at the nodes of its table, lowered so that linear interpolation nowhere exceeds the exact
+/// value.
 fn bounded(interface: &Interface, facets: &Microfacets) -> [f32; NODES] {
     // μ = 0 is undefined, so a small μ replaces it
     let at = |t: f64| integrated(interface, facets, (t / (NODES - 1) as f64).powi(2).max(1e-6));

@@ -46,7 +46,7 @@ impl std::fmt::Display for Selection {
 pub(crate) enum Light {
     /// An emitting surface: its primitives, and the cumulative fractions of its area, ending in 1.
     Surface { prims: Vec<u32>, cdf: Vec<f32> },
-    /// A whole sphere that emits outwards; it is sampled by solid angle.
+    /// A whole sphere that emits outwards. Its points are sampled uniformly in the solid angle that they fill from the shaded point.
     Ball { prim: u32, center: DVec3, radius: f64 },
     /// A point light; intensity in W/sr.
     Point { position: Vec3, intensity: Rgb },

@@ -58,7 +58,9 @@ pub(super) fn read(c: &Cursor, bounds: Option<[DVec3; 2]>) -> Result<CameraDescr
     }
     if up.normalize().cross(forward.normalize()).length() <= 1e-6 {
         let e = place("up").error("up is parallel to the viewing direction");
-        return Err(e.help("choose an up that is not target - origin, such as [0, 0, 1] for a camera looking along y"));
+        return Err(e.help(
+            "choose an up that is not parallel to target - origin, such as [0, 0, 1] for a camera looking along y",
+        ));
     }
     Ok(CameraDescription { origin, target, up, fov, size })
 }

@@ -178,7 +178,7 @@ fn read(path: &Path) -> Result<String, SceneError> {
     })
 }
 
-/// The text of a file whose encoding may not be UTF-8, as in comments of old files.
+/// The text of a file that may not be UTF-8, as in old files with accented comments. Invalid bytes become replacement characters.
 fn read_lossy(path: &Path) -> Result<String, SceneError> {
     bytes(path).map(|b| String::from_utf8_lossy(&b).trim_start_matches('\u{feff}').to_owned())
 }
