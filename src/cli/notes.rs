@@ -197,8 +197,8 @@ pub fn orders(run: &Run) -> Option<Grid> {
     let sizes =
         run.meshes.iter().map(|m| m.series.label.split(' ').nth(1).unwrap_or("?")).collect::<Vec<_>>().join(", ");
     let sentence = format!(
-        "How fast does the matrix converge? Change of the picture from the second mesh to the\n\
-         finest, and the order p in error ~ h^p, from {sizes} patches."
+        "How fast does the matrix converge? Change of the picture from the second mesh to\n\
+         the finest, and the order p in error ~ h^p, from {sizes} patches."
     );
     let mut grid = Grid::new(sentence, ["k", "mean", "change", "order"]);
     let image = run.meshes.last()?.series.image();

@@ -1,6 +1,7 @@
 //! What a run prints: the answer, small tables, what to try next; with `--verbose` every number behind them.
 
 use crate::cli::answer;
+use crate::cli::base::wrapped;
 use crate::cli::notes;
 use crate::cli::session::Session;
 use fredholm::engine::by_rays::Sampled;
@@ -24,7 +25,7 @@ pub fn people(run: &Run, summary: &Summary, session: &Session, next: &str) -> St
     let page = session.folder.join("index.html");
     let files = format!("{} files after {:.0} s; open {}", summary.files.len(), summary.seconds, page.display());
     let last = if next.is_empty() { files } else { format!("{next}\n{files}") };
-    let answer = format!("{}\n{}", answer::head(run), answer::comparisons(run));
+    let answer = format!("{}\n{}", wrapped(&answer::head(run)), answer::comparisons(run));
     session.text_ending(&answer, &tables, &details(run, summary), &last)
 }
 

@@ -248,8 +248,9 @@ impl Run {
             }
         }
         if self.asked.bounces && !progress.stopped() {
-            self.bounces = bounces(&self.scene, paths.saturating_mul(4), &self.settings, progress);
-            self.lit = lit(&self.description, &self.scene, paths / 4, &self.settings, progress);
+            // without images these cost little, so they have enough paths even where the run has few
+            self.bounces = bounces(&self.scene, paths.saturating_mul(4).max(1 << 15), &self.settings, progress);
+            self.lit = lit(&self.description, &self.scene, (paths / 4).max(1 << 13), &self.settings, progress);
         }
         // 3 % of the run; left out if that is less than two samples, or if the moments of that many terms would fill the memory
         let prefixes = self.asked.moments && self.asked.estimators.contains(&Estimator::Prefix);
