@@ -3,6 +3,7 @@
 use super::files::Files;
 use crate::cli::base::Failure;
 use fredholm::engine::by_rays::{Estimator, Sampled};
+use fredholm::math::CHANNELS;
 use fredholm::report::figures::decay::{self, Decay, RateLine, independent_ratios};
 use fredholm::report::figures::variance::{self, Falling, Variance};
 use fredholm::report::image::typeset::{Caption, superscript};
@@ -17,10 +18,13 @@ pub(super) fn write_plots(run: &Run, out: &mut Files, caption: &Caption) -> Resu
     if run.surface.is_empty() && run.radiosity.is_none() {
         return write_variance(run, out, caption);
     }
-    let mut figure = Decay { title: "How the terms decay".into(), ..Decay::default() };
+    // one channel for all of it, so that the measured rate can be compared with the spectral radius
+    let c = run.slowest_channel();
+    let title = format!("How the terms decay, in the {} channel", CHANNELS[c]);
+    let mut figure = Decay { title, ..Decay::default() };
     for (estimator, r) in &run.surface {
         let look = if *estimator == Estimator::Single { Look::SINGLE } else { Look::PREFIX };
-        let means = TermMeans::from(r);
+        let means = TermMeans::channel(r, c);
         let points = decay::norms(&means);
         let ratios = match estimator {
             Estimator::Single => independent_ratios(&points),
@@ -29,7 +33,7 @@ pub(super) fn write_plots(run: &Run, out: &mut Files, caption: &Caption) -> Resu
         figure.ratios.push(Curve { label: estimator.to_string(), points: ratios, look });
         figure.surface.push(Curve { label: format!("Monte Carlo, {estimator}"), points, look });
     }
-    if let (Some(r), Some(matrix)) = (&run.radiosity, run.norms_of_matrix()) {
+    if let (Some(r), Some(matrix)) = (&run.radiosity, run.norms_of_matrix(c)) {
         let points = decay::norms(&TermMeans::exact(&matrix));
         figure.ratios.push(Curve { label: "matrix".into(), points: independent_ratios(&points), look: Look::MATRIX });
         figure.surface.push(Curve {
@@ -38,7 +42,7 @@ pub(super) fn write_plots(run: &Run, out: &mut Files, caption: &Caption) -> Resu
             look: Look::MATRIX,
         });
     }
-    figure.lines = lines(run);
+    figure.lines = lines(run, c);
     for s in run.terms.iter() {
         let look = if s.series.label.starts_with("single") { Look::SINGLE } else { Look::PREFIX };
         let point = |(k, n): (usize, &Option<fredholm::terms::norms::SquaredNorm>)| {
@@ -62,18 +66,18 @@ fn name_of(path: &Path) -> String {
 }
 
 /// The straight lines of the decay plot: observed rate, guaranteed bound, bound of the tail, spectral radius.
-fn lines(run: &Run) -> Vec<RateLine> {
+fn lines(run: &Run, c: usize) -> Vec<RateLine> {
     let mut lines = vec![];
-    let g = run.guaranteed_rate().max_element();
+    let g = run.guaranteed_rate()[c];
     if let Some(r) = run.norms() {
-        let means = TermMeans::from(r);
-        lines.extend(run.observed_rate().and_then(Result::ok).as_ref().map(RateLine::observed));
+        let means = TermMeans::channel(r, c);
+        lines.extend(run.observed_rate_in(c).and_then(Result::ok).as_ref().map(RateLine::observed));
         lines.push(RateLine::guaranteed(g, means.mean[0]));
         let k = means.mean.len() - 1;
         lines.extend(RateLine::tail_bound(g, k, means.mean[k]));
     }
-    if let (Some(r), Some(matrix)) = (&run.radiosity, run.norms_of_matrix()) {
-        let radius = r.matrix.spectral.iter().map(|s| s.radius).fold(0.0, f64::max);
+    if let (Some(r), Some(matrix)) = (&run.radiosity, run.norms_of_matrix(c)) {
+        let radius = r.matrix.spectral[c].radius;
         lines.extend(RateLine::spectral(radius, &matrix));
     }
     lines
