@@ -121,7 +121,7 @@ fn guaranteed(scene: &Scene) -> Option<usize> {
     (g < 1.0 && !scene.has_environment() && !scene.lights.any_delta()).then(|| bounces.max(0.0).ceil() as usize)
 }
 
-/// Lines of a list that are printed; `--json` has all.
+/// Lines of a list that are printed at most; `--json` has all.
 const SHOWN: usize = 6;
 
 /// The first lines of a list, and how many are left out.

@@ -211,7 +211,7 @@ pub fn duration(s: &str) -> Result<Duration, String> {
     seconds.map(Duration::from_secs_f64).ok_or(format!("`{s}` is not a time such as 30s, 1.5m or 500ms"))
 }
 
-/// Parses a number of at least 0.
+/// Parses a number of at least 0, such as the fraction of a term that a comparison tolerates.
 pub fn fraction(s: &str) -> Result<f64, String> {
     let number = s.parse().ok().filter(|x: &f64| *x >= 0.0 && x.is_finite());
     number.ok_or(format!("`{s}` is not a number of at least 0"))

@@ -213,7 +213,7 @@ pub fn needs_no_guide(asked: Option<&Schedule>) -> Result<(), Failure> {
     match asked {
         Some(Schedule::ByExpectation(end)) => Err(usage(
             &format!("--roulette {end} needs the expected values of a guide, and there is no guide"),
-            "add --guide radiosity (series, render), or choose albedo",
+            "add --guide radiosity (in series or render), or use --roulette albedo",
         )),
         _ => Ok(()),
     }

@@ -45,7 +45,7 @@ pub fn delta(criterion: &Criterion) -> String {
     format!("{} of the term{plus}", percent(criterion.of_term))
 }
 
-/// Names of the quantities, and how many there are if they are too many to name.
+/// The names of the quantities. If there are too many, the first few and the number of the others.
 fn listed(rows: &[&Verdict]) -> String {
     let names: Vec<&str> = rows.iter().map(|r| r.name.as_str()).collect();
     if names.len() > NAMED {

@@ -145,7 +145,7 @@ fn same_numbers(f: &Facts) -> Vec<Suspicion> {
     } else {
         format!("the scatter of neighbouring pixels is {v:.1} times the variance in the _se layers: samples repeat")
     };
-    points("same-numbers", why, "render it with two seeds: the mean difference must fall as 1/√samples")
+    points("same-numbers", why, "render it with two seeds: if the difference is noise, its mean falls as 1/√samples")
 }
 
 fn changes_with_samples(f: &Facts) -> Vec<Suspicion> {

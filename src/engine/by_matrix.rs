@@ -186,7 +186,7 @@ fn trace(
             patches.len(),
             Hit::MOST
         ));
-        return Err(e.help("lower --patches; a mesh has at least one patch for each side of a triangle").into());
+        return Err(e.help("use fewer --patches, or a scene with fewer triangles: each face of a triangle (front, back) needs one patch").into());
     }
     progress.begin(&format!("{per_row} rays from each of {} patches", patches.len()), patches.len() as u64);
     Rays::new(patches, scene, per_row as usize, seed, progress).map_err(|_| MatrixError::Stopped)

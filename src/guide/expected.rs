@@ -134,7 +134,8 @@ impl fmt::Display for ByExpectation {
     }
 }
 
-/// `contribution[@V]`, `window[@V]`.
+/// Parses the name of a rule by which guided paths end, `contribution` or `window`, and optionally `@V`, the first vertex to
+/// which it applies.
 impl FromStr for ByExpectation {
     type Err = String;
 

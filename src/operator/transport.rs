@@ -158,7 +158,7 @@ impl<S: Copy + Default + Send> Wave<S> for Vec<S> {
 pub struct Samples {
     /// A radiance or a weight, per path.
     pub value: Columns,
-    /// Density of the technique that chose the sample.
+    /// Density with which the technique that chose the sample (BSDF sampling or next-event estimation) produces it.
     pub pdf: Vec<f32>,
     /// Density of the other technique for the same sample.
     pub other_pdf: Vec<f32>,

@@ -116,7 +116,8 @@ pub struct Rate {
     pub amplitude: f64,
     /// The values of k in the fit.
     pub window: Range<usize>,
-    /// Misfit of the fit; about `window.len() − 2` if one rate fits. NaN if the terms are exact (any misfit is then real).
+    /// Misfit of the fit; about `window.len() − 2` if one rate fits. NaN if
+    /// the terms have no noise: then any misfit means that the decay is not exactly geometric.
     pub chi_squared: f64,
     /// Probability of a misfit at least this large if one rate fits. NaN with two points or exact terms.
     pub p: f64,

@@ -92,7 +92,8 @@ impl Separable {
         self.rays.iter().zip(reach).map(|(c, q)| c * q).sum()
     }
 
-    /// V · rays, the inverse of the efficiency.
+    /// The variance of one sample times its mean number of rays (the inverse of the efficiency), if paths reach vertex v with
+    /// probability `reach[v]`.
     pub fn work(&self, reach: &[f64]) -> f64 {
         self.variance(reach) * self.cost(reach)
     }

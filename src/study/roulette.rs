@@ -75,7 +75,8 @@ fn amount(spp: u32, settings: &Settings, stream: &str) -> Amount {
     Amount { spp, replicates: spp.min(REPLICATES) as usize, key: Key::new(settings.seed, stream) }
 }
 
-/// Records the cross moments of paths without roulette before vertex K = `settings.max_bounces`. None if interrupted.
+/// Traces paths that are not ended by roulette before vertex K = `settings.max_bounces`, and records the mean products
+/// E[X_j X_k] of what they contribute to the terms j and k. None if interrupted.
 pub fn pilot(scene: &Scene, settings: &Settings, spp: u32, progress: Progress<'_>) -> Option<Recorded> {
     let roulette = Roulette::Constant { from: settings.max_bounces, q: beyond(scene) };
     let t = SceneTransport { scene, sampling: settings.sampling };
@@ -210,7 +211,8 @@ pub struct Relative {
 }
 
 impl Relative {
-    /// Predicted from a recording made by [`pilot`]. None if the schedule depends on the path.
+    /// The prediction for the schedule `of`, from a recording made by [`pilot`]. None if its q depends on more than the number of
+    /// the vertex, as in roulette by albedo.
     pub fn predicted(recorded: &Recorded, scene: &Scene, of: &Roulette) -> Option<Self> {
         let base = lecture(recorded, scene)?;
         // work of one schedule over that of the other is the gain of the other over the one
@@ -309,7 +311,8 @@ pub fn constant(schedule: &Roulette) -> Option<f64> {
     }
 }
 
-/// Spectral radii that decide whether moments are finite if every vertex terminates paths with the same q. Here s = 1 − q.
+/// Spectral radii of operators that are made from T, for roulette with the same q at every vertex. They decide whether mean and
+/// variance of the path tracer are finite. Here s = 1 − q.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Radii {
     /// Spectral radius of ρ²F/s: below 1 if the variance is finite.

@@ -49,7 +49,7 @@ pub static BUGS: [Bug; 4] = [
     Bug {
         name: "eta-squared-once",
         what: "radiance is divided by η² where a path enters glass, not multiplied where it leaves",
-        place: "glass: the factor for refraction is left out where a path leaves the denser side",
+        place: "glass: the factor η² of refraction is left out where a path leaves the denser side",
         expected: "T^k E/η² for k ≥ 2 of a ball in a white sky; the sum is R + (1 − R)/η² instead of 1",
         signature: "1 at k = 0 and 1, then flat: 1/η² = 0.44",
         ratio: |k| Some(if k < 2 { 1.0 } else { 1.0 / 2.25 }),

@@ -33,7 +33,7 @@ pub(super) fn write_plots(run: &Run, out: &mut Files, caption: &Caption) -> Resu
         figure.ratios.push(Curve { label: estimator.to_string(), points: ratios, look });
         figure.surface.push(Curve { label: format!("Monte Carlo, {estimator}"), points, look });
     }
-    if let (Some(r), Some(matrix)) = (&run.radiosity, run.norms_of_matrix(c)) {
+    if let (Some(r), Some(matrix)) = (&run.radiosity, run.norms_of_matrix_in(c)) {
         let points = decay::norms(&TermMeans::exact(&matrix));
         figure.ratios.push(Curve { label: "matrix".into(), points: independent_ratios(&points), look: Look::MATRIX });
         figure.surface.push(Curve {
@@ -76,7 +76,7 @@ fn lines(run: &Run, c: usize) -> Vec<RateLine> {
         let k = means.mean.len() - 1;
         lines.extend(RateLine::tail_bound(g, k, means.mean[k]));
     }
-    if let (Some(r), Some(matrix)) = (&run.radiosity, run.norms_of_matrix(c)) {
+    if let (Some(r), Some(matrix)) = (&run.radiosity, run.norms_of_matrix_in(c)) {
         let radius = r.matrix.spectral[c].radius;
         lines.extend(RateLine::spectral(radius, &matrix));
     }

@@ -40,7 +40,7 @@ pub struct Stone<'a> {
 pub fn name(k: usize, s: usize) -> String {
     match s {
         0 => "s = 0: hit".into(),
-        s if s == k + 1 => format!("s = {s}: to the eye"),
+        s if s == k + 1 => format!("s = {s}: connected to the camera"),
         1 => "s = 1: connect".into(),
         s => format!("s = {s}"),
     }

@@ -58,7 +58,7 @@ fn name(c: &Cursor, file: &Path) -> Result<String, SceneError> {
     };
     let name = at.text()?;
     if [".", ".."].contains(&name) || name.contains(|c: char| "/\\:".contains(c) || c.is_control()) {
-        let e = at.error(format!("`{}` cannot be the name of a folder", name.escape_debug()));
+        let e = at.error(format!("the scene name `{}` cannot be used for the output folder", name.escape_debug()));
         return Err(e.help("use letters, digits, spaces, - and _"));
     }
     Ok(name.to_owned())

@@ -80,8 +80,15 @@ impl Run {
         self.norms().map(|norms| DVec3::select(g.cmplt(DVec3::ONE), g / (1.0 - g) * last(norms), DVec3::NAN))
     }
 
-    /// The terms of the matrix in one channel: means over all surfaces.
-    pub fn norms_of_matrix(&self, channel: usize) -> Option<Vec<f64>> {
+    /// ‖T_h^k E‖₁ per area for k = 0..=K: means of the matrix's terms over all surfaces, averaged over the channels. None
+    /// without a matrix.
+    pub fn norms_of_matrix(&self) -> Option<Vec<f64>> {
+        let of = |means: &Vec<DVec3>| means.iter().map(|v| v.element_sum() / 3.0).collect();
+        self.radiosity.as_ref().map(|r| of(&r.matrix.surface))
+    }
+
+    /// The same in one channel.
+    pub fn norms_of_matrix_in(&self, channel: usize) -> Option<Vec<f64>> {
         self.radiosity.as_ref().map(|r| r.matrix.surface.iter().map(|v| v[channel]).collect())
     }
 

@@ -56,7 +56,8 @@ fn gains(found: &[(Aim, &Row)]) -> String {
     found.iter().enumerate().map(one).collect::<Vec<_>>().join(" ")
 }
 
-/// Why the optimum for the whole image is no good schedule for indirect light, or how the variance is shared.
+/// A sentence on the two optima: why the one for the whole image makes indirect light noisy, or, where it does not, which part
+/// of the variance each of T0, T1 and indirect light has.
 fn reason(found: &[(Aim, &Row)], shares: &Shares) -> String {
     let share = |v: Option<&Value>| v.map_or("–".into(), |v| format!("{} %", significant(100.0 * v.value, 2)));
     let t0 = shares.terms.first();
