@@ -8,7 +8,7 @@ const REFUSED: &[(&str, &str, usize, &str, &str)] = &[
     // the file
     ("name = \"good\"", "nane = \"good\"", 1, "nane", "unknown key `nane`"),
     ("name = \"good\"", "name = 3", 1, "name", "expected a string, found an integer"),
-    ("name = \"good\"", "name = \"../up\"", 1, "name", "`../up` cannot be the name of a folder"),
+    ("name = \"good\"", "name = \"../up\"", 1, "name", "the scene name `../up` cannot be used for the output folder"),
     ("name = \"good\"", "name = \" \"", 1, "name", "the string is empty"),
     ("[camera]", "[kamera]", 3, "kamera", "unknown key `kamera`"),
     ("[expect]", "[[lights]]\ntype = \"lamp\"\n[expect]", 56, "lights[0].type", "`lamp` is not a type of light"),
