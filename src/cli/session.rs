@@ -5,7 +5,7 @@
 //! new → open → make_folder → progress … → sign → show → ending
 //! ```
 
-use super::base::{Ending, Failure, note, paragraphs, print, wrapped_after};
+use super::base::{Ending, Failure, WIDTH, note, paragraphs, print, wrapped_after};
 use super::open::{self, Opened};
 use super::options::{Changes, Manner};
 use super::output;
@@ -17,6 +17,9 @@ use fredholm::terms::TermFilm;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
+
+/// Tells that there are more numbers; it ends the last line, or follows it.
+const MORE: &str = "; more numbers: --verbose";
 
 /// A running command: its options, its output folder, its progress bar, its record.
 pub struct Session {
@@ -156,7 +159,13 @@ impl Session {
     /// The same as [`text`](Self::text), with another last line.
     pub fn text_ending(&self, answer: &str, tables: &[String], details: &[String], last: &str) -> String {
         let verbose = self.manner.verbose;
-        let more = if verbose || details.iter().all(String::is_empty) { "" } else { "; more numbers: --verbose" };
+        let known = verbose || details.iter().all(String::is_empty);
+        let length = last.lines().last().map_or(0, |line| line.chars().count());
+        let more = match known {
+            true => "",
+            false if length + MORE.len() <= WIDTH => MORE,
+            false => &MORE.replace("; ", "\n"),
+        };
         let mut blocks = vec![answer.to_owned()];
         blocks.extend_from_slice(tables);
         blocks.extend_from_slice(if verbose { details } else { &[] });

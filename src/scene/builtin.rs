@@ -15,52 +15,52 @@ pub struct Builtin {
 pub const ALL: [Builtin; 14] = [
     Builtin {
         name: "cornell",
-        summary: "a Cornell box of quads with two blocks: colour bleeding between the walls",
+        summary: "a Cornell box with two blocks: colour bleeding between the walls",
         source: include_str!("../../scenes/cornell.toml"),
     },
     Builtin {
         name: "furnace",
-        summary: "a closed box where every surface emits and has albedo 0.5: T^k E = 0.5^k everywhere",
+        summary: "closed; every surface emits 1 and has albedo 0.5: T^k E = 0.5^k",
         source: include_str!("../../scenes/furnace.toml"),
     },
     Builtin {
         name: "sphere",
-        summary: "an integrating sphere lit by its own cap: every term from k = 1 on is constant",
+        summary: "an integrating sphere lit by its cap: terms k ≥ 1 are constant",
         source: include_str!("../../scenes/sphere.toml"),
     },
     Builtin {
         name: "shells",
-        summary: "two concentric spheres: pointwise exact terms of a 2 by 2 operator, with occlusion",
+        summary: "two concentric spheres: exact terms of a 2 by 2 operator",
         source: include_str!("../../scenes/shells.toml"),
     },
     Builtin {
         name: "cornell-spheres",
-        summary: "a Cornell box with a mirror and a glass sphere: caustics from k = 2 and k = 3 on",
+        summary: "a Cornell box with a mirror and a glass sphere: caustics",
         source: include_str!("../../scenes/cornell-spheres.toml"),
     },
     Builtin {
         name: "veach-mis",
-        summary: "glossy plates under lamps of equal power, unequal size: multiple importance sampling",
+        summary: "glossy plates, lamps of equal power and different size: MIS",
         source: include_str!("../../scenes/veach-mis.toml"),
     },
     Builtin {
         name: "veach-ajar",
-        summary: "a room lit through a slightly open door: the lamp is hidden and the series is long",
+        summary: "a room lit through a slightly open door: a long series",
         source: include_str!("../../scenes/veach-ajar.toml"),
     },
     Builtin {
         name: "env-ggx",
-        summary: "gold, copper and plastic under a sky and a point light: GGX at four roughnesses",
+        summary: "gold, copper and plastic under a sky and a point light: GGX",
         source: include_str!("../../scenes/env-ggx.toml"),
     },
     Builtin {
         name: "caustic",
-        summary: "a glass sphere focuses a small lamp: easy to sample from the light, hard from the eye",
+        summary: "a glass sphere focuses a small lamp: hard to find from the eye",
         source: include_str!("../../scenes/caustic.toml"),
     },
     Builtin {
         name: "glass-furnace",
-        summary: "a glass ball in a sky of radiance 1: every pixel sums to 1, and all terms are known",
+        summary: "a glass ball in a sky of radiance 1: every pixel sums to 1",
         source: include_str!("../../scenes/glass-furnace.toml"),
     },
     Builtin {
@@ -70,7 +70,7 @@ pub const ALL: [Builtin; 14] = [
     },
     Builtin {
         name: "sky-bowl",
-        summary: "part of a sphere open to a sky of radiance 1: every term is constant",
+        summary: "part of a sphere open to a sky of radiance 1: constant terms",
         source: include_str!("../../scenes/sky-bowl.toml"),
     },
     Builtin {
@@ -80,7 +80,7 @@ pub const ALL: [Builtin; 14] = [
     },
     Builtin {
         name: "cube",
-        summary: "a closed cube with an emitting ceiling: means of L and r(T) known without a mesh",
+        summary: "a closed cube with an emitting ceiling: L and r(T) are known",
         source: include_str!("../../scenes/cube.toml"),
     },
 ];

@@ -53,20 +53,20 @@ fn commands_end_as_they_say() {
     .toml or .obj file.
     `fredholm info NAME` describes a scene.
 
-    cornell         a Cornell box of quads and two blocks, colours bleeding
-    furnace         a closed box where every surface glows and reflects half: T^k E = 0.5^k everywhere
-    sphere          an integrating sphere lit by its own cap: every term from k = 1 on is constant
-    shells          two concentric spheres: pointwise exact terms of a 2 by 2 operator, with occlusion
-    cornell-spheres a Cornell box with a mirror and a glass sphere: caustics from k = 2 and k = 3 on
-    veach-mis       glossy plates under lamps of equal power, unequal size: multiple importance sampling
-    veach-ajar      a room lit through a slightly open door: the lamp is hidden and the series is long
-    env-ggx         gold, copper and plastic under a sky and a point light: GGX at four roughnesses
-    caustic         a glass sphere focuses a small lamp: easy to sample from the light, hard from the eye
-    glass-furnace   a glass ball in a sky of radiance 1: every pixel sums to 1, and all terms are known
+    cornell         a Cornell box with two blocks: colour bleeding between the walls
+    furnace         closed; every surface emits 1 and has albedo 0.5: T^k E = 0.5^k
+    sphere          an integrating sphere lit by its cap: terms k ≥ 1 are constant
+    shells          two concentric spheres: exact terms of a 2 by 2 operator
+    cornell-spheres a Cornell box with a mirror and a glass sphere: caustics
+    veach-mis       glossy plates, lamps of equal power and different size: MIS
+    veach-ajar      a room lit through a slightly open door: a long series
+    env-ggx         gold, copper and plastic under a sky and a point light: GGX
+    caustic         a glass sphere focuses a small lamp: hard to find from the eye
+    glass-furnace   a glass ball in a sky of radiance 1: every pixel sums to 1
     mirror-corridor two parallel mirrors of reflectance 0.9: T^k E decays slowly
-    sky-bowl        part of a sphere open to a sky of radiance 1: every term is constant
+    sky-bowl        part of a sphere open to a sky of radiance 1: constant terms
     many-lights     96 lamps from 0.01 to 10 W: light selection by power or uniform
-    cube            a closed cube with an emitting ceiling: means of L and r(T) known without a mesh
+    cube            a closed cube with an emitting ceiling: L and r(T) are known
     "#);
     let said = desk.ok("info furnace");
     insta::assert_snapshot!(said.out, @r#"
