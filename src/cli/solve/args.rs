@@ -187,7 +187,7 @@ pub struct Pixels {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = MATRIX)]
 pub struct Mesh {
-    /// About how many patches [default: 600; tour: 2400]
+    /// About how many patches [default: 600; tour: 3600]
     ///
     /// At most 20000 for a dense matrix, at most 2000000 for stored rays.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
