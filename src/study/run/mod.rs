@@ -247,7 +247,8 @@ impl Run {
                 self.surface.push((estimator, norms));
             }
         }
-        if self.asked.bounces && !progress.stopped() {
+        // where the paths of the run never end by roulette, the scene may keep all its light, and these paths would not end either
+        if self.asked.bounces && self.settings.roulette.ends() && !progress.stopped() {
             // without images these cost little, so they have enough paths even where the run has few
             self.bounces = bounces(&self.scene, paths.saturating_mul(4).max(1 << 15), &self.settings, progress);
             self.lit = lit(&self.description, &self.scene, (paths / 4).max(1 << 13), &self.settings, progress);
