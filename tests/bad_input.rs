@@ -39,7 +39,7 @@ fn usage_errors_name_the_value_and_exit_with_2() {
         ("series --worlds terms,moon", "--worlds: `moon` is none of terms, path, radiosity"),
         ("series --roulette constant:1.5", "q = `1.5` is not a probability of termination in [0, 1)"),
         ("series --roulette constant:1", "q = `1` is not a probability of termination"),
-        ("series --roulette russian", "unknown roulette `russian`; none, lecture"),
+        ("series --roulette russian", "unknown roulette `russian`; use none, lecture"),
         ("series --max-bounces 1001", "--max-bounces: 1001 is not between 0 and 1000"),
         ("series --size 16", "`16` is not a size such as 128x128"),
         ("series --size 0x16", "`0x16` is not a size"),

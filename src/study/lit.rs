@@ -33,7 +33,7 @@ const REPLICATES: u32 = 64;
 /// Pixels of the sensor, each of them the whole surface.
 const PIXELS: u32 = 64;
 /// Paths of each surface at most.
-const MOST_PATHS: u32 = 1 << 16;
+const MOST_PATHS: u32 = 1 << 18;
 
 /// The light that leaves one surface, bounce by bounce.
 #[derive(Clone, Debug)]
