@@ -98,6 +98,10 @@ pub fn terms(run: &Run) -> Option<Grid> {
     if !image.tail.is_none() {
         row(format!("k > {}", image.terms.len() - 1), &image.tail, None);
         row("all".into(), &image.total, None);
+    } else {
+        // cut at K: longer paths are not estimated
+        let blank = vec!["–".to_owned(); grid.head.len() - 1];
+        grid.push(std::iter::once(format!("k > {}", image.terms.len() - 1)).chain(blank));
     }
     Some(grid)
 }

@@ -68,7 +68,8 @@ pub fn matrix_facts(r: &Discrete) -> String {
     };
     let d = (r.fine.series.image().total.mean - r.coarse.series.image().total.mean).abs();
     let mut out = format!(
-        "The matrix. Form factors F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4}, {reciprocity}\n\
+        "The matrix. Form factors F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4},\n\
+         {reciprocity}; \
          residual of the solve {:.1e}; spectral radius ({rho})\n{}\
          change of the image mean from the coarser mesh, |R_h − R_2h|: {:.1e}",
         i.row_sum_min,
@@ -228,7 +229,7 @@ pub fn doubts<'a>(results: impl Iterator<Item = &'a Series>) -> Vec<String> {
         let worst = thin.min_by(|a, b| a.1.total_cmp(&b.1))?;
         let (what, from) = (&worst.0.what, worst.0.from);
         Some(format!(
-            "{}: this estimator finds some light only by chance ({what}).\n\
+            "{}: some light is found only by chance ({what}).\n\
              {:.1} such hits are expected from k = {from} on; a ± needs {SHOWN}, a verdict {JUDGED}",
             s.label, worst.1
         ))

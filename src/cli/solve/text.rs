@@ -25,7 +25,10 @@ pub fn people(run: &Run, summary: &Summary, session: &Session, next: &str) -> St
     let page = session.folder.join("index.html");
     let files = format!("{} files after {:.0} s; open {}", summary.files.len(), summary.seconds, page.display());
     let last = if next.is_empty() { files } else { format!("{next}\n{files}") };
-    let answer = format!("{}\n{}", wrapped(&answer::head(run)), answer::comparisons(run));
+    let early = run.settings.time.is_none() && summary.spp < run.settings.spp.into();
+    let stopped =
+        if early { format!("\nStopped early, at {} of {} spp.", summary.spp, run.settings.spp) } else { String::new() };
+    let answer = format!("{}{stopped}\n{}", wrapped(&answer::head(run)), answer::comparisons(run));
     session.text_ending(&answer, &tables, &details(run, summary), &last)
 }
 
