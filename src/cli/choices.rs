@@ -119,7 +119,8 @@ mod tests {
         fn check<T: ToString>(all: impl IntoIterator<Item = T>, choices: Choices) {
             let mut have = names(choices);
             let mut all: Vec<String> = all.into_iter().map(|v| v.to_string()).collect();
-            (have.sort_unstable(), all.sort_unstable());
+            have.sort_unstable();
+            all.sort_unstable();
             assert_eq!(all, have);
         }
         check(Technique::ALL, TECHNIQUES);
