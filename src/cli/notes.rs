@@ -69,8 +69,8 @@ pub fn matrix_facts(r: &Discrete) -> String {
     let d = (r.fine.series.image().total.mean - r.coarse.series.image().total.mean).abs();
     let mut out = format!(
         "The matrix. Form factors F: row sums {:.6} to {:.6}, entries {:.1e} to {:.4},\n\
-         {reciprocity}; \
-         residual of the solve {:.1e}; spectral radius ({rho})\n{}\
+         {reciprocity}; residual of the solve {:.1e};\n\
+         spectral radius ({rho})\n{}\
          change of the image mean from the coarser mesh, |R_h − R_2h|: {:.1e}",
         i.row_sum_min,
         i.row_sum_max,

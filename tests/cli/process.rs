@@ -100,7 +100,7 @@ fn commands_end_as_they_say() {
         assert_eq!((said.code, said.out.as_str()), (3, ""), "{line}");
         assert!(said.err.starts_with("error: ") && said.err.contains("--> bad.toml:1"), "{}", said.err);
     }
-    let said = desk.ok("render cornell --spp 8 --size 8x8 -q");
+    let said = desk.ok("render cornell --spp 8 --size 8x8 -q -v");
     assert!(said.out.contains("roulette: path tracer lecture (q ends a path"), "{}", said.out);
     assert!(row(&said.out, "all").len() == 1 && row(&said.out, "Σ").is_empty(), "{}", said.out);
     let said = desk.ok("radiosity cornell --spp 8 --size 8x8 --patches 60 -q -v");

@@ -230,7 +230,7 @@ pub const ENTRIES: &[Entry] = &[
     entry("right_renderers_are_called_correct", 44),
     entry("false_alarms_keep_their_level", 2),
     entry("a_bias_of_the_size_that_is_promised_is_seen", 1),
-    entry("the_strip_of_whole_pictures_has_the_means_of_the_image", 15),
+    entry("the_strip_of_whole_pictures_has_the_means_of_the_image", 9),
     entry("the_surfaces_add_up_to_the_norm_over_all_surfaces", 15),
 ];
 
