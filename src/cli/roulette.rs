@@ -349,7 +349,7 @@ fn doubts(all: &[Row], description: &Description, scene: &Scene) -> Vec<(String,
 fn warnings(doubts: &[(String, Radii)], recorded: &Recorded) -> Vec<String> {
     let mut out: Vec<String> = doubts.iter().filter_map(|(name, r)| Some(format!("{name} {}", r.warning()?))).collect();
     if !out.is_empty() {
-        out.push("the predictions are finite, because all schedules continue with the q above from vertex K on".into());
+        out.push("the predictions are finite: all schedules continue with the q above from vertex K on".into());
     }
     if recorded.non_finite > 0 {
         out.push(format!("{} samples were not finite; they are left in the sums", recorded.non_finite));

@@ -12,7 +12,7 @@ fn a_render_by_the_clock_is_one_of_so_many_samples() {
     let desk = tempfile::TempDir::new().unwrap();
     let read = |dir: &str| fredholm::report::text::summary::read(&desk.path().join(dir).join("summary.json")).unwrap();
     for guide in ["bsdf", "radiosity --patches 200"] {
-        let line = format!("series cornell --worlds terms --size 8x8 --max-bounces 2 -q --force --guide {guide}");
+        let line = format!("series cornell --worlds terms --size 8x8 --max-bounces 2 -q -v --force --guide {guide}");
         let (code, text) = fredholm(&desk, &format!("{line} --time 1500ms -o clock"));
         assert_eq!(code, 0, "{text}");
         let clock = read("clock");

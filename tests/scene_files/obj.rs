@@ -49,7 +49,7 @@ fn wrong_obj_files_are_refused_at_their_line() {
         ("negative_ks.obj", "negative_ks.mtl", Some(3), Some("wall.Ks"), "Ks -0.1 is outside [0, 1e30]"),
         ("bad_ns.obj", "bad_ns.mtl", Some(3), Some("wall.Ns"), "`Ns many` is not a number from 0 on"),
         ("d_above_one.obj", "d_above_one.mtl", Some(3), Some("wall.d"), "`d 1.5` is not a number from 0 to 1"),
-        ("headless.obj", "headless.mtl", Some(1), Some("Kd"), "Kd before the first newmtl"),
+        ("headless.obj", "headless.mtl", Some(1), Some("Kd"), "Kd comes before the first newmtl"),
         ("dark.obj", "dark.obj", None, None, "nothing in the scene emits light"),
     ] {
         let e = scene(&bad(file), &Options::default()).expect_err(file);

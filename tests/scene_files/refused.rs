@@ -71,7 +71,7 @@ const REFUSED: &[(&str, &str, usize, &str, &str)] = &[
     ("[0, 3, 2]]", "[0, 1, 1]]", 52, "shapes[4].faces[1]", "the triangle [0, 1, 1] has no area"),
     ("[0, 3, 2]]", "[0, 1, 2, 3]]", 52, "shapes[4].faces[1]", "expected 3 vertex indices, found 4"),
     ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = []", 52, "shapes[4].faces", "the mesh has no faces"),
-    ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\nuvs = [[0, 0]]", 53, "shapes[4].uvs", "1 uvs for 4 vertices"),
+    ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\nuvs = [[0, 0]]", 53, "shapes[4].uvs", "the mesh has 1 uvs for 4 vertices"),
     ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\nuvs = [[0, 0], [0, 1], [1, 1], [1]]", 53, "shapes[4].uvs[3]", "expected 2 numbers, found 1"),
     ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\nuvs = [[0, 0], [0, nan], [1, 1], [1, 0]]", 53, "shapes[4].uvs[1][1]", "NaN is not finite"),
     ("faces = [[0, 1, 2], [0, 3, 2]]", "faces = [[0, 1, 2]]\nuvs = [[0, 0], [0, 1e6], [1, 1], [1, 0]]", 53, "shapes[4].uvs[1]", "the texture coordinate [0, 1000000] is too large"),
