@@ -22,20 +22,26 @@ pub fn head(run: &Run) -> String {
     if run.verdicts.is_empty() {
         return run.results().next().map_or(String::new(), |only| alone(name, only, run));
     }
-    let all = |o: Outcome| run.verdicts.iter().all(|v| v.comparison.outcome == o);
     let any = |o: Outcome| run.verdicts.iter().any(|v| v.comparison.outcome == o);
     let ways = run.results().count();
     if any(Outcome::Differs) {
         format!("{name}, solved in {ways} ways: they do not agree.")
-    } else if all(Outcome::Agrees) {
+    } else if agreed(run) {
         let largest = run.verdicts.iter().filter_map(|v| bound(&v.comparison)).fold(0.0, f64::max);
+        let mean = run.results().next().map_or(f64::NAN, |r| average(&r.series.image().total).0);
         format!(
-            "{name}, solved in {ways} ways: all agree, the whole picture to ± {} %.",
+            "{name}, solved in {ways} ways: all agree; the mean radiance is {} to ± {} %.",
+            significant(mean, 4),
             significant(100.0 * largest, 2)
         )
     } else {
         format!("{name}, solved in {ways} ways: no difference found, but not everything is decided.")
     }
+}
+
+/// Returns true if there is a comparison and all comparisons agree.
+fn agreed(run: &Run) -> bool {
+    !run.verdicts.is_empty() && run.verdicts.iter().all(|v| v.comparison.outcome == Outcome::Agrees)
 }
 
 /// A sentence for each comparison.
@@ -97,7 +103,10 @@ pub fn terms(run: &Run) -> Option<Grid> {
     }
     if !image.tail.is_none() {
         row(format!("k > {}", image.terms.len() - 1), &image.tail, None);
-        row("all".into(), &image.total, None);
+        // where all results agree, the answer states the mean of the whole
+        if !agreed(run) {
+            row("all".into(), &image.total, None);
+        }
     } else {
         // cut at K: longer paths are not estimated
         let blank = vec!["–".to_owned(); grid.head.len() - 1];
@@ -114,17 +123,18 @@ pub fn decay(run: &Run) -> String {
     if let Some(Ok(fit)) = run.observed_rate_in(c) {
         let (first, last) = (fit.window.start, fit.window.end - 1);
         let rate = plus_minus(fit.rate, fit.std_error, 2);
-        sentences
-            .push(format!("Over all surfaces {colour} falls by the factor {rate} per bounce (k = {first} to {last})."));
+        sentences.push(format!("Over all surfaces {colour} falls ×{rate} per bounce (k = {first} to {last})."));
     }
     if let Some(r) = &run.radiosity {
         let (radius, bound) = (r.matrix.spectral[c].radius, run.guaranteed_rate()[c]);
         let limit = radius_limit(&r.radii).map(|l| l[c]);
-        let limit = limit.map_or(String::new(), |l| format!(", {} for h → 0", plus_minus(l.value, l.half_width, 1)));
+        let radius = match limit {
+            Some(l) => format!("{} (h → 0; on this mesh {radius:.4})", plus_minus(l.value, l.half_width, 1)),
+            None => format!("{radius:.4} on this mesh"),
+        };
         sentences.push(format!(
-            "The spectral radius of T in {colour} is {radius:.4} on this mesh{limit}; the albedos guarantee {bound:.3}. Ratios \
-             of the norm rise to it, because T is self-adjoint in that norm; ratios of the picture wander, because each \
-             bounce lights other surfaces."
+            "The spectral radius of T is {radius}, at most {bound:.3}. Ratios of the norm rise to it, because T \
+             is self-adjoint in that norm; ratios of the picture wander, because each bounce lights other surfaces."
         ));
     }
     if sentences.is_empty() { String::new() } else { wrapped(&sentences.join(" ")) + "\n" }

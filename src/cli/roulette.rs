@@ -317,7 +317,7 @@ fn optimal_details(all: &[Row], best: &[Optimal]) -> String {
         let gain = format!("{:.3} ± {:.3}", b.gain.value, b.gain.std_error);
         lines.push(format!("{name}: {}", b.roulette));
         lines.push(format!(
-            "  predicted: {gain} times the efficiency of the lecture's schedule for {}",
+            "  predicted: {gain} times the efficiency of the lecture's\n  schedule for {}",
             rows::quantity(b.aim)
         ));
         let variance = |r: &Row| {

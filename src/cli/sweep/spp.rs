@@ -196,7 +196,7 @@ fn people(session: &Session, falls: &[Fall], record: &Summary, reference: Option
     }
     for (fall, series) in falls.iter().zip(&record.series) {
         if let Some(reason) = Evidence::of_variance(series.variance).no_error {
-            head += &format!("\n{}: {reason}; its V(n) of the tail and of all has no meaning", fall.label);
+            head += &format!("\n{}: {reason};\n  its V(n) of the tail and of all has no meaning", fall.label);
         }
     }
     let table = fall_answer::small_table(falls, reference.map(|r| r.label.as_str()));
