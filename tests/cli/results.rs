@@ -19,7 +19,7 @@ fn a_series_leaves_every_file_and_layer() {
     let mut listed = s.files.clone();
     listed.sort();
     assert_eq!(listed, files, "summary.json lists what is there");
-    assert!(said.out.contains(&format!("{} files after", files.len())), "{}", said.out);
+    assert!(said.out.contains(&format!("{} files in", files.len())), "{}", said.out);
 
     let image = desk.image("a");
     let mut layers = vec![String::new()];

@@ -23,7 +23,7 @@ pub fn people(run: &Run, summary: &Summary, session: &Session, next: &str) -> St
     tables.extend(notes::orders(run).map(|grid| grid.to_string()));
     tables.push(notes::warnings(run).iter().map(|w| format!("warning: {w}")).collect::<Vec<_>>().join("\n"));
     let page = session.folder.join("index.html");
-    let files = format!("{} files after {:.0} s; open {}", summary.files.len(), summary.seconds, page.display());
+    let files = format!("{} files in {:.0} s; open {}", summary.files.len(), summary.seconds, page.display());
     let last = if next.is_empty() { files } else { format!("{next}\n{files}") };
     let early = run.settings.time.is_none() && summary.spp < run.settings.spp.into();
     let stopped =
