@@ -7,10 +7,8 @@ use crate::stats::{Comparison, Outcome, Verdict};
 ///
 /// ```
 /// use fredholm::report::text::sentence::sentence;
-/// use fredholm::stats::{Criterion, compare};
-/// use fredholm::terms::Series;
-/// let nothing = Series::default();
-/// let found = compare(&nothing, &nothing, &Criterion::default(), &[]);
+/// use fredholm::stats::{Comparison, Outcome};
+/// let found = Comparison { rows: vec![], family: 0, outcome: Outcome::Inconclusive, undecided: None };
 /// assert_eq!(sentence(["A", "B"], &found), "? A and B: they have nothing in common to compare");
 /// ```
 pub fn sentence(sides: [&str; 2], found: &Comparison) -> String {
