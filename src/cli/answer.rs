@@ -1,14 +1,14 @@
 //! The answer of a run, and the small tables behind it: for the terminal and for the page.
 
-use super::base::{wrapped, wrapped_after};
 use fredholm::engine::by_rays::Sampled;
 use fredholm::engine::radius::radius_limit;
 use fredholm::math::CHANNELS;
 use fredholm::report::figures::{bounces, lit};
 use fredholm::report::text::grid::Grid;
 use fredholm::report::text::number::{average, error, percent, plus_minus, significant};
+use fredholm::report::text::prose::{wrapped, wrapped_after};
 use fredholm::report::text::sentence::{bound, sentence};
-use fredholm::report::text::summary;
+use fredholm::report::text::summary::Summary;
 use fredholm::stats::Outcome;
 use fredholm::study::run::Run;
 use fredholm::terms::{Estimate, Functional};
@@ -16,32 +16,26 @@ use fredholm::terms::{Estimate, Functional};
 /// Terms in the short table at most; longer series are cut there, and `--verbose` prints all.
 const SHORT: usize = 13;
 
-/// The answer: do the ways agree, and to which accuracy; or what was found, where there is one way only.
+/// The answer in one sentence: whether the results agree and how closely, or, with one result only, what it is.
 pub fn head(run: &Run) -> String {
     let name = &run.description.name;
-    if run.verdicts.is_empty() {
-        return run.results().next().map_or(String::new(), |only| alone(name, only, run));
-    }
-    let any = |o: Outcome| run.verdicts.iter().any(|v| v.comparison.outcome == o);
     let ways = run.results().count();
-    if any(Outcome::Differs) {
-        format!("{name}, solved in {ways} ways: they do not agree.")
-    } else if agreed(run) {
-        let largest = run.verdicts.iter().filter_map(|v| bound(&v.comparison)).fold(0.0, f64::max);
-        let mean = run.results().next().map_or(f64::NAN, |r| average(&r.series.image().total).0);
-        format!(
-            "{name}, solved in {ways} ways: all agree; the mean radiance is {} to ± {} %.",
-            significant(mean, 4),
-            significant(100.0 * largest, 2)
-        )
-    } else {
-        format!("{name}, solved in {ways} ways: no difference found, but not everything is decided.")
+    match run.outcome() {
+        None => run.results().next().map_or(String::new(), |only| alone(name, only, run)),
+        Some(Outcome::Differs) => format!("{name}, solved in {ways} ways: they do not agree."),
+        Some(Outcome::Agrees) => {
+            let largest = run.verdicts.iter().filter_map(|v| bound(&v.comparison)).fold(0.0, f64::max);
+            let mean = run.results().next().map_or(f64::NAN, |r| average(&r.series.image().total).0);
+            format!(
+                "{name}, solved in {ways} ways: all agree; the mean radiance is {} to ± {} %.",
+                significant(mean, 4),
+                significant(100.0 * largest, 2)
+            )
+        }
+        Some(Outcome::Inconclusive) => {
+            format!("{name}, solved in {ways} ways: no difference found, but not everything is decided.")
+        }
     }
-}
-
-/// Returns true if there is a comparison and all comparisons agree.
-fn agreed(run: &Run) -> bool {
-    !run.verdicts.is_empty() && run.verdicts.iter().all(|v| v.comparison.outcome == Outcome::Agrees)
 }
 
 /// A sentence for each comparison.
@@ -50,13 +44,13 @@ pub fn comparisons(run: &Run) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// One result and nothing to compare it with.
+/// The answer for a single result: its mean, its shares, and for a matrix its spectral radius.
 fn alone(name: &str, only: &Sampled, run: &Run) -> String {
     let image = only.series.image();
     let (mean, half) = average(&image.total);
     let mut out =
         format!("{name}, by {}: the picture has the mean radiance {}", only.series.label, plus_minus(mean, half, 2));
-    out += if half > 0.0 { " (95 %).".into() } else { ".".to_owned() }.as_str();
+    out += if half > 0.0 { " (95 %)." } else { "." };
     if image.terms.len() > 1 {
         let share = |k: usize| percent(average(&image.terms[k]).0 / mean);
         out += &format!("\n{} of it is seen directly, {} after one reflection.", share(0), share(1));
@@ -69,12 +63,12 @@ fn alone(name: &str, only: &Sampled, run: &Run) -> String {
 }
 
 /// The terms: means, shares, and the ratios of successive terms in the picture and in the norm of the matrix.
-pub fn terms(run: &Run) -> Option<Grid> {
+pub fn terms(run: &Run, summary: &Summary) -> Option<Grid> {
     let first = run.results().find(|s| !s.series.image().terms.is_empty())?;
     let image: &Functional = first.series.image();
     let c = run.slowest_channel();
     let colour = CHANNELS[c];
-    let norms = run.radiosity.as_ref().map(|r| summary::bounce_norms(r.matrix.radiosity.patches(), &r.matrix.terms));
+    let norms = summary.radiosity.as_ref().map(|r| &r.norms);
     let mut head = vec!["k".to_owned(), "mean".into(), "± 95 %".into(), "share".into(), "ratio: picture".into()];
     head.extend(norms.is_some().then(|| "norm of the matrix".into()));
     let sentence = format!("The terms T^k E: light reflected k times. Ratio: to the term before, in {colour}.");
@@ -89,7 +83,7 @@ pub fn terms(run: &Run) -> Option<Grid> {
         let mut cells = vec![name, significant(mean, 4), error(e), percent(mean / whole)];
         let blank = String::new;
         cells.push(k.map_or_else(blank, |k| ratio(&|k| image.terms[k].mean[c], k)));
-        if let Some(norms) = &norms {
+        if let Some(norms) = norms {
             cells.push(k.map_or_else(blank, |k| ratio(&|k| norms[k].norm_w[c], k)));
         }
         grid.push(cells);
@@ -104,7 +98,7 @@ pub fn terms(run: &Run) -> Option<Grid> {
     if !image.tail.is_none() {
         row(format!("k > {}", image.terms.len() - 1), &image.tail, None);
         // where all results agree, the answer states the mean of the whole
-        if !agreed(run) {
+        if run.outcome() != Some(Outcome::Agrees) {
             row("all".into(), &image.total, None);
         }
     } else {

@@ -61,56 +61,6 @@ pub fn paragraphs<S: AsRef<str>>(blocks: &[S]) -> String {
     blocks.collect::<Vec<_>>().join("\n\n")
 }
 
-/// Columns of a paragraph on the terminal.
-pub const WIDTH: usize = 80;
-
-/// Sentences in lines of at most [`WIDTH`] columns. A line break in the text stays a line break.
-pub fn wrapped(text: &str) -> String {
-    text.lines().map(|line| wrapped_after(line, "")).collect::<Vec<_>>().join("\n")
-}
-
-/// One line of text in lines of at most [`WIDTH`] columns; every line after the first begins with `indent`. A number stays
-/// with its `%` and its `±`, and a command in backticks stays in one line.
-pub fn wrapped_after(text: &str, indent: &str) -> String {
-    const GLUE: char = '\u{a0}';
-    let mut in_command = false;
-    let mut glued = String::new();
-    for c in text.replace(" %", "\u{a0}%").replace(" ± ", "\u{a0}±\u{a0}").replace(" = ", "\u{a0}=\u{a0}").chars() {
-        in_command ^= c == '`';
-        glued.push(if in_command && c == ' ' { GLUE } else { c });
-    }
-    let mut lines = vec![];
-    let mut line = String::new();
-    for word in glued.split(' ').filter(|w| !w.is_empty()) {
-        if line.is_empty() {
-            line = word.into();
-        } else if line.chars().count() + 1 + word.chars().count() > WIDTH {
-            lines.push(std::mem::replace(&mut line, format!("{indent}{word}")));
-        } else {
-            line += " ";
-            line += word;
-        }
-    }
-    lines.push(line);
-    lines.join("\n").replace(GLUE, " ")
-}
-
-/// `a`, `a and b`, `a, b and c`.
-pub fn and<S: AsRef<str>>(all: &[S]) -> String {
-    match all {
-        [] => String::new(),
-        [one] => one.as_ref().to_owned(),
-        [first @ .., last] => {
-            format!("{} and {}", first.iter().map(AsRef::as_ref).collect::<Vec<_>>().join(", "), last.as_ref())
-        }
-    }
-}
-
-/// `1 shape`, `2 shapes`.
-pub fn counted(n: usize, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
-}
-
 /// The names as owned strings, for the list of files.
 pub fn names<const N: usize>(all: [&str; N]) -> Vec<String> {
     all.map(String::from).into()

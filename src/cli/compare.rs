@@ -1,6 +1,6 @@
 //! `fredholm compare A B`: compares two results, with a verdict for every term and a map of z = difference/standard error.
 
-use super::base::{Ending, Failure, wrapped, wrapped_after};
+use super::base::{Ending, Failure};
 use super::options::{HOW, Manner, OUTPUT, WHAT, fraction, probability};
 use super::session::Session;
 use super::{notes, verdict, write};
@@ -8,6 +8,7 @@ use clap::Args;
 use fredholm::report::image::exr;
 use fredholm::report::image::typeset::Caption;
 use fredholm::report::image::zmap;
+use fredholm::report::text::prose::{wrapped, wrapped_after};
 use fredholm::report::text::summary::{self, Summary, VerdictRecord};
 use fredholm::report::text::table;
 use fredholm::stats::{Comparison, Criterion, Outcome, compare, discretisation};

@@ -1,6 +1,6 @@
 //! `fredholm figure ID`: makes a figure by its name. Each is a recipe here, or another command that writes it.
 
-use super::base::{Ending, Failure, names, paragraphs, print, usage, wrapped};
+use super::base::{Ending, Failure, names, paragraphs, print, usage};
 use super::options::{Changes, Manner, OUTPUT, WHAT, size};
 use super::progress::stop_flag;
 use super::session::Session;
@@ -9,6 +9,7 @@ use clap::{Args, Parser};
 use fredholm::engine::Settings;
 use fredholm::math::names::suggest;
 use fredholm::report::figures::stages as report;
+use fredholm::report::text::prose::wrapped;
 use fredholm::report::text::summary::Summary;
 use fredholm::report::write_atomically;
 use fredholm::study::stages::{Grown, KAJIYA, NOISE, Recipe, Stage, reference_seed, render_stages};

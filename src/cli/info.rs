@@ -1,12 +1,13 @@
 //! `fredholm info [SCENE]`: materials and lights of a scene, and the bounds on ‖T‖ that hold before anything is rendered.
 
-use super::base::{Ending, Failure, and, counted, paragraphs, print, wrapped, wrapped_after};
+use super::base::{Ending, Failure, paragraphs, print};
 use super::options::{Changes, Manner, OUTPUT, WHAT};
 use super::session::Session;
 use super::{notes, open};
 use clap::Args;
 use fredholm::engine::by_matrix;
 use fredholm::engine::known::coplanar;
+use fredholm::report::text::prose::{counted, listed, wrapped, wrapped_after};
 use fredholm::report::text::table;
 use fredholm::scene::coplanar::{Kind, Relation};
 use fredholm::scene::description::{Description, Geometry, LightDescription, Shape, Sides, Sky};
@@ -196,7 +197,7 @@ fn answer(d: &Description, scene: &Scene) -> String {
         d.name,
         counted(scene.sides() as usize / 2, "primitive"),
         counted(lights, "light"),
-        if kinds.is_empty() { "no materials".into() } else { format!("{} surfaces", and(&kinds)) },
+        if kinds.is_empty() { "no materials".into() } else { format!("{} surfaces", listed(&kinds)) },
         d.camera.size[0],
         d.camera.size[1]
     );

@@ -5,7 +5,7 @@ use super::suggest::hint;
 use clap::Command;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use fredholm::math::names::{either, list, nearest, similar};
-use fredholm::scene::builtin;
+use fredholm::scene::{builtin, load::is_scene_file};
 use std::ffi::OsString;
 use std::path::Path;
 
@@ -30,8 +30,7 @@ pub fn with_command(mut words: Vec<OsString>, all: &Command) -> Result<Vec<OsStr
 
 fn is_scene(word: &str) -> bool {
     let path = Path::new(word);
-    let file = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("obj"));
-    file || path.exists() && word.contains(['/', '.']) || builtin::find(word).is_some()
+    is_scene_file(path) || path.exists() && word.contains(['/', '.']) || builtin::find(word).is_some()
 }
 
 /// The first word is neither a command nor a scene: suggests the whole line with the nearest of both.

@@ -12,40 +12,13 @@ use fredholm::report::figures::refine::limit_words;
 use fredholm::report::text::grid::Grid;
 use fredholm::report::text::number::{average, plus_minus, significant};
 use fredholm::scene::{Description, bsdf};
+use fredholm::stats::Evidence;
 use fredholm::stats::evidence::{JUDGED, SHOWN};
-use fredholm::stats::{self, Comparison, Evidence};
 use fredholm::study::run::Run;
 use fredholm::terms::functional::Replicates;
 use fredholm::terms::{Estimate, Series};
 use glam::DVec3;
 use nalgebra::DMatrix;
-
-/// The outcome of a comparison in one line, and what would decide it if it is open.
-pub fn judgement(c: &Comparison) -> String {
-    if let Some(why) = &c.undecided {
-        return undecided(why);
-    }
-    match c.outcome {
-        stats::Outcome::Agrees => {
-            format!(
-                "Agrees: every difference is proved to be smaller than δ (one of {} comparisons may fail with probability α).",
-                c.family
-            )
-        }
-        stats::Outcome::Differs => format!("Differs: at least one of {} comparisons shows a difference.", c.family),
-        stats::Outcome::Inconclusive => {
-            let reason = c.rows.iter().find_map(|r| r.reason.as_deref());
-            let factor = c.rows.iter().filter_map(|r| r.needed_factor).fold(0.0, f64::max);
-            match reason {
-                Some(reason) => format!("Inconclusive: {reason}."),
-                None if factor > 0.0 => format!(
-                    "Inconclusive: the noise hides differences as large as δ; {factor:.1} times the samples will decide."
-                ),
-                None => "Inconclusive: the results have nothing in common to compare.".into(),
-            }
-        }
-    }
-}
 
 /// Why there is no verdict, and what to do about it.
 pub fn undecided(why: &str) -> String {

@@ -5,13 +5,14 @@
 //! new → open → make_folder → progress … → sign → show → ending
 //! ```
 
-use super::base::{Ending, Failure, WIDTH, note, paragraphs, print, wrapped_after};
+use super::base::{Ending, Failure, note, paragraphs, print};
 use super::open::{self, Opened};
 use super::options::{Changes, Manner};
 use super::output;
 use super::progress::Bar;
 use fredholm::progress::Progress;
 use fredholm::report::image::typeset::Caption;
+use fredholm::report::text::prose::{WIDTH, wrapped_after};
 use fredholm::report::text::summary::{self, Summary};
 use fredholm::terms::TermFilm;
 use serde::Serialize;

@@ -1,7 +1,8 @@
 //! A comparison in one sentence: `compare` and `walk` begin with it.
 
-use super::base::and;
 use super::notes;
+use fredholm::report::text::prose::listed;
+use fredholm::report::text::sentence::{Obstacle, obstacle};
 use fredholm::stats::{Comparison, Criterion, Outcome, Verdict};
 
 /// Names that a sentence lists; more are counted.
@@ -21,14 +22,14 @@ pub fn sentence(who: &str, c: &Comparison, criterion: &Criterion) -> String {
         Outcome::Agrees => format!("{who} agree: every difference is proved smaller than {delta}."),
         Outcome::Differs => format!(
             "{who} differ in {}: if they were equal, this would happen with a probability of at most {}.",
-            listed(&with(Outcome::Differs)),
+            named(&with(Outcome::Differs)),
             criterion.alpha
         ),
         Outcome::Inconclusive => {
             let open = with(Outcome::Inconclusive);
             format!(
                 "{who} do not contradict each other, but {} cannot be decided.\n{}",
-                listed(&open),
+                named(&open),
                 remedy(&open, &delta)
             )
         }
@@ -46,25 +47,21 @@ pub fn delta(criterion: &Criterion) -> String {
 }
 
 /// The names of the quantities. If there are too many, the first few and the number of the others.
-fn listed(rows: &[&Verdict]) -> String {
+fn named(rows: &[&Verdict]) -> String {
     let names: Vec<&str> = rows.iter().map(|r| r.name.as_str()).collect();
     if names.len() > NAMED {
         format!("{} and {} more", names[..NAMED - 1].join(", "), names.len() - NAMED + 1)
     } else {
-        and(&names)
+        listed(&names)
     }
 }
 
 /// The number of samples that would decide, or the other reason why nothing is decided.
 fn remedy(open: &[&Verdict], delta: &str) -> String {
-    if let Some((name, reason)) = open.iter().find_map(|r| Some((&r.name, r.reason.as_ref()?))) {
-        return format!("The reason for {name}: {reason}.");
-    }
-    let factor = open.iter().filter_map(|r| r.needed_factor).fold(0.0, f64::max);
     let noise = format!("The noise hides differences as small as {delta}");
-    if factor > 0.0 {
-        format!("{noise}; with {factor:.1} times the samples there will be a verdict.")
-    } else {
-        format!("{noise}.")
+    match obstacle(open) {
+        Obstacle::Reason(name, reason) => format!("The reason for {name}: {reason}."),
+        Obstacle::Samples(factor) => format!("{noise}; with {factor:.1} times the samples there will be a verdict."),
+        Obstacle::Noise => format!("{noise}."),
     }
 }

@@ -1,11 +1,11 @@
 //! `fredholm walk [SCENE]`: runs the estimators on the radiosity matrix, where every term is known to rounding.
 
-use super::base::{Ending, Failure, names, wrapped};
+use super::base::{Ending, Failure, names};
 use super::choices::{TECHNIQUES, WALKERS};
 use super::open::Opened;
 use super::options::{HOW, Shared, WHAT, one_of};
 use super::session::Session;
-use super::{notes, preflight, verdict};
+use super::{preflight, verdict};
 use clap::Args;
 use fredholm::engine::Settings;
 use fredholm::engine::by_matrix::{self, Matrix, MatrixError};
@@ -13,6 +13,7 @@ use fredholm::engine::discretisation::Factors;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::progress::Progress;
 use fredholm::report::figures::walk as report;
+use fredholm::report::text::prose::wrapped;
 use fredholm::report::text::summary::{self, Summary};
 use fredholm::report::text::table::{self, significant};
 use fredholm::report::write_atomically;
@@ -181,7 +182,6 @@ fn beside_the_powers(walked: &Walked, args: &Walk, patches: usize, record: Summa
                 report::full_table(walked)
             ),
             format!("Every comparison, in the channel where it is closest to failing.\n{}", table::verdicts(&verdicts)),
-            notes::judgement(&comparison),
         ],
         failed: comparison.outcome == Outcome::Differs,
         record: Summary { verdicts, series: vec![walked.sampled.series.clone(), walked.exact.clone()], ..record },

@@ -60,18 +60,25 @@ pub fn suggest(word: &str, kind: &str, known: &[&str]) -> String {
     }
 }
 
+/// Words as a list with `last` before the last one: `a`, `a or b`, `a, b or c`.
+pub fn joined<S: AsRef<str>>(words: &[S], last: &str) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.as_ref().to_owned(),
+        [first @ .., end] => {
+            let first: Vec<&str> = first.iter().map(AsRef::as_ref).collect();
+            format!("{} {last} {}", first.join(", "), end.as_ref())
+        }
+    }
+}
+
 /// Names in code quotes with "or" before the last, as a question asks for them.
 ///
 /// ```
 /// assert_eq!(fredholm::math::names::either(&["a", "b", "c"]), "`a`, `b` or `c`");
 /// ```
 pub fn either(names: &[&str]) -> String {
-    let quoted: Vec<String> = names.iter().map(|n| format!("`{n}`")).collect();
-    match quoted.split_last() {
-        Some((last, [])) => last.clone(),
-        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
-        None => String::new(),
-    }
+    joined(&names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>(), "or")
 }
 
 #[cfg(test)]

@@ -34,6 +34,7 @@ pub mod moments;
 pub mod optimal;
 pub mod order;
 pub mod power;
+mod quantity;
 pub mod schedule;
 pub mod sequential;
 pub mod slope;

@@ -28,8 +28,9 @@
 use super::evidence::{Evidence, JUDGED, Reason, WIDER, doubt_in_words};
 use super::hypothesis::{Measured, ROUNDING, critical, difference, holm, two_sided_p};
 use super::power;
+use super::quantity::{Quantity, shared_quantities};
 use crate::math::CHANNELS;
-use crate::terms::{Doubt, Estimate, Functional, Series, World};
+use crate::terms::{Functional, Series, World};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -208,60 +209,6 @@ pub fn compare(a: &Series, b: &Series, criterion: &Criterion, allowance: &[Funct
         }
     }
     found
-}
-
-/// The quantities of a functional that are compared.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Quantity {
-    Term(usize),
-    Tail,
-    Sum,
-    Total,
-}
-
-impl Quantity {
-    pub(super) fn of(self, f: &Functional) -> Option<Estimate> {
-        match self {
-            Self::Term(k) => f.terms.get(k).copied(),
-            Self::Tail => Some(f.tail),
-            Self::Sum => Some(f.sum),
-            Self::Total => Some(f.total),
-        }
-    }
-
-    /// Returns true if a doubt affects this quantity.
-    pub(super) fn concerned(self, doubt: &Doubt) -> bool {
-        if let Self::Term(k) = self { doubt.from <= k } else { true }
-    }
-
-    /// Returns true if this is a sum that contains `part`.
-    fn contains(self, part: Self) -> bool {
-        match self {
-            Self::Term(_) | Self::Tail => false,
-            Self::Sum => matches!(part, Self::Term(_)),
-            Self::Total => matches!(part, Self::Term(_) | Self::Tail),
-        }
-    }
-
-    pub(super) fn name(self) -> String {
-        match self {
-            Self::Term(k) => format!("T{k}"),
-            Self::Tail => "tail".into(),
-            Self::Sum => "sum".into(),
-            Self::Total => "total".into(),
-        }
-    }
-}
-
-pub(super) fn shared_quantities(a: &Functional, b: &Functional) -> Vec<Quantity> {
-    let mut all: Vec<_> = (0..a.terms.len().min(b.terms.len())).map(Quantity::Term).collect();
-    let cut = [a.tail.is_none(), b.tail.is_none()];
-    if !all.is_empty() && a.terms.len() == b.terms.len() {
-        all.extend((cut == [false; 2]).then_some(Quantity::Tail));
-        all.push(Quantity::Sum);
-    }
-    all.extend((cut[0] == cut[1]).then_some(Quantity::Total));
-    all
 }
 
 /// δ always follows from the image means, so that a projection, whose value is near zero, has the margin of its term.

@@ -18,25 +18,21 @@
 //!
 //! Reference: the bound is the geometric series of ‖T‖₁ ≤ γ < 1; see Arvo, *The role of functional analysis in global illumination* (1995).
 
+use super::strip;
 use crate::engine::Settings;
-use crate::engine::by_rays::{self, Estimator, Passes};
-use crate::estimator::Roulette;
-use crate::estimator::render::Amount;
+use crate::engine::by_rays::Estimator;
 use crate::math::Rng;
 use crate::operator::{SceneTransport, Sensor, SurfaceStrip};
 use crate::progress::Progress;
 use crate::scene::{Camera, Scene, SurfaceSensor, Vertex, bsdf::Sampling};
 use crate::stats::Evidence;
-use crate::terms::Variance;
-use crate::terms::functional::{Replicates, image_replicates};
+use crate::terms::functional::Replicates;
 use std::fmt;
 
 /// The last term that is estimated separately.
 const LONGEST: usize = 100;
 /// The vertex from which paths end by roulette.
 const ROULETTE_FROM: usize = 4;
-/// Replicates behind the standard errors.
-const REPLICATES: u32 = 64;
 /// Pixels of the sensors. Each sees everything, so their number changes only the parallelism.
 const PIXELS: u32 = 64;
 /// Paths of each sensor at most.
@@ -113,33 +109,17 @@ impl Sensor<SceneTransport<'_>> for PictureStrip<'_> {
 /// ```
 pub fn bounces(scene: &Scene, paths: u32, settings: &Settings, progress: Progress<'_>) -> Option<Bounces> {
     let t = SceneTransport { scene, sampling: Sampling::Bsdf };
-    let settings = Settings {
-        max_bounces: LONGEST,
-        sampling: Sampling::Bsdf,
-        roulette: Roulette::Albedo { from: ROULETTE_FROM },
-        points: Default::default(),
-        ..settings.clone()
-    };
-    if by_rays::variance(&t, Some(Estimator::Prefix), &settings) != Variance::Finite {
-        return None;
-    }
-    let spp = (paths.min(MOST_PATHS) / PIXELS).next_multiple_of(REPLICATES).max(REPLICATES);
-    let measure = |what: &str, sensor: &dyn Fn(Amount, &mut Passes<'_, '_>) -> crate::terms::TermFilm| {
-        let amount = Amount { spp, replicates: REPLICATES as usize, key: settings.key(what, REPLICATES as usize) };
-        progress.begin(what, u64::from(spp) * u64::from(PIXELS));
-        image_replicates(&sensor(amount, &mut Passes::of(progress)))
-    };
-    let picture = PictureStrip(&scene.camera);
-    let surfaces = SurfaceStrip { sensor: SurfaceSensor::new(scene), pixels: PIXELS };
-    let found = Bounces {
-        picture: measure("long terms, picture", &|amount, passes| {
-            by_rays::film(&t, &picture, Estimator::Prefix, settings.plan(), amount, passes)
-        }),
-        surfaces: measure("long terms, surfaces", &|amount, passes| {
-            by_rays::film(&t, &surfaces, Estimator::Prefix, settings.plan(), amount, passes)
-        }),
-    };
-    (!progress.stopped()).then_some(found)
+    let settings = strip::settings(scene, LONGEST, ROULETTE_FROM, settings)?;
+    let paths = paths.min(MOST_PATHS);
+    let begin = |name: &str| progress.begin(name, u64::from(strip::samples(paths, PIXELS)) * u64::from(PIXELS));
+    let (picture, surfaces) = ("long terms, picture", "long terms, surfaces");
+    begin(picture);
+    let sensor = PictureStrip(&scene.camera);
+    let picture = strip::means(&t, &sensor, Estimator::Prefix, picture, paths, &settings, progress);
+    begin(surfaces);
+    let sensor = SurfaceStrip { sensor: SurfaceSensor::new(scene), pixels: PIXELS };
+    let surfaces = strip::means(&t, &sensor, Estimator::Prefix, surfaces, paths, &settings, progress);
+    (!progress.stopped()).then_some(Bounces { picture, surfaces })
 }
 
 /// The smallest K such that the terms k > K are at most the fraction `part` of the terms k ≥ `from`.

@@ -13,23 +13,19 @@
 //! Emission (k = 0) is not counted: the question is where reflected light comes from. A surface that no lamp sees has no share of
 //! k = 1; the first bounce with a share is the one that lights it.
 
+use super::strip;
 use crate::engine::Settings;
-use crate::engine::by_rays::{self, Estimator, Passes};
-use crate::estimator::Roulette;
-use crate::estimator::render::Amount;
+use crate::engine::by_rays::Estimator;
 use crate::operator::{SceneTransport, SurfaceStrip};
 use crate::progress::Progress;
 use crate::scene::{Description, Scene, Side, SurfaceSensor, bsdf::Sampling};
 use crate::stats::Evidence;
-use crate::terms::Variance;
-use crate::terms::functional::{Replicates, image_replicates};
+use crate::terms::functional::Replicates;
 
 /// The last bounce that is told from longer paths.
 pub const LAST: usize = 5;
 /// Surfaces that are measured separately; smaller ones are measured together.
 const MOST: usize = 6;
-/// Replicates behind the standard errors.
-const REPLICATES: u32 = 64;
 /// Pixels of the sensor, each of them the whole surface.
 const PIXELS: u32 = 64;
 /// Paths of each surface at most.
@@ -85,32 +81,21 @@ pub fn lit(
     settings: &Settings,
     progress: Progress<'_>,
 ) -> Vec<Lit> {
+    let Some(settings) = strip::settings(scene, LAST, LAST, settings) else { return vec![] };
     let t = SceneTransport { scene, sampling: Sampling::Bsdf };
-    let settings = Settings {
-        max_bounces: LAST,
-        sampling: Sampling::Bsdf,
-        roulette: Roulette::Albedo { from: LAST },
-        points: Default::default(),
-        ..settings.clone()
-    };
-    if by_rays::variance(&t, Some(Estimator::Prefix), &settings) != Variance::Finite {
-        return vec![];
-    }
-    let spp = (paths.min(MOST_PATHS) / PIXELS).next_multiple_of(REPLICATES).max(REPLICATES);
+    let paths = paths.min(MOST_PATHS);
     let surfaces = surfaces(description, scene);
-    progress.begin("light by surface", surfaces.len() as u64 * u64::from(spp) * u64::from(PIXELS));
+    let samples = u64::from(strip::samples(paths, PIXELS)) * u64::from(PIXELS);
+    progress.begin("light by surface", surfaces.len() as u64 * samples);
     let mut found = vec![];
     for (name, sides) in surfaces {
-        let sensor = SurfaceSensor::of(scene, sides);
-        let area = sensor.area;
-        let key = settings.key(&format!("light of {name}"), REPLICATES as usize);
-        let amount = Amount { spp, replicates: REPLICATES as usize, key };
-        let strip = SurfaceStrip { sensor, pixels: PIXELS };
-        let film = by_rays::film(&t, &strip, Estimator::Prefix, settings.plan(), amount, &mut Passes::of(progress));
+        let strip = SurfaceStrip { sensor: SurfaceSensor::of(scene, sides), pixels: PIXELS };
+        let stream = format!("light of {name}");
+        let terms = strip::means(&t, &strip, Estimator::Prefix, &stream, paths, &settings, progress);
         if progress.stopped() {
             return vec![];
         }
-        found.push(Lit { name, area, terms: image_replicates(&film) });
+        found.push(Lit { name, area: strip.sensor.area, terms });
     }
     found
 }

@@ -27,6 +27,7 @@ pub mod run;
 pub mod split;
 pub mod stages;
 pub mod strategies;
+mod strip;
 pub mod surface;
 pub mod walk;
 pub mod zero_variance;

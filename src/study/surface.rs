@@ -5,16 +5,14 @@
 //! camera. For the matrix, the same number is `Σ A_i (T_h^k E)_i / A`. The bounds that follow from ‖T‖₁ ≤ max albedo hold
 //! for this norm.
 
+use super::strip;
 use crate::engine::Settings;
-use crate::engine::by_rays::{self, Begins, Estimator};
-use crate::estimator::render::Amount;
+use crate::engine::by_rays::{Begins, Estimator};
 use crate::operator::{SceneTransport, SurfaceStrip};
 use crate::progress::Progress;
 use crate::scene::{Scene, SurfaceSensor};
-use crate::terms::functional::{Replicates, image_replicates};
+use crate::terms::functional::Replicates;
 
-/// Replicates from which the errors are computed: enough for a covariance matrix of ten terms.
-const REPLICATES: u32 = 64;
 /// Number of pixels in the strip; the paths of different pixels are traced in parallel.
 const STRIP: u32 = 256;
 
@@ -28,13 +26,10 @@ pub fn norms(
     progress: Progress<'_>,
 ) -> Replicates {
     let t = SceneTransport { scene, sampling: settings.sampling };
-    let strip = SurfaceStrip { sensor: SurfaceSensor::new(scene), pixels: STRIP };
-    let spp = (paths / STRIP).next_multiple_of(REPLICATES).max(REPLICATES);
-    let key = settings.key(&format!("surface {estimator}"), REPLICATES as usize);
-    let amount = Amount { spp, replicates: REPLICATES as usize, key };
-    progress.begin(&format!("surface norms, {estimator}"), u64::from(spp) * u64::from(STRIP));
+    let sensor = SurfaceStrip { sensor: SurfaceSensor::new(scene), pixels: STRIP };
+    progress.begin(&format!("surface norms, {estimator}"), u64::from(strip::samples(paths, STRIP)) * u64::from(STRIP));
+    let name = format!("surface {estimator}");
     // paths from the lights cannot be connected to this sensor
     let estimator = if estimator.begins() == Begins::AtEye { estimator } else { Estimator::Prefix };
-    let film = by_rays::film(&t, &strip, estimator, settings.plan(), amount, &mut by_rays::Passes::of(progress));
-    image_replicates(&film)
+    strip::means(&t, &sensor, estimator, &name, paths, settings, progress)
 }

@@ -7,11 +7,12 @@
 use super::bias_args::Bias;
 use super::common::Common;
 use super::sides::{Against, FinishedRun, check_sides, finished, side};
-use crate::cli::base::{Ending, Failure, names, note, usage, wrapped};
+use crate::cli::base::{Ending, Failure, names, note, usage};
 use crate::cli::notes;
 use crate::cli::session::Session;
 use fredholm::engine::batches::Side;
 use fredholm::report::figures::watch::{self, Glimpse};
+use fredholm::report::text::prose::wrapped;
 use fredholm::report::text::summary::{self, Summary};
 use fredholm::report::text::table;
 use fredholm::scene::Scene;

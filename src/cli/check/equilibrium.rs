@@ -1,7 +1,7 @@
 //! `fredholm check equilibrium SCENE`: tests whether L = E + T L holds at points of the scene.
 
 use super::common::Common;
-use crate::cli::base::{Ending, Failure, counted, names, note, usage, wrapped};
+use crate::cli::base::{Ending, Failure, names, note, usage};
 use crate::cli::choices::{SAMPLINGS, TECHNIQUES};
 use crate::cli::options::{HOW, WHAT, one_of, probability};
 use crate::cli::session::Session;
@@ -14,6 +14,7 @@ use fredholm::report::figures::equilibrium::{self as figure, Dot};
 use fredholm::report::image::contact_sheet::{self, Cell};
 use fredholm::report::image::picture;
 use fredholm::report::image::zmap;
+use fredholm::report::text::prose::{counted, wrapped};
 use fredholm::report::text::summary::{self, Summary};
 use fredholm::report::text::table::{self, significant};
 use fredholm::report::write_atomically;

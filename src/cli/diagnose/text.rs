@@ -3,10 +3,10 @@
 use super::args::Grouping;
 use super::evidence::{self, percent};
 use super::found::Diagnosed;
-use crate::cli::base::{WIDTH, counted, wrapped, wrapped_after};
 use crate::cli::session::Session;
 use fredholm::diagnosis::{Basis, Conclusion, Diagnosis, Slot, Suspicion};
 use fredholm::report::figures::diagnosis as figure;
+use fredholm::report::text::prose::{WIDTH, counted, wrapped, wrapped_after};
 use fredholm::report::text::table::significant;
 use fredholm::zoo;
 

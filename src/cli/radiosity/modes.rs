@@ -2,13 +2,14 @@
 
 use super::args::Radiosity;
 use super::laboratory::Laboratory;
-use crate::cli::base::{Ending, Failure, and, names, wrapped};
+use crate::cli::base::{Ending, Failure, names};
 use crate::cli::preflight;
 use fredholm::engine::Settings;
 use fredholm::operator::edges::{Band, essential_band};
 use fredholm::operator::matrix::LinearOperator;
 use fredholm::operator::modes::{Modes, norm_2, radius_bounds};
 use fredholm::report::figures::modes::{self, Painted, Row, Spectrum};
+use fredholm::report::text::prose::{listed, wrapped};
 use fredholm::report::text::table::plus_minus;
 use fredholm::report::write_atomically;
 use fredholm::solver::Neumann;
@@ -163,7 +164,7 @@ fn answer(lab: &Laboratory, spectra: &[Spectrum], channel: Channel) -> String {
          bound the radius: ‖T‖₁ = {one:.4}, ‖T‖₂ = {two:.4}, ‖T‖∞ = {infinity:.4}. \
          `fredholm radiosity {name}` estimates the radius for ever finer meshes.",
         100.0 * radius,
-        and(&others)
+        listed(&others)
     ))
 }
 

@@ -7,12 +7,13 @@
 
 use super::args::Radiosity;
 use super::laboratory::Laboratory;
-use crate::cli::base::{Ending, Failure, and, usage, wrapped};
+use crate::cli::base::{Ending, Failure, usage};
 use crate::cli::preflight;
 use fredholm::engine::by_matrix::MatrixError;
 use fredholm::engine::discretisation::{Factors, Form, Stored};
 use fredholm::operator::matrix::Transposed;
 use fredholm::report::figures::solvers::{self, Extrapolated};
+use fredholm::report::text::prose::{listed, wrapped};
 use fredholm::report::write_atomically;
 use fredholm::solver::Neumann;
 use fredholm::solver::comparison::{History, Limits, Reference, Solver, Solvers, System};
@@ -282,7 +283,7 @@ fn fewest(equation: &str, histories: &[History]) -> String {
         1 => String::new(),
         n => format!(", the fewest of the {n} iterative solvers"),
     };
-    format!("{} {solve} {equation} to {goal:.0e} in {} products with T{each}{among}.", and(&best), number(least))
+    format!("{} {solve} {equation} to {goal:.0e} in {} products with T{each}{among}.", listed(&best), number(least))
 }
 
 /// A number of products, with a decimal where there is one.

@@ -112,7 +112,7 @@ pub struct Terms {
     /// Children of every vertex of the branching estimator
     ///
     /// Term k takes N^k rays.
-    #[arg(long, value_name = "N", default_value_t = 2, hide_short_help = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = Terms::default().branching, hide_short_help = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub branching: u32,
     /// Show every strategy of the bidirectional estimator separately
     ///
@@ -135,7 +135,7 @@ pub struct Light {
     /// Light: scatter, connect, mis, mis-power
     ///
     /// The technique by which a path finds light.
-    #[arg(long, default_value_t = Technique::Mis, value_name = "NAME", value_parser = one_of::<Technique>(TECHNIQUES))]
+    #[arg(long, default_value_t = Light::default().technique, value_name = "NAME", value_parser = one_of::<Technique>(TECHNIQUES))]
     pub technique: Technique,
     /// Roulette: none, lecture, constant:Q@V, albedo, …
     #[arg(long, value_name = "RULE", long_help = ROULETTE)]
@@ -146,7 +146,7 @@ pub struct Light {
     /// number. At Lambertian surfaces it mixes those directions with the cosine, and it selects lights by what they send to the patch, in
     /// place of --lights. Other surfaces scatter as before. The guide treats every surface as Lambertian and glass as black. Its
     /// errors cost noise, never bias. It works well with --roulette window.
-    #[arg(long, default_value_t = Guiding::Bsdf, value_parser = one_of::<Guiding>(GUIDES), value_name = "NAME")]
+    #[arg(long, default_value_t = Light::default().guide, value_parser = one_of::<Guiding>(GUIDES), value_name = "NAME")]
     pub guide: Guiding,
 }
 
@@ -207,7 +207,7 @@ pub struct Mesh {
     /// The width of a patch at distance d from an edge grows like d^(1 − 1/G). Values from 1.5 to 2 give eigenvalues and sums their
     /// order 2 in h if only the edges spoil it. Quadrilaterals are graded, both whole faces and pieces cut by others; triangles and
     /// curved surfaces keep patches of equal area.
-    #[arg(long, value_name = "G", default_value_t = 1.0, hide_short_help = true, value_parser = grading)]
+    #[arg(long, value_name = "G", default_value_t = Mesh::default().grading, hide_short_help = true, value_parser = grading)]
     pub grading: f64,
     /// Show patches without gathering a last bounce from them
     #[arg(long, hide_short_help = true)]
@@ -239,7 +239,9 @@ contribution[@V]  q = 1 − w, at most 0.9, from vertex V on (1)
 window[@V]        from vertex V on (0): q = 1 − 2w, at most 0.9, if
                   w < 0.5; a split into w walks on average, at most
                   8, if w > 1
-optimal           the most efficient table, from 2^18 pilot paths
+optimal           the table that is most efficient for the whole
+                  image, from 2^18 pilot paths
+optimal-indirect  the same for indirect light, the terms k ≥ 2
 
 contribution and window need --guide radiosity: w is the expected value of the rest of the path, divided by the expected value \
 of the pixel. Both act on the prefix estimator and the path tracer; single and branching end by albedo, and so does every path \

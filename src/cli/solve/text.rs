@@ -1,13 +1,13 @@
 //! What a run prints: the answer, small tables, what to try next; with `--verbose` every number behind them.
 
 use crate::cli::answer;
-use crate::cli::base::wrapped;
 use crate::cli::notes;
 use crate::cli::session::Session;
 use fredholm::engine::by_rays::Sampled;
 use fredholm::math::Points;
 use fredholm::report::figures::pyramid;
 use fredholm::report::text::grid::Grid;
+use fredholm::report::text::prose::wrapped;
 use fredholm::report::text::summary::Summary;
 use fredholm::report::text::{pixel_errors, table};
 use fredholm::study::run::Run;
@@ -15,7 +15,7 @@ use fredholm::study::run::Run;
 /// The text of a run, with the suggestions `next` at its end.
 pub fn people(run: &Run, summary: &Summary, session: &Session, next: &str) -> String {
     let mut tables = vec![];
-    tables.extend(answer::terms(run).map(|grid| grid.to_string() + &answer::decay(run)));
+    tables.extend(answer::terms(run, summary).map(|grid| grid.to_string() + &answer::decay(run)));
     if !run.strategies.is_empty() {
         tables.push(pyramid::table(&run.strategies));
     }
@@ -25,11 +25,15 @@ pub fn people(run: &Run, summary: &Summary, session: &Session, next: &str) -> St
     let page = session.folder.join("index.html");
     let files = format!("{} files in {:.0} s; open {}", summary.files.len(), summary.seconds, page.display());
     let last = if next.is_empty() { files } else { format!("{next}\n{files}") };
-    let early = run.settings.time.is_none() && summary.spp < run.settings.spp.into();
-    let stopped =
-        if early { format!("\nStopped early, at {} of {} spp.", summary.spp, run.settings.spp) } else { String::new() };
+    let stopped = stopped_early(run, summary).map_or(String::new(), |at| format!("\nStopped early, at {at} spp."));
     let answer = format!("{}{stopped}\n{}", wrapped(&answer::head(run)), answer::comparisons(run));
     session.text_ending(&answer, &tables, &details(run, summary), &last)
+}
+
+/// `48 of 256`, if the run has fewer samples per pixel than asked for.
+fn stopped_early(run: &Run, summary: &Summary) -> Option<String> {
+    let asked = u64::from(run.settings.spp);
+    (run.settings.time.is_none() && summary.spp < asked).then(|| format!("{} of {asked}", summary.spp))
 }
 
 /// Every number behind the answer.
@@ -56,11 +60,7 @@ fn details(run: &Run, summary: &Summary) -> Vec<String> {
 /// How the run was made.
 fn settings(run: &Run, summary: &Summary) -> String {
     let s = &run.settings;
-    let spp = if s.time.is_none() && summary.spp < s.spp.into() {
-        format!("{} of {}", summary.spp, s.spp)
-    } else {
-        summary.spp.to_string()
-    };
+    let spp = stopped_early(run, summary).unwrap_or(summary.spp.to_string());
     let mut head =
         format!("{}\nseed {}, {spp} spp, {}×{} pixels", summary.command, s.seed, summary.width, summary.height);
     if !run.terms.is_empty() || run.path.is_some() {

@@ -1,7 +1,7 @@
 //! `sweep --over patches`: radiosity on finer and finer meshes, compared with rays, which need no mesh.
 
 use super::args::Sweep;
-use crate::cli::base::{Ending, Failure, names, usage, wrapped};
+use crate::cli::base::{Ending, Failure, names, usage};
 use crate::cli::preflight;
 use crate::cli::session::Session;
 use fredholm::engine::Settings;
@@ -9,6 +9,7 @@ use fredholm::engine::discretisation::Factors;
 use fredholm::engine::radius::radius_limit;
 use fredholm::report::figures::drift;
 use fredholm::report::figures::refine as report;
+use fredholm::report::text::prose::wrapped;
 use fredholm::report::text::summary::Summary;
 use fredholm::report::write_atomically;
 use fredholm::study::refinement::{self, Quantity, Refinement};

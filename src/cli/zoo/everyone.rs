@@ -3,10 +3,11 @@
 use super::args::Zoo;
 use super::folder::{self, MARK, mark, write};
 use super::words::{brief, whole};
-use crate::cli::base::{Ending, Failure, print, wrapped};
+use crate::cli::base::{Ending, Failure, print};
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays;
 use fredholm::report::text::csv::Csv;
+use fredholm::report::text::prose::wrapped;
 use fredholm::report::write_atomically;
 use fredholm::report::{ReportError, half_width_95};
 use fredholm::scene::Scene;

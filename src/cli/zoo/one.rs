@@ -3,7 +3,7 @@
 use super::args::Zoo;
 use super::folder::{self, MARK, mark, write};
 use super::words::{self, brief, whole};
-use crate::cli::base::{Ending, Failure, print, usage, wrapped};
+use crate::cli::base::{Ending, Failure, print, usage};
 use fredholm::engine::by_rays::Sampled;
 use fredholm::math::names::suggest;
 use fredholm::report::figures::signature::{self, Signature};
@@ -12,6 +12,7 @@ use fredholm::report::image::picture::auto_gain_beside_lamps;
 use fredholm::report::image::typeset::{Caption, superscript};
 use fredholm::report::plot::Point;
 use fredholm::report::text::csv::Csv;
+use fredholm::report::text::prose::wrapped;
 use fredholm::report::text::table::{plus_minus, significant};
 use fredholm::report::write_atomically;
 use fredholm::report::{ReportError, half_width_95};

@@ -2,10 +2,11 @@
 
 use super::args::Zoo;
 use super::words::{brief, facts, mistake, whole};
-use crate::cli::base::{Ending, Failure, note, paragraphs, print, wrapped};
+use crate::cli::base::{Ending, Failure, note, paragraphs, print};
 use crate::cli::session::Session;
 use fredholm::engine::by_rays;
 use fredholm::math::{Key, Purpose, Rng};
+use fredholm::report::text::prose::wrapped;
 use fredholm::scene::Scene;
 use fredholm::zoo::signature::measured;
 use fredholm::zoo::{self, Bug};

@@ -1,8 +1,9 @@
 //! The members of the zoo and their ratios r_k in words.
 
-use crate::cli::base::{Failure, paragraphs, usage, wrapped, wrapped_after};
+use crate::cli::base::{Failure, paragraphs, usage};
 use fredholm::math::names::{either, similar};
 use fredholm::report::half_width_95;
+use fredholm::report::text::prose::{wrapped, wrapped_after};
 use fredholm::report::text::table::significant;
 use fredholm::terms::Functional;
 use fredholm::zoo::signature::Ratio;

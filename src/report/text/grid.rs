@@ -1,5 +1,6 @@
 //! A small table under the sentence that says what it shows: for the terminal and for the page.
 
+use super::table::{Side, columns};
 use std::fmt;
 
 /// A sentence, a header, and rows. All rows have as many cells as the header.
@@ -35,17 +36,9 @@ impl Grid {
 impl fmt::Display for Grid {
     /// The sentence, then aligned lines: the first column to the left, all others to the right.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let lines = || std::iter::once(&self.head).chain(&self.rows);
-        let width = |c: usize| lines().map(|line| line[c].chars().count()).max().unwrap_or(0);
-        let widths: Vec<usize> = (0..self.head.len()).map(width).collect();
+        let sides = [[Side::Left].as_slice(), &vec![Side::Right; self.head.len()]].concat();
+        let (lines, _) = columns(std::iter::once(&self.head).chain(&self.rows), &sides);
         writeln!(f, "{}", self.sentence)?;
-        for line in lines() {
-            let cells = line.iter().zip(&widths).enumerate().map(|(c, (text, &w))| match c {
-                0 => format!("{text:<w$}"),
-                _ => format!("{text:>w$}"),
-            });
-            writeln!(f, "{}", cells.collect::<Vec<_>>().join("  ").trim_end())?;
-        }
-        Ok(())
+        lines.iter().try_for_each(|line| writeln!(f, "{line}"))
     }
 }

@@ -73,11 +73,31 @@ fn open(found: &Comparison) -> String {
         n if n > NAMED => format!("{n} of {} parts", found.rows.len()),
         _ => open.iter().map(|row| row.name.as_str()).collect::<Vec<_>>().join(", "),
     };
-    let factor = open.iter().filter_map(|row| row.needed_factor).fold(0.0, f64::max);
-    let remedy = match open.iter().find_map(|row| row.reason.as_deref()) {
-        Some(reason) => reason.to_owned(),
-        None if factor > 0.0 => format!("{} times the samples will decide", significant(factor, 2)),
-        None => "more samples will decide".into(),
+    let remedy = match obstacle(&open) {
+        Obstacle::Reason(_, reason) => reason.to_owned(),
+        Obstacle::Samples(factor) => format!("{} times the samples will decide", significant(factor, 2)),
+        Obstacle::Noise => "more samples will decide".into(),
     };
     format!("no difference found; undecided: {names} ({remedy})")
+}
+
+/// Why parts of a comparison are undecided.
+pub enum Obstacle<'a> {
+    /// A part, and the reason why no number of samples alone decides it.
+    Reason(&'a str, &'a str),
+    /// The noise; this many times the samples decide all parts.
+    Samples(f64),
+    /// The noise; the number of samples that would decide is not known.
+    Noise,
+}
+
+/// The obstacle that some undecided parts have: the first reason other than noise, or else the noise.
+pub fn obstacle<'a>(open: &[&'a Verdict]) -> Obstacle<'a> {
+    if let Some((name, reason)) = open.iter().find_map(|row| Some((row.name.as_str(), row.reason.as_deref()?))) {
+        return Obstacle::Reason(name, reason);
+    }
+    match open.iter().filter_map(|row| row.needed_factor).fold(0.0, f64::max) {
+        0.0 => Obstacle::Noise,
+        factor => Obstacle::Samples(factor),
+    }
 }

@@ -91,22 +91,22 @@ pub(crate) enum Side {
 
 /// Aligns rows of text: two blanks between columns, a line under the header.
 pub(crate) fn aligned(rows: &[Vec<String>], sides: &[Side]) -> String {
-    let columns = rows.first().map_or(0, Vec::len);
-    let width = |c: usize| rows.iter().map(|row| row[c].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let mut out = String::new();
-    for (i, row) in rows.iter().enumerate() {
+    let (mut lines, width) = columns(rows.iter(), sides);
+    lines.insert(1.min(lines.len()), "─".repeat(width));
+    lines.into_iter().map(|line| line + "\n").collect()
+}
+
+/// The rows as lines with two blanks between columns, without blanks at their ends, and the width of all columns.
+pub(super) fn columns<'a>(rows: impl Iterator<Item = &'a Vec<String>> + Clone, sides: &[Side]) -> (Vec<String>, usize) {
+    let count = rows.clone().next().map_or(0, Vec::len);
+    let width = |c: usize| rows.clone().map(|row| row[c].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..count).map(width).collect();
+    let line = |row: &Vec<String>| {
         let cells = row.iter().zip(&widths).zip(sides).map(|((text, &w), side)| match side {
             Side::Left => format!("{text:<w$}"),
             Side::Right => format!("{text:>w$}"),
         });
-        let line = cells.collect::<Vec<_>>().join("  ");
-        out.push_str(line.trim_end());
-        out.push('\n');
-        if i == 0 {
-            out.push_str(&"─".repeat(widths.iter().sum::<usize>() + 2 * (columns.max(1) - 1)));
-            out.push('\n');
-        }
-    }
-    out
+        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    (rows.clone().map(line).collect(), widths.iter().sum::<usize>() + 2 * (count.max(1) - 1))
 }

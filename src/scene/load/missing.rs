@@ -22,7 +22,7 @@ pub(super) fn file(path: &Path) -> SceneError {
     };
     let stem = path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
     let files: Vec<PathBuf> = std::fs::read_dir(folder)
-        .map_or(vec![], |all| all.flatten().map(|f| f.path()).filter(|f| is_scene(f)).collect());
+        .map_or(vec![], |all| all.flatten().map(|f| f.path()).filter(|f| is_scene_file(f)).collect());
     let files: Vec<String> = files.iter().map(|f| name(f)).collect();
     let near = similar(&name(path), files.iter().map(String::as_str)).first().map(|f| folder.join(f));
     let near = near.map(|f| f.strip_prefix(".").unwrap_or(&f).display().to_string());
@@ -30,7 +30,8 @@ pub(super) fn file(path: &Path) -> SceneError {
     error.help(format!("{}the folder searched is {}; {}", question(near), searched.display(), scenes()))
 }
 
-fn is_scene(path: &Path) -> bool {
+/// Returns true if the path has the extension of a scene file: `.toml` or `.obj`.
+pub fn is_scene_file(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("obj"))
 }
 

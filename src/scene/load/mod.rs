@@ -28,6 +28,7 @@ mod tree;
 
 pub use cursor::Cursor;
 use cursor::beside;
+pub use missing::is_scene_file;
 pub use mtl_material::MtlMaterial;
 
 use super::{Description, SceneError, builtin, stand_in};

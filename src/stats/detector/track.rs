@@ -1,8 +1,8 @@
 //! One scalar that is compared batch by batch, and the events behind it.
 
 use crate::stats::evidence::{Evidence, Reason};
+use crate::stats::quantity::Quantity;
 use crate::stats::sequential::MeanSequence;
-use crate::stats::verdict::Quantity;
 use crate::terms::{Events, Functional};
 
 /// One scalar (quantity, functional, channel) that is compared batch by batch.

@@ -33,10 +33,22 @@ impl Run {
         self.results().map(|s| s.spp).min().unwrap_or(0)
     }
 
+    /// The outcome of all comparisons: they differ if any does, and agree if all do. None if nothing was compared.
+    pub fn outcome(&self) -> Option<Outcome> {
+        let outcomes = || self.verdicts.iter().map(|v| v.comparison.outcome);
+        outcomes().next()?;
+        Some(if outcomes().any(|o| o == Outcome::Differs) {
+            Outcome::Differs
+        } else if outcomes().all(|o| o == Outcome::Agrees) {
+            Outcome::Agrees
+        } else {
+            Outcome::Inconclusive
+        })
+    }
+
     /// Returns true if two results differ, or if a sample was not finite.
     pub fn failed(&self) -> bool {
-        let differs = self.verdicts.iter().any(|v| v.comparison.outcome == Outcome::Differs);
-        differs || self.results().any(|s| s.series.cost.non_finite > 0)
+        self.outcome() == Some(Outcome::Differs) || self.results().any(|s| s.series.cost.non_finite > 0)
     }
 
     /// ‖T^k E‖₁ over all surfaces, each term from separate paths.
