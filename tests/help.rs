@@ -261,3 +261,17 @@ fn every_command_has_a_man_page() {
     let printed = run(desk.path(), "man").out;
     assert!(printed.contains(".SH NAME") && printed.contains("fredholm\\-series"), "{printed}");
 }
+
+/// `fredholm series --help | head`: a reader that has seen enough is no error.
+#[test]
+fn a_closed_pipe_is_no_error() {
+    let desk = tempfile::tempdir().unwrap();
+    let mut child = command(desk.path(), "series --help")
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), String::from_utf8_lossy(&output.stderr).as_ref()), (Some(0), ""));
+}

@@ -116,8 +116,11 @@ pub fn main() -> ExitCode {
         let parsed = command.clone().try_get_matches_from(&words).and_then(|m| Cli::from_arg_matches(&m));
         match parsed {
             Ok(cli) => run(&cli.command, &command),
-            // help and version are asked for; clap prints them to stdout
-            Err(e) if !e.use_stderr() => e.print().map(|()| Ending::Ok).map_err(Failure::from),
+            // help and version are asked for; clap prints them to stdout, and a closed pipe (`| head`) is no error
+            Err(e) if !e.use_stderr() => match e.print() {
+                Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(e.into()),
+                _ => Ok(Ending::Ok),
+            },
             Err(e) => Err(Failure::Usage(mistyped::explain(&e, &command, &words))),
         }
     });
