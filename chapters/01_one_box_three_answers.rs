@@ -4,36 +4,51 @@
 //! L = E + T L = Σ T^k E,   k = 0, 1, …, K, and the tail
 //! ```
 //!
-//! Writes the figures and tables of the chapter into a folder, and checks every claim of the text:
-//! `fredholm chapter 1`, or `cargo run --release --example 01_one_box_three_answers -- --out DIR`.
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | T^k E | the term of k reflections, an image with errors | `Answers::series` |
+//! | L | the whole image, by one path for all terms | `Answers::path` |
+//! | T_h^k E | the terms of the matrix on patches of width h | `Answers::matrix` |
+//! | ‖T^k E‖₁ | mean of a term over all surfaces | `Answers::norms` |
+//!
+//! `fredholm chapter 1`, or `cargo run --release --example 01_one_box_three_answers -- [--out DIR] [--quick]`.
 #![allow(clippy::print_stdout)] // a program, not the library
 
 use fredholm::engine::Settings;
 use fredholm::engine::by_matrix::{Discrete, MatrixError};
 use fredholm::engine::by_rays::{Estimator, Sampled};
 use fredholm::progress::Progress;
+use fredholm::report::book::{self, Chapter, Claim, Folder};
 use fredholm::report::figures::decay::{self, Decay, RateLine};
 use fredholm::report::plot::{Curve, Look};
 use fredholm::report::text::table::{average, significant};
 use fredholm::report::{
-    ReportError,
-    image::{contact_sheet, picture, typeset::Caption},
-    text::{markdown, markdown::Claim},
-    write_atomically,
+    image::{contact_sheet, picture},
+    text::markdown,
 };
 use fredholm::scene::{Scene, SceneError, load};
 use fredholm::stats::{Comparison, Outcome, TermMeans};
 use fredholm::study::run::{Asked, Run};
 use fredholm::terms::{TermImage, functional::Replicates};
 use glam::Vec3;
-use std::{error::Error, path::Path, process::ExitCode};
+use std::process::ExitCode;
+
+/// This chapter.
+pub const CHAPTER: Chapter = Chapter {
+    number: 1,
+    name: "01_one_box_three_answers",
+    title: "One box, three answers",
+    shows: "Σ TᵏE, a path tracer and a matrix agree on a Cornell box; ‖TᵏE‖₁ stays below its bound",
+    next: &["fredholm", "fredholm series --max-bounces 2", "fredholm chapter 2"],
+    program,
+};
 
 // ANCHOR: setup
-fn setup() -> Result<Run, SceneError> {
+fn setup(folder: &Folder<'_>) -> Result<Run, SceneError> {
     let small = load::Options { set: vec!["camera.size=[96, 96]".into()], ..Default::default() };
     let room = load::scene("cornell", &small)?.description;
     let scene = Scene::new(&room);
-    let settings = Settings { spp: 256, max_bounces: 8, patches: 600, ..Settings::default() };
+    let settings = Settings { spp: folder.pick(256, 64), max_bounces: 8, patches: 600, ..Settings::default() };
     // each term has its own paths; the norms ‖T^k E‖₁ are estimated in the same way, but from all surfaces instead of the
     // camera
     let (estimators, surface) = (vec![Estimator::Single], vec![Estimator::Single]);
@@ -49,8 +64,8 @@ struct Answers<'a> {
     norms: &'a Replicates,
 }
 
-fn solve(mut run: Run) -> Result<Run, MatrixError> {
-    run.solve(Progress::NONE)?; // no progress display, no interruption
+fn solve(mut run: Run, progress: Progress<'_>) -> Result<Run, MatrixError> {
+    run.solve(progress)?;
     Ok(run)
 }
 
@@ -125,41 +140,32 @@ fn percent(x: f64) -> String {
 
 const NORM: &str = "all surfaces, $\\norm{\\T^k E}_1$";
 
-/// Solves, draws, writes and checks. Returns true if every claim of the chapter holds.
-///
-/// # Errors
-/// If the folder cannot be written.
-pub fn run(out: &Path) -> Result<bool, Box<dyn Error>> {
-    let solved = solve(setup()?)?;
-    let answers = answers(&solved).ok_or("an answer is missing")?;
-    let verdicts = verdicts(&solved).ok_or("a comparison is missing")?;
+/// Solves, draws, writes and checks.
+fn program(folder: &Folder<'_>) -> book::Result<Vec<Claim>> {
+    let solved = solve(setup(folder)?, folder.progress)?;
+    let answers = answers(&solved).ok_or("an answer is missing: the run was interrupted")?;
+    let verdicts = verdicts(&solved).ok_or("a comparison is missing: the run was interrupted")?;
     let claims = claims(&solved.scene, &answers, verdicts);
 
-    std::fs::create_dir_all(out)?;
-    let write = |name: &str, text: String| write_atomically(&out.join(name), text.as_bytes());
     let surface = answers.norms.functional("surface");
     let images = [&answers.series.series, &answers.matrix.fine.series, &answers.path.series].map(|s| s.image());
     let columns = [("series", images[0]), ("matrix", images[1]), ("path tracer", images[2]), (NORM, &surface)];
-    write("terms.md", markdown::terms(&columns))?;
-    write("verdicts.md", verdicts.map(|(name, c)| markdown::verdicts(name, c)).join("\n"))?;
-    write("claims.md", markdown::claims(&claims))?;
-    figures(out, &solved, &answers)?;
-    for Claim { says, found, holds } in &claims {
-        println!("{} {says}: {found}", if *holds { '✓' } else { '✗' });
-    }
-    println!("figures and tables in {}", out.display());
-    Ok(claims.iter().all(|c| c.holds))
+    folder.text("terms.md", &markdown::terms(&columns))?;
+    folder.text("verdicts.md", &verdicts.map(|(name, c)| markdown::verdicts(name, c)).join("\n"))?;
+    figures(folder, &solved, &answers)?;
+    Ok(claims)
 }
 
-fn figures(out: &Path, run: &Run, a: &Answers<'_>) -> Result<(), ReportError> {
+fn figures(folder: &Folder<'_>, run: &Run, a: &Answers<'_>) -> book::Result<()> {
     let (scene, settings) = (&run.scene, &run.settings);
-    let caption = Caption { command: "fredholm chapter 1".into(), seed: settings.seed, scene: "cornell".into() };
+    let caption = folder.caption("cornell");
     let [w, h] = scene.camera.size.map(|n| n as usize);
     let images: Vec<&[[f32; 3]]> = a.series.terms.iter().map(|t| t.mean.as_slice()).collect();
     let note = format!("{} paths per pixel and term", settings.spp);
-    contact_sheet::terms(w, h, &images, Some(&a.series.total.mean), &note, &caption)?
-        .picture
-        .write(&out.join("terms.png"))?;
+    folder.picture(
+        "terms.png",
+        &contact_sheet::terms(w, h, &images, Some(&a.series.total.mean), &note, &caption)?.picture,
+    )?;
 
     let matrix = run.norms_of_matrix().unwrap_or_default();
     let (series, k) = (TermMeans::from(a.norms), settings.max_bounces);
@@ -170,16 +176,12 @@ fn figures(out: &Path, run: &Run, a: &Answers<'_>) -> Result<(), ReportError> {
     let lines = [Some(RateLine::guaranteed(g, matrix[0])), RateLine::tail_bound(g, k, series.mean[k])];
     let lines = lines.into_iter().flatten().collect();
     let figure = Decay { title: "How the terms decay".into(), surface, lines, ..Decay::default() };
-    decay::draw(&figure, &caption)?.write(out, "decay")?;
+    folder.figure("decay", &decay::draw(&figure, &caption)?)?;
     Ok(())
 }
 
-fn main() -> Result<ExitCode, Box<dyn Error>> {
-    let mut args = std::env::args().skip(1);
-    let out = match (args.next().as_deref(), args.next()) {
-        (None, _) => "fredholm-out/chapter-01".into(),
-        (Some("--out"), Some(folder)) => folder,
-        _ => return Err("usage: 01_one_box_three_answers [--out DIR]".into()),
-    };
-    Ok(ExitCode::from(u8::from(!run(Path::new(&out))?)))
+fn main() -> book::Result<ExitCode> {
+    let found = CHAPTER.example(std::env::args().skip(1))?;
+    print!("{}", found.text);
+    Ok(found.exit_code())
 }

@@ -1,14 +1,27 @@
-//! Every chapter's program runs, its claims hold, and it writes every file that its text includes.
+//! Every chapter's program runs, its claims hold, each of them fails if the result is made wrong, and the program writes
+//! every file that the text includes.
 #![allow(clippy::unwrap_used)]
 
+use fredholm::report::book::{Chapter, Claim, Folder, Found};
 use std::{fs, path::Path};
 
 #[path = "../chapters/01_one_box_three_answers.rs"]
 #[allow(dead_code, unreachable_pub)] // its `main`; a program, not a library
 mod one_box_three_answers;
 
-type Run = fn(&Path) -> Result<bool, Box<dyn std::error::Error>>;
-const CHAPTERS: [(&str, Run); 1] = [("01_one_box_three_answers", one_box_three_answers::run)];
+const CHAPTERS: [Chapter; 1] = [one_box_three_answers::CHAPTER];
+
+/// Runs the short form of a chapter in a folder of its own.
+fn quick(chapter: &Chapter, out: &Path) -> Found {
+    chapter.run(&Folder::new(out, "test").unwrap().quick(true)).unwrap()
+}
+
+/// Whether the claim that contains `words` holds.
+fn holds(claims: &[Claim], words: &str) -> bool {
+    let found: Vec<_> = claims.iter().filter(|c| c.says.contains(words)).collect();
+    assert_eq!(found.len(), 1, "claims with the words `{words}`");
+    found[0].holds
+}
 
 /// What follows `figures/NAME/` in the text, up to the end of the file name.
 fn included<'a>(text: &'a str, name: &str) -> Vec<&'a str> {
@@ -16,29 +29,35 @@ fn included<'a>(text: &'a str, name: &str) -> Vec<&'a str> {
     text.split(&format!("figures/{name}/")).skip(1).map(file_name).collect()
 }
 
-/// The names of the anchors of `chapters/NAME.rs` that the text includes.
-fn anchors<'a>(text: &'a str, name: &str) -> Vec<&'a str> {
-    text.split(&format!("chapters/{name}.rs:")).skip(1).map(|rest| rest.split('}').next().unwrap()).collect()
+/// The names behind `:` of what the text includes from `file`.
+fn anchors<'a>(text: &'a str, file: &str) -> Vec<&'a str> {
+    text.split(&format!("{file}:")).skip(1).map(|rest| rest.split('}').next().unwrap()).collect()
 }
 
 #[test]
 fn claims_hold_and_every_file_of_the_text_is_written() {
-    for (name, run) in CHAPTERS {
+    for chapter in CHAPTERS {
+        let name = chapter.name;
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let text = fs::read_to_string(root.join(format!("book/src/{name}.md"))).unwrap();
         let program = fs::read_to_string(root.join(format!("chapters/{name}.rs"))).unwrap();
         let out = tempfile::tempdir().unwrap();
-        assert!(run(out.path()).unwrap(), "{name}: a claim fails; the list is above");
-        let (files, anchors) = (included(&text, name), anchors(&text, name));
-        assert!(!files.is_empty() && !anchors.is_empty(), "{name}: the text includes nothing");
+        let found = quick(&chapter, out.path());
+        assert!(found.holds(), "{name}: a claim fails\n{}", found.text);
+        let (files, code) = (included(&text, name), anchors(&text, &format!("chapters/{name}.rs")));
+        assert!(!files.is_empty() && !code.is_empty(), "{name}: the text includes nothing");
         for file in files {
             let bytes = fs::metadata(out.path().join(file)).unwrap_or_else(|e| panic!("{name}: {file}: {e}")).len();
             assert!(bytes > 0, "{name}: {file} is empty");
         }
-        for anchor in anchors {
+        for anchor in code {
             for mark in [format!("// ANCHOR: {anchor}\n"), format!("// ANCHOR_END: {anchor}\n")] {
                 assert_eq!(program.matches(&mark).count(), 1, "{name}: {mark}");
             }
+        }
+        let numbers = fs::read_to_string(out.path().join("numbers.md")).unwrap_or_default();
+        for anchor in anchors(&text, &format!("figures/{name}/numbers.md")) {
+            assert!(numbers.contains(&format!("ANCHOR: {anchor}\n")), "{name}: there is no number `{anchor}`");
         }
     }
 }
@@ -48,8 +67,8 @@ fn every_chapter_is_run() {
     let files = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("chapters")).unwrap();
     let mut found: Vec<String> =
         files.map(|f| f.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned()).collect();
-    // chapters have numbers; what has none is no chapter yet
+    // chapters have numbers; what has none is no chapter
     found.retain(|name| name.starts_with(|c: char| c.is_ascii_digit()));
     found.sort();
-    assert_eq!(found, CHAPTERS.map(|c| c.0));
+    assert_eq!(found, CHAPTERS.map(|c| c.name));
 }

@@ -2,52 +2,46 @@
 
 use super::base::{Ending, Failure, print, usage};
 use super::options::{OUTPUT, WHAT};
+use super::progress::{Bar, stop_flag};
 use clap::Args;
+use fredholm::report::book::{Chapter, Folder};
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 #[path = "../../chapters/01_one_box_three_answers.rs"]
 #[allow(dead_code)] // its `main` is for `cargo run --example`
 mod one_box_three_answers;
 
-type Run = fn(&std::path::Path) -> Result<bool, Box<dyn std::error::Error>>;
-
-/// A chapter of the book.
-struct Entry {
-    number: u32,
-    title: &'static str,
-    /// What its program shows, in one line.
-    shows: &'static str,
-    run: Run,
-}
-
-const CHAPTERS: [Entry; 1] = [Entry {
-    number: 1,
-    title: "One box, three answers",
-    shows: "Σ TᵏE, a path tracer and a matrix agree on a Cornell box; ‖TᵏE‖₁ stays below its bound",
-    run: one_box_three_answers::run,
-}];
+const CHAPTERS: [Chapter; 1] = [one_box_three_answers::CHAPTER];
 
 /// Below `chapter --help`.
 pub const HELP: &str = "Examples:
   fredholm chapter
   fredholm chapter 1
+  fredholm chapter 1 --quick
 
 Without NUMBER, the chapters are listed. The program of a chapter makes its figures and tables, and checks every claim of its text. \
 Exit code 1: a claim does not hold.";
 
 /// Arguments of `chapter`.
 #[derive(Clone, Debug, Args)]
-pub struct Chapter {
+pub struct Options {
     /// Number of the chapter [default: list them]
     #[arg(value_name = "NUMBER", help_heading = WHAT)]
     pub number: Option<String>,
+    /// Take fewer samples and make smaller pictures: seconds instead of up to a minute
+    #[arg(long, help_heading = WHAT)]
+    pub quick: bool,
     /// Output folder [default: fredholm-out/chapter-NN]
     #[arg(short, long, value_name = "DIR", help_heading = OUTPUT, value_hint = clap::ValueHint::DirPath)]
     pub out: Option<PathBuf>,
+    /// Print no progress
+    #[arg(short, long, help_heading = OUTPUT)]
+    pub quiet: bool,
 }
 
 /// Runs a chapter or lists them all.
-pub fn run(args: &Chapter) -> Result<Ending, Failure> {
+pub fn run(args: &Options) -> Result<Ending, Failure> {
     let Some(word) = &args.number else {
         let lines: Vec<String> =
             CHAPTERS.iter().map(|c| format!("{:>2}  {}\n    {}", c.number, c.title, c.shows)).collect();
@@ -58,9 +52,15 @@ pub fn run(args: &Chapter) -> Result<Ending, Failure> {
         return Err(unknown(word));
     };
     let out = args.out.clone().unwrap_or_else(|| format!("fredholm-out/chapter-{:02}", chapter.number).into());
-    match (chapter.run)(&out) {
-        Ok(true) => Ok(Ending::Ok),
-        Ok(false) => Ok(Ending::Failed),
+    let command = format!("fredholm chapter {}{}", chapter.number, if args.quick { " --quick" } else { "" });
+    let bar = Bar::plain(args.quiet);
+    let found = Folder::new(&out, &command)
+        .map_err(Into::into)
+        .and_then(|folder| chapter.run(&folder.quick(args.quick).progress(bar.progress())));
+    bar.finish();
+    match found {
+        _ if stop_flag().load(Ordering::Relaxed) => Ok(Ending::Interrupted),
+        Ok(found) => print(found.text.trim_end()).map(|()| if found.holds() { Ending::Ok } else { Ending::Failed }),
         Err(e) => Err(Failure::input(&e.to_string())),
     }
 }
@@ -68,7 +68,7 @@ pub fn run(args: &Chapter) -> Result<Ending, Failure> {
 /// There is no such chapter: suggests the number for a number in words, or for a word of a title.
 fn unknown(word: &str) -> Failure {
     const WORDS: [&str; 10] = ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"];
-    const ORDINALS: [&str; 5] = ["first", "second", "third", "fourth", "fifth"];
+    const ORDINALS: [&str; 8] = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"];
     let lower = word.to_lowercase();
     let digits = lower.trim_matches(|c: char| !c.is_ascii_digit()).trim_start_matches('0');
     let spelt =

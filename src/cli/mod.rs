@@ -99,7 +99,7 @@ enum Command {
     Info(info::Info),
     /// Runs a chapter of the book
     #[command(after_long_help = chapter::HELP)]
-    Chapter(chapter::Chapter),
+    Chapter(chapter::Options),
     /// Prints a script that completes commands in a shell
     #[command(after_long_help = pages::COMPLETIONS)]
     Completions(pages::Completions),

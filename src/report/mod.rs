@@ -5,7 +5,7 @@
 //! fonts and no hash order.
 //!
 //! ```text
-//! text → image → plot → figures → page
+//! text → image → plot → figures → page;  book: what the chapters write
 //! ```
 //!
 //! | folder | contents |
@@ -15,6 +15,7 @@
 //! | [`plot`] | axes, marks and curves: the parts of a figure |
 //! | [`figures`] | for each study its figure, its table and its CSV |
 //! | [`page`] | `index.html` |
+//! | [`book`] | chapters and figures of the lecture: their folder, their claims |
 //!
 //! | file | module |
 //! |---|---|
@@ -38,6 +39,7 @@
 //! | the whole image extrapolated from its first terms | [`figures::extrapolation`] |
 //! | `index.html` | [`page::html`] |
 
+pub mod book;
 mod error;
 pub mod figures;
 mod files;

@@ -136,7 +136,7 @@ fn laid_out(
     }
     let columns = columns.unwrap_or_else(|| balanced(&tiles));
     let places = in_rows(tiles.len(), columns);
-    let picture = Layout { title, tiles: &tiles, places: &places, heads: &[], foot: None }.draw(caption)?;
+    let picture = Layout { title, tiles: &tiles, places: &places, heads: &[], foot: None, scale: 1 }.draw(caption)?;
     Ok(Sheet { picture, clipped })
 }
 
@@ -150,14 +150,7 @@ fn balanced(tiles: &[Tile]) -> usize {
 }
 
 /// An image, resized and developed for display.
-pub(crate) fn shown(
-    width: usize,
-    height: usize,
-    pixels: &[[f32; 3]],
-    gain: f64,
-    narrowest: usize,
-    widest: usize,
-) -> Picture {
+pub fn shown(width: usize, height: usize, pixels: &[[f32; 3]], gain: f64, narrowest: usize, widest: usize) -> Picture {
     let (w, h, small) = shrink(width, height, pixels, width.div_ceil(widest));
     develop(w, h, &small, gain).picture.enlarged(narrowest.div_ceil(w))
 }

@@ -3,6 +3,6 @@
 pub mod contact_sheet;
 pub mod exr;
 pub mod picture;
-pub(crate) mod sheet;
+pub mod sheet;
 pub mod typeset;
 pub mod zmap;

@@ -193,7 +193,7 @@ impl Picture {
     }
 
     /// Copies `other` onto this picture with its upper left corner at `(x, y)`; it must fit.
-    pub(crate) fn paste(&mut self, other: &Self, x: usize, y: usize) {
+    pub fn paste(&mut self, other: &Self, x: usize, y: usize) {
         for (row, source) in other.pixels.chunks(other.width).enumerate() {
             let start = (y + row) * self.width + x;
             self.pixels[start..start + other.width].copy_from_slice(source);

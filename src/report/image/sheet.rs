@@ -2,7 +2,7 @@
 
 use super::{
     picture::Picture,
-    typeset::{Caption, LINE, SANS, caption_elements, page, text_element, text_width},
+    typeset::{Caption, LINE, SANS, caption_elements, page_at, text_element, text_width},
 };
 use crate::report::ReportError;
 
@@ -16,54 +16,67 @@ const NARROWEST: f64 = 400.0;
 const DIM: &str = "fill=\"#333333\"";
 const BOLD: &str = "font-weight=\"bold\"";
 
+/// Width of a slide in pixels.
+pub const SLIDE: usize = 1920;
+
 /// A picture with its text. All pictures of a sheet have the same size.
-pub(crate) struct Tile {
-    pub(crate) image: Picture,
+pub struct Tile {
+    /// The picture.
+    pub image: Picture,
     /// Text above the picture.
-    pub(crate) label: String,
+    pub label: String,
     /// Lines of text below the picture.
-    pub(crate) notes: Vec<String>,
+    pub notes: Vec<String>,
 }
 
 /// A sheet before it is drawn.
-pub(crate) struct Layout<'a> {
-    pub(crate) title: &'a str,
+pub struct Layout<'a> {
+    /// Title above all pictures.
+    pub title: &'a str,
     /// The pictures with their text.
-    pub(crate) tiles: &'a [Tile],
+    pub tiles: &'a [Tile],
     /// Column (half columns are allowed) and row of every tile.
-    pub(crate) places: &'a [(f64, usize)],
+    pub places: &'a [(f64, usize)],
     /// Text to the left of each row: a large line and a small one. If empty, there is none.
-    pub(crate) heads: &'a [[String; 2]],
+    pub heads: &'a [[String; 2]],
     /// A line of text below all tiles.
-    pub(crate) foot: Option<&'a str>,
+    pub foot: Option<&'a str>,
+    /// Pixels per CSS pixel: 1 for a screen, 2 for a projector. The pictures keep their pixels, text and gaps grow.
+    pub scale: usize,
 }
 
 /// Width of a tile without the gap: the width of its picture or of its widest text.
-fn room(tiles: &[Tile]) -> f64 {
+fn room(tiles: &[Tile], scale: usize) -> f64 {
     let notes = tiles.iter().flat_map(|t| &t.notes).map(|note| text_width(note, SANS, NOTE));
     let words = notes.chain(tiles.iter().map(|t| text_width(&t.label, SANS, LABEL)));
-    words.fold(tiles.first().map_or(0.0, |t| t.image.width as f64), f64::max).ceil()
+    words.fold(tiles.first().map_or(0.0, |t| t.image.width as f64 / scale as f64), f64::max).ceil()
 }
 
 /// Number of columns that fit in `width` pixels: at least one, and at most the number of tiles.
-pub(crate) fn columns_in(width: f64, tiles: &[Tile]) -> usize {
-    (((width - GAP) / (room(tiles) + GAP)).floor() as usize).clamp(1, tiles.len().max(1))
+pub fn columns_in(width: f64, tiles: &[Tile]) -> usize {
+    (((width - GAP) / (room(tiles, 1) + GAP)).floor() as usize).clamp(1, tiles.len().max(1))
 }
 
 /// Places tiles row by row: column and row of each.
-pub(crate) fn in_rows(tiles: usize, columns: usize) -> Vec<(f64, usize)> {
+pub fn in_rows(tiles: usize, columns: usize) -> Vec<(f64, usize)> {
     (0..tiles).map(|i| ((i % columns) as f64, i / columns)).collect()
 }
 
 impl Layout<'_> {
+    /// Least width in CSS pixels: a sheet for a projector is [`SLIDE`] pixels wide.
+    fn at_least(&self) -> f64 {
+        if self.scale > 1 { (SLIDE / self.scale) as f64 } else { 0.0 }
+    }
+
     /// Draws the text first, then copies the pictures to their places.
     ///
     /// # Errors
     /// If the text cannot be drawn.
-    pub(crate) fn draw(&self, caption: &Caption) -> Result<Picture, ReportError> {
-        let image_h = self.tiles.first().map_or(0.0, |t| t.image.height as f64);
+    pub fn draw(&self, caption: &Caption) -> Result<Picture, ReportError> {
+        let scale = self.scale as f64;
+        let image_h = self.tiles.first().map_or(0.0, |t| t.image.height as f64 / scale);
         let below = self.tiles.iter().map(|t| t.notes.len()).max().unwrap_or(0) as f64;
-        let (cell_w, cell_h) = (room(self.tiles) + GAP, LABEL * LINE + image_h + below * NOTE * LINE + GAP);
+        let (cell_w, cell_h) = (room(self.tiles, self.scale) + GAP, LABEL * LINE + image_h + below * NOTE * LINE + GAP);
         let heads =
             self.heads.iter().map(|[large, small]| text_width(large, SANS, TITLE).max(text_width(small, SANS, NOTE)));
         let left = GAP + heads.map(|w| w + GAP).fold(0.0, f64::max).ceil();
@@ -73,7 +86,7 @@ impl Layout<'_> {
         let right = self.places.iter().map(|&place| corner(place).0 + cell_w).fold(0.0, f64::max);
         let words =
             text_width(self.title, SANS, TITLE).max(self.foot.map_or(0.0, |foot| text_width(foot, SANS, SMALL)));
-        let width = right.max(words + 2.0 * GAP).max(NARROWEST).ceil();
+        let width = right.max(words + 2.0 * GAP).max(NARROWEST).max(self.at_least()).ceil();
         let bottom = self.places.iter().map(|&place| corner(place).1 + cell_h).fold(top, f64::max);
         let lines = caption.lines(width - 2.0 * GAP, SMALL);
         let small = lines.len() + usize::from(self.foot.is_some());
@@ -99,10 +112,11 @@ impl Layout<'_> {
             y += SMALL * LINE;
         }
         text += &caption_elements(&lines, GAP, y, SMALL);
-        let mut picture = page(width as usize, height as usize, &text)?;
+        let mut picture = page_at(self.scale, width as usize, height as usize, &text)?;
         for (tile, &place) in self.tiles.iter().zip(self.places) {
             let (x, y) = corner(place);
-            picture.paste(&tile.image, x.round() as usize, (y + LABEL * LINE).round() as usize);
+            let at = [x, y + LABEL * LINE].map(|v| (v * scale).round() as usize);
+            picture.paste(&tile.image, at[0], at[1]);
         }
         Ok(picture)
     }

@@ -56,7 +56,7 @@ pub fn superscript(k: usize) -> String {
 }
 
 /// Breaks text at spaces (not at no-break spaces), so that every line `fits`. A word that is too long for a line is cut.
-pub(crate) fn wrap(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
+pub fn wrap(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split([' ', '\t', '\n']).filter(|word| !word.is_empty()) {
         let line = &lines[lines.len() - 1];
@@ -159,6 +159,11 @@ pub(crate) const LINE: f64 = 1.4;
 
 /// Rasterises an SVG document at `scale` on a white background.
 pub(crate) fn rasterise(svg: &str, scale: f32) -> Result<Picture, ReportError> {
+    rasterise_over(svg, scale, None)
+}
+
+/// Rasterises an SVG document at `scale` over a picture of that size, or over white.
+pub(crate) fn rasterise_over(svg: &str, scale: f32, below: Option<&Picture>) -> Result<Picture, ReportError> {
     static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
     let fonts = FONTS.get_or_init(|| {
         let mut database = usvg::fontdb::Database::new();
@@ -177,6 +182,11 @@ pub(crate) fn rasterise(svg: &str, scale: f32) -> Result<Picture, ReportError> {
     let mut canvas = tiny_skia::Pixmap::new(pixels(size.width()), pixels(size.height()))
         .ok_or_else(|| wrong(&format!("a picture of {}×{} pixels cannot be made", size.width(), size.height())))?;
     canvas.fill(tiny_skia::Color::WHITE);
+    if let Some(below) = below {
+        for (pixel, &[r, g, b]) in canvas.pixels_mut().iter_mut().zip(&below.pixels) {
+            *pixel = tiny_skia::ColorU8::from_rgba(r, g, b, 255).premultiply();
+        }
+    }
     resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut canvas.as_mut());
     Ok(Picture {
         width: canvas.width() as usize,
@@ -187,11 +197,16 @@ pub(crate) fn rasterise(svg: &str, scale: f32) -> Result<Picture, ReportError> {
 
 /// A white page with the given SVG elements, rasterised at scale 1.
 pub(crate) fn page(width: usize, height: usize, elements: &str) -> Result<Picture, ReportError> {
+    page_at(1, width, height, elements)
+}
+
+/// A white page of `width × height` CSS pixels with the given SVG elements, rasterised with `scale` pixels per CSS pixel.
+pub(crate) fn page_at(scale: usize, width: usize, height: usize, elements: &str) -> Result<Picture, ReportError> {
     let svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
          viewBox=\"0 0 {width} {height}\">\n{elements}</svg>\n"
     );
-    rasterise(&svg, 1.0)
+    rasterise(&svg, scale as f32)
 }
 
 #[cfg(test)]

@@ -5,20 +5,21 @@
 
 /// One axis of a panel.
 #[derive(Clone, Debug)]
-pub(crate) struct Axis {
-    pub(crate) title: String,
+pub struct Axis {
+    /// Its title.
+    pub title: String,
     lo: f64,
     hi: f64,
     log: bool,
     /// Labelled ticks.
-    pub(crate) ticks: Vec<(f64, String)>,
+    pub ticks: Vec<(f64, String)>,
     /// Ticks without label.
-    pub(crate) minor: Vec<f64>,
+    pub minor: Vec<f64>,
 }
 
 impl Axis {
     /// Linear axis from `lo` to `hi`, with at most `ticks` ticks at multiples of 1, 2 or 5 · 10ⁿ.
-    pub(crate) fn linear(title: &str, lo: f64, hi: f64, ticks: usize) -> Self {
+    pub fn linear(title: &str, lo: f64, hi: f64, ticks: usize) -> Self {
         let step = nice_step((hi - lo) / ticks as f64);
         let decimals = (-step.log10().floor()).max(0.0) as usize;
         let first = (lo / step).ceil() as i64;
@@ -28,7 +29,7 @@ impl Axis {
     }
 
     /// Axis over the whole numbers `0..=last`, extended by one half at both ends.
-    pub(crate) fn counts(title: &str, last: usize, ticks: usize) -> Self {
+    pub fn counts(title: &str, last: usize, ticks: usize) -> Self {
         let step = nice_step(last as f64 / ticks as f64).max(1.0) as usize;
         let ticks = (0..=last).step_by(step).map(|k| (k as f64, k.to_string())).collect();
         Self { title: title.into(), lo: -0.5, hi: last as f64 + 0.5, log: false, ticks, minor: Vec::new() }
@@ -36,7 +37,7 @@ impl Axis {
 
     /// Logarithmic axis that contains all positive `values`. Ticks are at the decades, or in steps 1-2-5 if the axis spans
     /// less than two and a half decades.
-    pub(crate) fn log(title: &str, values: impl Iterator<Item = f64>) -> Self {
+    pub fn log(title: &str, values: impl Iterator<Item = f64>) -> Self {
         let (mut lo, mut hi) = (f64::INFINITY, 0.0f64);
         for v in values.filter(|v| v.is_finite() && *v > 0.0) {
             (lo, hi) = (lo.min(v), hi.max(v));
@@ -81,7 +82,7 @@ impl Axis {
     }
 
     /// Logarithmic axis for numbers of samples. Ticks are at powers of two, with at most `labels` labels.
-    pub(crate) fn powers_of_two(title: &str, values: impl Iterator<Item = f64>, labels: usize) -> Self {
+    pub fn powers_of_two(title: &str, values: impl Iterator<Item = f64>, labels: usize) -> Self {
         let (mut lo, mut hi) = (f64::INFINITY, 0.0f64);
         for v in values.filter(|v| v.is_finite() && *v > 0.0) {
             (lo, hi) = (lo.min(v), hi.max(v));
@@ -98,12 +99,13 @@ impl Axis {
 
     /// Position of a value: 0 at the lower end, 1 at the upper end, and outside [0, 1] beyond them. NaN if the value has no
     /// position.
-    pub(crate) fn position(&self, value: f64) -> f64 {
+    pub fn position(&self, value: f64) -> f64 {
         let scale = |v: f64| if self.log { v.ln() } else { v };
         (scale(value) - scale(self.lo)) / (scale(self.hi) - scale(self.lo))
     }
 
-    pub(crate) fn is_log(&self) -> bool {
+    /// Returns true for a logarithmic axis.
+    pub fn is_log(&self) -> bool {
         self.log
     }
 }

@@ -13,27 +13,39 @@ use plotters::{
 use super::look::{BLACK, Look, Mark};
 use crate::report::image::typeset::{self, SANS};
 
+/// Text is aligned to this side of its place.
+pub type Align = HPos;
+
+/// A colour.
+pub type Colour = RGBColor;
+
 /// Drawing units per CSS pixel.
 pub(crate) const SCALE: f64 = 10.0;
 
 /// Result of a drawing operation; the error is any error of the plot crate.
-pub(crate) type Drawn = Result<(), Box<dyn std::error::Error>>;
+pub type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// A place on the page in CSS pixels.
-pub(crate) type Place = (f64, f64);
+pub type Place = (f64, f64);
 
 /// The page of a figure. All lengths are CSS pixels.
-pub(crate) struct Canvas<'a>(pub(crate) DrawingArea<SVGBackend<'a>, Shift>);
+pub struct Canvas<'a>(pub(crate) DrawingArea<SVGBackend<'a>, Shift>);
 
 /// Style of a text.
 #[derive(Clone, Copy)]
-pub(crate) struct Words {
-    pub(crate) size: f64,
-    pub(crate) family: &'static str,
-    pub(crate) color: RGBColor,
-    pub(crate) bold: bool,
-    pub(crate) align: HPos,
-    pub(crate) upwards: bool,
+pub struct Words {
+    /// Font size in CSS pixels.
+    pub size: f64,
+    /// Font family.
+    pub family: &'static str,
+    /// Colour.
+    pub color: Colour,
+    /// True for bold letters.
+    pub bold: bool,
+    /// The end of the text, or its middle, that lies at its place.
+    pub align: Align,
+    /// True for text that reads upwards.
+    pub upwards: bool,
 }
 
 impl Default for Words {
@@ -44,15 +56,18 @@ impl Default for Words {
 
 /// Style of a line.
 #[derive(Clone, Copy)]
-pub(crate) struct Stroke {
-    pub(crate) color: RGBColor,
-    pub(crate) width: f64,
+pub struct Stroke {
+    /// Colour.
+    pub color: Colour,
+    /// Width in CSS pixels.
+    pub width: f64,
     /// Length of the dashes and of the gaps; none for a solid line.
-    pub(crate) dash: Option<(f64, f64)>,
+    pub dash: Option<(f64, f64)>,
 }
 
 impl Stroke {
-    pub(crate) fn solid(color: RGBColor, width: f64) -> Self {
+    /// A solid line.
+    pub fn solid(color: RGBColor, width: f64) -> Self {
         Self { color, width, dash: None }
     }
 
@@ -67,7 +82,7 @@ fn unit((x, y): Place) -> (i32, i32) {
 
 impl Canvas<'_> {
     /// A line of text, vertically centred on `at`.
-    pub(crate) fn text(&self, text: &str, at: Place, words: Words) -> Drawn {
+    pub fn text(&self, text: &str, at: Place, words: Words) -> Drawn {
         // The plot crate divides font sizes by 1.24 when it writes SVG.
         let font = (words.family, words.size * SCALE * 1.24).into_font();
         let font = font.style(if words.bold { FontStyle::Bold } else { FontStyle::Normal });
@@ -78,7 +93,7 @@ impl Canvas<'_> {
     }
 
     /// A straight line, dashed if the stroke has dashes.
-    pub(crate) fn line(&self, from: Place, to: Place, stroke: Stroke) -> Drawn {
+    pub fn line(&self, from: Place, to: Place, stroke: Stroke) -> Drawn {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = dx.hypot(dy);
         let (on, off) = stroke.dash.unwrap_or((length, 0.0));
@@ -92,20 +107,43 @@ impl Canvas<'_> {
         Ok(())
     }
 
-    pub(crate) fn polygon(&self, corners: &[Place], color: RGBColor) -> Drawn {
+    /// A line through several points.
+    pub fn path(&self, points: &[Place], stroke: Stroke) -> Drawn {
+        points.windows(2).try_for_each(|ends| self.line(ends[0], ends[1], stroke))
+    }
+
+    /// An arrow; its head ends at `to`.
+    pub fn arrow(&self, from: Place, to: Place, stroke: Stroke) -> Drawn {
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        let head = 4.0 + 3.0 * stroke.width;
+        let (ux, uy) = (dx / dx.hypot(dy), dy / dx.hypot(dy));
+        let base = (to.0 - head * ux, to.1 - head * uy);
+        let side = |s: f64| (base.0 - s * 0.45 * head * uy, base.1 + s * 0.45 * head * ux);
+        self.line(from, base, stroke)?;
+        self.polygon(&[to, side(1.0), side(-1.0)], stroke.color)
+    }
+
+    /// A filled circle.
+    pub fn disk(&self, centre: Place, radius: f64, color: Colour) -> Drawn {
+        self.0.draw(&Circle::new(unit(centre), (radius * SCALE).round() as i32, color.filled()))?;
+        Ok(())
+    }
+
+    /// A filled polygon.
+    pub fn polygon(&self, corners: &[Place], color: RGBColor) -> Drawn {
         self.0.draw(&Polygon::new(corners.iter().copied().map(unit).collect::<Vec<_>>(), color.filled()))?;
         Ok(())
     }
 
     /// A transparent polygon.
-    pub(crate) fn tint(&self, corners: &[Place], color: RGBColor) -> Drawn {
+    pub fn tint(&self, corners: &[Place], color: RGBColor) -> Drawn {
         let corners: Vec<_> = corners.iter().copied().map(unit).collect();
         self.0.draw(&Polygon::new(corners, color.mix(0.18).filled()))?;
         Ok(())
     }
 
     /// The mark of a curve.
-    pub(crate) fn mark(&self, (x, y): Place, look: Look) -> Drawn {
+    pub fn mark(&self, (x, y): Place, look: Look) -> Drawn {
         let corners = |offsets: &[Place]| offsets.iter().map(|(dx, dy)| (x + dx, y + dy)).collect::<Vec<_>>();
         match look.mark {
             Mark::Disk => self.0.draw(&Circle::new(unit((x, y)), (4.2 * SCALE) as i32, look.color.filled()))?,
@@ -128,7 +166,7 @@ impl Canvas<'_> {
     }
 
     /// Draws legend entries from `at` downwards, with text wrapped to `width`. Returns the y below the last entry.
-    pub(crate) fn legend(&self, at: Place, width: f64, entries: &[Entry]) -> Result<f64, Box<dyn std::error::Error>> {
+    pub fn legend(&self, at: Place, width: f64, entries: &[Entry]) -> Result<f64, Box<dyn std::error::Error>> {
         const SAMPLE: f64 = 34.0;
         const SIZE: f64 = 12.5;
         let (x, mut y) = at;
@@ -159,7 +197,7 @@ impl Canvas<'_> {
     }
 
     /// An upper limit: a bar with an arrow pointing down.
-    pub(crate) fn limit(&self, (x, y): Place, length: f64, color: RGBColor) -> Drawn {
+    pub fn limit(&self, (x, y): Place, length: f64, color: RGBColor) -> Drawn {
         let stroke = Stroke::solid(color, 1.6);
         self.line((x - 5.0, y), (x + 5.0, y), stroke)?;
         self.line((x, y), (x, y + length - 4.0), stroke)?;
@@ -168,22 +206,30 @@ impl Canvas<'_> {
 }
 
 /// One line of a legend.
-pub(crate) struct Entry {
-    pub(crate) sample: Sample,
-    pub(crate) label: String,
+pub struct Entry {
+    /// What it explains.
+    pub sample: Sample,
+    /// The text.
+    pub label: String,
 }
 
 impl Entry {
-    pub(crate) fn new(sample: Sample, label: impl Into<String>) -> Self {
+    /// An entry.
+    pub fn new(sample: Sample, label: impl Into<String>) -> Self {
         Self { sample, label: label.into() }
     }
 }
 
 /// The symbol in front of the text of a legend entry.
-pub(crate) enum Sample {
+pub enum Sample {
+    /// A heading.
     Heading,
+    /// Text alone.
     Plain,
+    /// The mark of a curve.
     Mark(Look),
+    /// A line.
     Line(Stroke),
-    Limit(RGBColor),
+    /// An upper limit.
+    Limit(Colour),
 }

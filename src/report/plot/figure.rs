@@ -6,6 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
+use base64::{Engine, engine::general_purpose::STANDARD};
 use plotters::prelude::{IntoDrawingArea, RGBColor, SVGBackend};
 
 use super::{
@@ -14,7 +15,10 @@ use super::{
 };
 use crate::report::{
     ReportError,
-    image::typeset::{self, Caption, LINE, MONO, SANS},
+    image::{
+        picture::Picture,
+        typeset::{self, Caption, LINE, MONO, SANS},
+    },
     write_atomically,
 };
 
@@ -27,9 +31,60 @@ pub struct Figure {
     pub width: u32,
     /// Height in CSS pixels.
     pub height: u32,
+    /// Pictures below the lines and the text.
+    below: Vec<Below>,
+}
+
+/// The end of the first element of a figure, its white background.
+const BACKGROUND_END: &str = "fill=\"#FFFFFF\" stroke=\"none\"/>\n";
+
+/// A picture below the drawing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Below {
+    picture: Picture,
+    x: u32,
+    y: u32,
+    /// Picture pixels per CSS pixel.
+    fine: usize,
 }
 
 impl Figure {
+    /// Places a picture below the drawing, with its upper left corner at (x, y) and `fine` picture pixels per CSS pixel. In the
+    /// PNG, which has two pixels per CSS pixel, no pixel is resampled if `fine` is 1 or 2.
+    ///
+    /// # Errors
+    /// If the picture is empty.
+    pub fn over(mut self, picture: Picture, [x, y]: [u32; 2], fine: usize) -> Result<Self, ReportError> {
+        let data = STANDARD.encode(picture.png(Path::new("(picture in a figure)"))?);
+        let [w, h] = [picture.width, picture.height].map(|n| n as f64 / fine as f64);
+        let image = format!(
+            "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" transform=\"scale({SCALE})\" href=\"data:image/png;base64,{data}\"/>\n"
+        );
+        let end = self.svg.find(BACKGROUND_END).map_or(0, |at| at + BACKGROUND_END.len());
+        self.svg.insert_str(end, &image);
+        self.below.push(Below { picture, x, y, fine });
+        Ok(self)
+    }
+
+    /// The PNG picture: the pictures below, then the drawing.
+    fn rasterised(&self) -> Result<Picture, ReportError> {
+        const SCALE_OF_PNG: usize = 2;
+        let drawing = typeset::rasterise(&self.svg, SCALE_OF_PNG as f32)?;
+        let Some(_) = self.below.first() else { return Ok(drawing) };
+        let mut page = Picture { pixels: vec![[255; 3]; drawing.pixels.len()], ..drawing };
+        for Below { picture, x, y, fine } in &self.below {
+            let size = [picture.width, picture.height].map(|n| n * SCALE_OF_PNG / fine);
+            let row = |v: usize| (0..size[0]).map(move |u| [u, v].map(|n| n * fine / SCALE_OF_PNG));
+            let pixels = (0..size[1]).flat_map(row).map(|[u, v]| picture.pixels[v * picture.width + u]).collect();
+            let scaled = Picture { width: size[0], height: size[1], pixels };
+            page.paste(&scaled, *x as usize * SCALE_OF_PNG, *y as usize * SCALE_OF_PNG);
+        }
+        let background = self.svg.find("<rect").zip(self.svg.find(BACKGROUND_END));
+        let clear =
+            background.map(|(from, to)| format!("{}{}", &self.svg[..from], &self.svg[to + BACKGROUND_END.len()..]));
+        typeset::rasterise_over(clear.as_ref().unwrap_or(&self.svg), SCALE_OF_PNG as f32, Some(&page))
+    }
+
     /// Writes `STEM.svg` and, at twice the size, `STEM.png` into `folder`.
     ///
     /// # Errors
@@ -37,13 +92,13 @@ impl Figure {
     pub fn write(&self, folder: &Path, stem: &str) -> Result<[PathBuf; 2], ReportError> {
         let [svg, png] = ["svg", "png"].map(|ending| folder.join(format!("{stem}.{ending}")));
         write_atomically(&svg, self.svg.as_bytes())?;
-        typeset::rasterise(&self.svg, 2.0)?.write(&png)?;
+        self.rasterised()?.write(&png)?;
         Ok([svg, png])
     }
 }
 
 /// Makes a figure: `draw` fills an area of `width × height`, and the caption is added below.
-pub(crate) fn figure(
+pub fn figure(
     name: &str,
     width: u32,
     height: u32,
@@ -76,5 +131,5 @@ pub(crate) fn figure(
         .replacen(&header, &format!("width=\"{width}\" height=\"{total}\""), 1)
         .replace(&format!("font-family=\"{SANS}\""), &families)
         .replace(&format!("font-family=\"{MONO}\""), &format!("font-family=\"{MONO}, ui-monospace, monospace\""));
-    Ok(Figure { svg, width, height: total })
+    Ok(Figure { svg, width, height: total, below: vec![] })
 }

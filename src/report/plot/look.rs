@@ -47,30 +47,49 @@ pub struct Curve {
 /// Colour and mark of a curve. The same estimator has the same appearance in every figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
-    pub(crate) color: RGBColor,
-    pub(crate) mark: Mark,
+    /// Colour.
+    pub color: RGBColor,
+    /// Mark.
+    pub mark: Mark,
 }
 
+/// Shape of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Mark {
+pub enum Mark {
+    /// A filled circle.
     Disk,
+    /// A square.
     Square,
+    /// A square on its corner.
     Diamond,
+    /// A triangle.
     Triangle,
+    /// An open circle.
     Ring,
+    /// A cross.
     Cross,
 }
 
-pub(crate) const BLACK: RGBColor = RGBColor(0, 0, 0);
-pub(crate) const GREY: RGBColor = RGBColor(85, 85, 85);
-pub(crate) const GRID: RGBColor = RGBColor(222, 222, 222);
-pub(crate) const FAINT: RGBColor = RGBColor(240, 240, 240);
-pub(crate) const ORANGE: RGBColor = RGBColor(230, 159, 0);
-pub(crate) const SKY: RGBColor = RGBColor(86, 180, 233);
-pub(crate) const GREEN: RGBColor = RGBColor(0, 158, 115);
-pub(crate) const BLUE: RGBColor = RGBColor(0, 114, 178);
-pub(crate) const VERMILION: RGBColor = RGBColor(213, 94, 0);
-pub(crate) const PURPLE: RGBColor = RGBColor(204, 121, 167);
+/// Black.
+pub const BLACK: RGBColor = RGBColor(0, 0, 0);
+/// Grey for notes and guide lines.
+pub const GREY: RGBColor = RGBColor(85, 85, 85);
+/// Light grey of grid lines.
+pub const GRID: RGBColor = RGBColor(222, 222, 222);
+/// Lighter grey of minor grid lines.
+pub const FAINT: RGBColor = RGBColor(240, 240, 240);
+/// Orange.
+pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
+/// Sky blue.
+pub const SKY: RGBColor = RGBColor(86, 180, 233);
+/// Bluish green.
+pub const GREEN: RGBColor = RGBColor(0, 158, 115);
+/// Blue.
+pub const BLUE: RGBColor = RGBColor(0, 114, 178);
+/// Vermilion.
+pub const VERMILION: RGBColor = RGBColor(213, 94, 0);
+/// Reddish purple.
+pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
 
 impl Look {
     /// Monte Carlo, one estimator per term.

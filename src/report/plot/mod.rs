@@ -1,5 +1,5 @@
 //! Figures with axes. An axis maps values to positions, a panel is a frame with two axes on a canvas, and `figure` makes the
-//! SVG with command, seed and scene below.
+//! SVG with command, seed and scene below. The parts are public: chapters and the figures of the lecture draw with them.
 //!
 //! The crate `plotters` (0.3.7) writes the SVG elements. Its charts are not used, for these reasons:
 //!
@@ -20,11 +20,8 @@ mod figure;
 mod look;
 mod panel;
 
-pub use figure::Figure;
-pub use look::{Curve, Look, Point};
-
-pub(super) use axis::Axis;
-pub(super) use canvas::{Canvas, Drawn, Entry, Place, Sample, Stroke, Words};
-pub(super) use figure::figure;
-pub(super) use look::{BLACK, BLUE, GREEN, GREY, Mark, ORANGE, PURPLE, SKY, VERMILION};
-pub(super) use panel::Panel;
+pub use axis::Axis;
+pub use canvas::{Align, Canvas, Colour, Drawn, Entry, Place, Sample, Stroke, Words};
+pub use figure::{Figure, figure};
+pub use look::{BLACK, BLUE, Curve, FAINT, GREEN, GREY, GRID, Look, Mark, ORANGE, PURPLE, Point, SKY, VERMILION};
+pub use panel::Panel;

@@ -10,7 +10,7 @@ use super::{
 };
 
 /// A frame with two axes.
-pub(crate) struct Panel<'a, 'b> {
+pub struct Panel<'a, 'b> {
     page: &'a Canvas<'b>,
     left: f64,
     top: f64,
@@ -22,7 +22,7 @@ pub(crate) struct Panel<'a, 'b> {
 
 impl<'a, 'b> Panel<'a, 'b> {
     /// Draws grid, frame, labels and title. `frame` is left, top, width, height; the labels are outside it.
-    pub(crate) fn draw(
+    pub fn draw(
         page: &'a Canvas<'b>,
         title: &str,
         [left, top, width, height]: [f64; 4],
@@ -82,7 +82,7 @@ impl<'a, 'b> Panel<'a, 'b> {
     }
 
     /// Draws the part of a line inside the frame. The line is straight on these axes.
-    pub(crate) fn line(&self, from: (f64, f64), to: (f64, f64), stroke: Stroke) -> Drawn {
+    pub fn line(&self, from: (f64, f64), to: (f64, f64), stroke: Stroke) -> Drawn {
         let unit_square = |(x, y)| (self.x.position(x), self.y.position(y));
         match clip(unit_square(from), unit_square(to)) {
             Some((a, b)) => self.page.line(self.place(a.0, a.1), self.place(b.0, b.1), stroke),
@@ -91,12 +91,12 @@ impl<'a, 'b> Panel<'a, 'b> {
     }
 
     /// Draws a mark, if its position is inside the frame.
-    pub(crate) fn mark(&self, x: f64, value: f64, look: Look) -> Drawn {
+    pub fn mark(&self, x: f64, value: f64, look: Look) -> Drawn {
         self.at(x, value).map_or(Ok(()), |place| self.page.mark(place, look))
     }
 
     /// Draws a pale area in the colour of a curve. Corners outside the axes are left out.
-    pub(crate) fn band(&self, corners: &[(f64, f64)], look: Look) -> Drawn {
+    pub fn band(&self, corners: &[(f64, f64)], look: Look) -> Drawn {
         let places: Vec<Place> = corners.iter().filter_map(|&(x, v)| self.at(x, v)).collect();
         if places.len() < 3 { Ok(()) } else { self.page.tint(&places, look.color) }
     }
@@ -104,7 +104,7 @@ impl<'a, 'b> Panel<'a, 'b> {
     /// Draws marks with 95 % error bars, and a thin line between them if `joined`. The marks are shifted sideways by `shift`
     /// pixels so that curves do not hide each other. On a logarithmic axis, an interval that reaches zero is drawn as an
     /// upper limit.
-    pub(crate) fn curve(&self, curve: &Curve, shift: f64, joined: bool) -> Drawn {
+    pub fn curve(&self, curve: &Curve, shift: f64, joined: bool) -> Drawn {
         let color = curve.look.color;
         if joined {
             for pair in curve.points.windows(2).filter(|pair| pair.iter().all(|p| !self.is_limit(p))) {
@@ -130,7 +130,7 @@ impl<'a, 'b> Panel<'a, 'b> {
     }
 
     /// Returns true if a point can only be shown as an upper limit.
-    pub(crate) fn is_limit(&self, point: &Point) -> bool {
+    pub fn is_limit(&self, point: &Point) -> bool {
         self.y.is_log() && point.value - point.half_width() <= 0.0
     }
 
