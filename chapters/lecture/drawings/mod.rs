@@ -1,0 +1,3 @@
+use fredholm::report::book::Slide;
+
+pub const SLIDES: &[Slide] = &[];
