@@ -1,12 +1,12 @@
 //! `fredholm chapter [N]`: runs a chapter's own program, compiled in.
 
 use super::base::{Ending, Failure, print, usage};
-use super::options::{OUTPUT, WHAT};
-use super::progress::{Bar, stop_flag};
+use super::options::{Manner, OUTPUT, WHAT};
+use super::session::Session;
 use clap::Args;
 use fredholm::report::book::{Chapter, Folder};
+use fredholm::report::text::summary::Summary;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 
 #[path = "../../chapters/01_one_box_three_answers.rs"]
 #[allow(dead_code)] // its `main` is for `cargo run --example`
@@ -35,6 +35,9 @@ pub struct Options {
     /// Output folder [default: fredholm-out/chapter-NN]
     #[arg(short, long, value_name = "DIR", help_heading = OUTPUT, value_hint = clap::ValueHint::DirPath)]
     pub out: Option<PathBuf>,
+    /// Replace another run's output
+    #[arg(long, help_heading = OUTPUT)]
+    pub force: bool,
     /// Print no progress
     #[arg(short, long, help_heading = OUTPUT)]
     pub quiet: bool,
@@ -51,18 +54,20 @@ pub fn run(args: &Options) -> Result<Ending, Failure> {
     let Some(chapter) = word.parse().ok().and_then(|n: u32| CHAPTERS.iter().find(|c| c.number == n)) else {
         return Err(unknown(word));
     };
-    let out = args.out.clone().unwrap_or_else(|| format!("fredholm-out/chapter-{:02}", chapter.number).into());
-    let command = format!("fredholm chapter {}{}", chapter.number, if args.quick { " --quick" } else { "" });
-    let bar = Bar::plain(args.quiet);
-    let found = Folder::new(&out, &command)
-        .map_err(Into::into)
-        .and_then(|folder| chapter.run(&folder.quick(args.quick).progress(bar.progress())));
-    bar.finish();
-    match found {
-        _ if stop_flag().load(Ordering::Relaxed) => Ok(Ending::Interrupted),
-        Ok(found) => print(found.text.trim_end()).map(|()| if found.holds() { Ending::Ok } else { Ending::Failed }),
-        Err(e) => Err(Failure::input(&e.to_string())),
+    let manner = Manner { out: args.out.clone(), force: args.force, quiet: args.quiet, ..Manner::default() };
+    let mut session = Session::new(manner, 0)?;
+    session.make_folder(&format!("chapter-{:02}", chapter.number))?;
+    let folder = Folder::new(&session.folder, session.command())?.quick(args.quick).progress(session.progress());
+    let found = chapter.run(&folder);
+    if session.stopped() {
+        return Ok(session.nothing_to_save(": the claims of a chapter need all of its results"));
     }
+    let found = found.map_err(|e| Failure::input(&e.to_string()))?;
+    let mut files = folder.written();
+    files.push("summary.json".into());
+    session.sign(&Summary { files, ..session.record() })?;
+    print(found.text.trim_end())?;
+    Ok(session.ending(!found.holds()))
 }
 
 /// There is no such chapter: suggests the number for a number in words, or for a word of a title.

@@ -10,6 +10,7 @@
 //! | strategies | which bidirectional strategy contributes how much to which term? | [`strategies::strategies`] |
 //! | bounces | how many bounces are enough? | [`bounces::bounces`] |
 //! | lit | which bounce lights which surface? | [`lit::lit`] |
+//! | homework | what does every bounce, roulette and every number of samples look like? | [`homework::homework`] |
 //! | surface | how large is ‖T^k E‖₁ over all surfaces, independent of the camera? | [`surface::norms`] |
 //! | refinement | how fast does the matrix approach the truth on finer meshes? | [`refinement::refine`] |
 //! | equilibrium | are the two sides of L = E + T L equal? | [`equilibrium`] |
@@ -20,6 +21,7 @@
 pub mod bounces;
 pub mod convergence;
 pub mod equilibrium;
+pub mod homework;
 pub mod lit;
 pub mod refinement;
 pub mod roulette;

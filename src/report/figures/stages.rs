@@ -7,8 +7,9 @@
 use crate::report::{
     ReportError, half_width_95,
     image::{
-        contact_sheet::{Cell, Sheet, annotated},
-        picture::{auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shown_mean},
+        contact_sheet::shown,
+        picture::{Picture, auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shown_mean},
+        sheet::{Tile, slide},
         typeset::Caption,
     },
     text::{
@@ -112,25 +113,26 @@ pub fn csv(grown: &Grown) -> String {
     csv.text()
 }
 
-/// The contact sheet of every stage and the reference, all with the same gain.
+/// A slide of every stage and the reference, all with the same gain.
 ///
 /// # Errors
-/// As for [`contact_sheet::grid`](crate::report::image::contact_sheet::grid).
-pub fn sheet(title: &str, [w, h]: [usize; 2], grown: &Grown, caption: &Caption) -> Result<Sheet, ReportError> {
+/// If the text cannot be drawn.
+pub fn sheet(title: &str, [w, h]: [usize; 2], grown: &Grown, caption: &Caption) -> Result<Picture, ReportError> {
     let g = gain(grown);
     let images = grown.stages.iter().map(|s| s.pixels.as_slice()).chain([grown.reference.total.mean.as_slice()]);
-    let (mut cells, mut notes) = (vec![], vec![]);
+    let mut tiles = vec![];
     for (r, pixels) in rows(grown, g).iter().zip(images) {
         let reference = r.mse[0].is_nan();
         let label = if reference { "reference".into() } else { format!("{} paths per pixel", r.name) };
-        cells.push(Cell { label, pixels, gain: Some(g) });
         let error =
             if reference { format!("noise {}", number(r.deviation, 3)) } else { format!("RMSE {}", rmse(r.mse[0])) };
-        notes.push(vec![
+        let notes = vec![
             format!("mean {} ± {}", number(mean(pixels), 4), number(r.mean[1], 2)),
             format!("mean shown {}", number(r.shown, 4)),
-            format!("{error} · clipped {:.2} %", 100.0 * r.clipped),
-        ]);
+            error,
+            format!("clipped {:.2} %", 100.0 * r.clipped),
+        ];
+        tiles.push(Tile { image: shown(w, h, pixels, g, 384, 440), label, notes });
     }
-    annotated(&format!("{title} ({})", gain_label(g)), w, h, &cells, &notes, caption)
+    slide(&format!("{title} ({})", gain_label(g)), 4, &tiles, None, caption)
 }

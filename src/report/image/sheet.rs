@@ -57,6 +57,21 @@ pub fn columns_in(width: f64, tiles: &[Tile]) -> usize {
     (((width - GAP) / (room(tiles, 1) + GAP)).floor() as usize).clamp(1, tiles.len().max(1))
 }
 
+/// A sheet for a projector, [`SLIDE`] pixels wide: the pictures in `columns`, row by row.
+///
+/// # Errors
+/// If the text cannot be drawn.
+pub fn slide(
+    title: &str,
+    columns: usize,
+    tiles: &[Tile],
+    foot: Option<&str>,
+    caption: &Caption,
+) -> Result<Picture, ReportError> {
+    let places = in_rows(tiles.len(), columns);
+    Layout { title, tiles, places: &places, heads: &[], foot, scale: 2 }.draw(caption)
+}
+
 /// Places tiles row by row: column and row of each.
 pub fn in_rows(tiles: usize, columns: usize) -> Vec<(f64, usize)> {
     (0..tiles).map(|i| ((i % columns) as f64, i / columns)).collect()
