@@ -174,42 +174,6 @@ impl Swept {
 }
 
 #[test]
-fn every_figure_is_made() {
-    let desk = TempDir::new().unwrap();
-    let listed = run(desk.path(), "figure --list");
-    // the list comes after the first blank line
-    let list = listed.out.lines().skip_while(|l| !l.is_empty());
-    let ids: Vec<&str> = list.filter_map(|l| l.split_whitespace().next()).collect();
-    assert!(["kajiya-series", "noise-paths", "variance-cornell", "split-cornell"].iter().all(|id| ids.contains(id)));
-    let said = run(desk.path(), "figure --all --size 8x8 -q -o all");
-    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    for id in ids {
-        let summary = summary::read(&desk.path().join("all").join(id).join("summary.json")).unwrap();
-        assert!(summary.files.iter().any(|f| f.ends_with(".png")), "{id}: {:?}", summary.files);
-        assert!(summary.files.iter().all(|f| desk.path().join("all").join(id).join(f).exists()));
-        assert_eq!(summary.command, "fredholm figure --all --size 8x8");
-    }
-    // the numbers of the sheet: what a screen shows is less than what the samples say, and the mean is the same
-    let csv = std::fs::read_to_string(desk.path().join("all/kajiya-series/kajiya-series.csv")).unwrap();
-    let rows: Vec<Vec<&str>> = csv.lines().map(|l| l.split(',').collect()).collect();
-    assert_eq!(rows[0][..4], ["paths", "mean", "mean_half_width_95", "mean_shown"]);
-    let names: Vec<&str> = rows[1..].iter().map(|r| r[0]).collect();
-    assert_eq!(names, ["4", "8", "16", "32", "64", "128", "reference"]);
-    for r in &rows[1..] {
-        let (mean, shown): (f64, f64) = (r[1].parse().unwrap(), r[3].parse().unwrap());
-        assert!(shown > 0.0 && shown < mean, "{r:?}");
-    }
-    // one render: the same bits with one thread
-    assert_eq!(run(desk.path(), "figure kajiya-series --size 8x8 -q -o one").code, 0);
-    assert_eq!(std::fs::read_to_string(desk.path().join("one/kajiya-series.csv")).unwrap(), csv);
-    for (line, says) in [("figure", "--list"), ("figure mona-lisa", "no figure is called `mona-lisa`")] {
-        let said = run(desk.path(), line);
-        assert_eq!(said.code, 2, "{line}: {}", said.err);
-        assert!(said.err.contains(says), "{}", said.err);
-    }
-}
-
-#[test]
 fn equal_rays_are_shared_out() {
     let s = swept(
         "furnace --over branching --values 1,3 --equal-rays --technique scatter --roulette none --size 8x8 --spp 16 --max-bounces 3 -q",
