@@ -98,7 +98,10 @@ fn every_command_of_the_book_runs() {
 
 #[test]
 fn a_short_argument_replaces_the_same_option() {
-    assert_eq!(reduced("fredholm series cornell --spp 64", "--spp 4 --size 8x8").join(" "), "series cornell --spp 4 --size 8x8");
+    assert_eq!(
+        reduced("fredholm series cornell --spp 64", "--spp 4 --size 8x8").join(" "),
+        "series cornell --spp 4 --size 8x8"
+    );
     assert_eq!(reduced("fredholm chapter 2", "--quick").join(" "), "chapter 2 --quick");
     assert_eq!(reduced("fredholm series --set 'a=[1, 2]'", "").last().unwrap(), "a=[1, 2]");
     let text = "<!-- quick: --spp 4 -->\n```sh\nfredholm info  # lists\n```\n";
@@ -174,7 +177,11 @@ fn every_chapter_asks_and_answers() {
         assert!(text.contains("## Predict") && text.contains("## Experiment"), "{name}");
         // Markdown inside a fold needs an empty line around it
         for fold in text.split("</summary>").skip(1) {
-            assert!(fold.starts_with("\n\n"), "{name}: no empty line after `</summary>`: {}", &fold[..fold.len().min(60)]);
+            assert!(
+                fold.starts_with("\n\n"),
+                "{name}: no empty line after `</summary>`: {}",
+                &fold[..fold.len().min(60)]
+            );
         }
         for inside in text.split("</details>").collect::<Vec<_>>().split_last().unwrap().1 {
             assert!(inside.ends_with("\n\n"), "{name}: no empty line before `</details>`");

@@ -5,7 +5,7 @@
 //! MSE(n) = ⟨(S_n − X)²⟩ − ⟨se_X²⟩          S_n: Σ_{k≤K} of the first n samples, X: the same sum without roulette
 //! ```
 //!
-//! Two renders give everything. Their terms must be equal up to noise, because roulette is unbiased; [`Homework::verdict`]
+//! Two renders with independent random numbers give everything. Their terms must be equal up to noise, because roulette is unbiased; [`Homework::verdict`]
 //! states whether they are. The samples 16, 32, …, N are the first samples of the render with roulette. The pictures of fewer
 //! samples are renders of their own.
 //!
@@ -23,6 +23,7 @@ use crate::estimator::Roulette;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::stats::{Comparison, Criterion, compare};
+use crate::study::stages::reference_seed;
 use crate::terms::{TermFilm, TermImage};
 
 /// The last bounce that is shown alone.
@@ -86,7 +87,9 @@ impl Homework {
 /// ```
 pub fn homework(scene: &Scene, spp: u32, seed: u64, progress: Progress<'_>) -> Option<Homework> {
     let settings = Settings { spp, seed, max_bounces: LAST, roulette: Roulette::Never, ..Settings::default() };
-    let terms = by_rays::terms(scene, Estimator::Prefix, &settings, progress.named("no roulette"));
+    // random numbers of its own: otherwise both renders would have the same first vertices
+    let own = Settings { seed: reference_seed(seed), ..settings.clone() };
+    let terms = by_rays::terms(scene, Estimator::Prefix, &own, progress.named("no roulette"));
     let reference = &terms.sum;
     let ended = Settings { roulette: ROULETTE, ..settings };
 

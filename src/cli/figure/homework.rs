@@ -20,9 +20,10 @@ use fredholm::study::homework::{Homework, LAST, homework};
 
 /// Makes every picture.
 pub fn run(args: &Figure, id: &str, mut session: Session) -> Result<Ending, Failure> {
-    let as_it_is = Changes { set: vec![], emit: vec![], lambertian: false };
     let (size, spp) = if args.quick { ([96, 72], 64) } else { ([480, 360], 1024) };
-    let opened = session.open("cornell", &as_it_is, Some(args.size.unwrap_or(size)))?;
+    let size = args.size.unwrap_or(size);
+    let whole_box = Changes { set: vec![format!("camera.fov={}", fov(size))], emit: vec![], lambertian: false };
+    let opened = session.open("cornell", &whole_box, Some(size))?;
     let settings = Settings { spp, seed: args.seed, max_bounces: LAST, ..Settings::default() };
     preflight::fits_in_memory(&settings, opened.description.camera.size)?;
     session.make_folder(id)?;
@@ -48,6 +49,14 @@ pub fn run(args: &Figure, id: &str, mut session: Session) -> Result<Ending, Fail
         )
     })?;
     Ok(session.ending(comparison.outcome == Outcome::Differs))
+}
+
+/// The horizontal field of view, in degrees, with which a picture of this size shows the whole box: as high as it is in the
+/// square picture of the scene file.
+fn fov([w, h]: [u32; 2]) -> f64 {
+    const SQUARE: f64 = 39.3077;
+    let wider = (f64::from(w) / f64::from(h)).max(1.0);
+    2.0 * (wider * (0.5 * SQUARE).to_radians().tan()).atan().to_degrees()
 }
 
 /// Writes pictures, sheets, plot, CSV and page; returns the names of the files.

@@ -129,7 +129,7 @@ pub fn sheets(
         ("accumulated.png", sheet(&format!("Bounces added up, no roulette ({shared})"), &sums)?),
         ("direct-indirect.png", sheet(&format!("Direct and indirect light ({shared})"), &halves)?),
         ("roulette.png", sheet(&format!("Russian roulette, {ROULETTE} ({shared})"), &ended)?),
-        ("spp.png", slide(&format!("More and more samples per pixel ({shared})"), 4, &grown, None, caption)?),
+        ("spp.png", sheet(&format!("More and more samples per pixel ({shared})"), &grown)?),
     ])
 }
 
