@@ -11,6 +11,7 @@ pub mod extrapolation;
 pub mod lit;
 pub mod modes;
 pub mod patches;
+mod pictures;
 pub mod pyramid;
 mod rate;
 pub mod refine;
