@@ -26,15 +26,18 @@ use std::time::{Duration, Instant};
 
 /// The last pass of a pilot shall take at least this time, so that the clock measures it well.
 const LEAST: Duration = Duration::from_millis(50);
+/// Most samples per pixel of a pilot.
+const MOST: u32 = 1 << 24;
 /// Samples per pixel at which all threads work with full waves of paths.
 const FULL: u32 = 32;
 
-/// b, the seconds that one sample of every pixel takes. The pilot has at most `settings.spp` samples. NaN if it was stopped.
+/// b, the seconds that one sample of every pixel takes. NaN if the pilot was stopped. The pilot has half of `settings.spp` samples,
+/// or [`FULL`] if these are fewer, and more as long as its last pass is too short for the clock.
 pub fn seconds_per_sample(scene: &Scene, estimator: Estimator, settings: &Settings, progress: Progress<'_>) -> f64 {
     let t = SceneTransport { scene, sampling: settings.sampling };
     // with one replicate no variance is computed, so that only the sampling is timed
-    let amount = Amount { spp: settings.spp, replicates: 1, key: settings.key("timing", 1) };
-    let enough = FULL.min(settings.spp.div_ceil(4));
+    let amount = Amount { spp: MOST, replicates: 1, key: settings.key("timing", 1) };
+    let enough = FULL.min(settings.spp.div_ceil(2));
     let started = Instant::now();
     let mut stands = vec![(0, Duration::ZERO)];
     let mut look = |film: &TermFilm| {
@@ -69,9 +72,9 @@ mod tests {
         assert!(one > 0.0 && four > 3.0 * one, "{one} s, {four} s");
     }
 
-    /// The pilot of a render of one sample has one sample.
+    /// The pilot of a render of one sample has a time, too; one that is stopped has none.
     #[test]
-    fn one_sample_is_enough() {
+    fn one_sample_has_a_time() {
         let scene = Scene::new(&load::scene("furnace", &Options::default()).unwrap().description);
         let settings = Settings { spp: 1, max_bounces: 1, ..Settings::default() };
         assert!(seconds_per_sample(&scene, Estimator::Prefix, &settings, Progress::NONE) > 0.0);

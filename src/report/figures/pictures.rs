@@ -26,6 +26,7 @@ use crate::report::{
         ranking::{Candidate, ratio},
     },
 };
+use crate::terms::Variance;
 use crate::terms::cross_moments::Value;
 
 /// A setting with its image and its numbers.
@@ -40,8 +41,8 @@ pub(super) struct Setting<'a> {
     pub(super) noise: [(&'static str, Value); 2],
     /// Independent replicates behind the errors.
     pub(super) replicates: u64,
-    /// The variance is known to be finite, so that its measured value means something.
-    pub(super) finite: bool,
+    /// Whether the variance is finite, so that its measured value means something.
+    pub(super) known: Variance,
     pub(super) rays_per_path: f64,
     /// None if it was not measured.
     pub(super) seconds_per_path: Option<f64>,
@@ -59,8 +60,9 @@ impl Setting<'_> {
 
     /// Efficiency per ray and per second, relative to `first`.
     fn efficiency(&self, first: &Self) -> [Option<Value>; 2] {
-        let known = self.finite && first.finite && self.work.work > 0.0 && first.work.work > 0.0;
-        let (value, std_error) = ratio(&first.work, &self.work);
+        let finite = |s: &Self| s.known == Variance::Finite && s.work.work > 0.0;
+        let known = finite(self) && finite(first);
+        let (value, std_error) = if self.work == first.work { (1.0, 0.0) } else { ratio(&first.work, &self.work) };
         let per_ray = (known && value.is_finite()).then_some(Value { value, std_error });
         // the same variances, with seconds in place of rays
         let price = |s: &Self| s.seconds_per_path.map(|seconds| seconds / s.rays_per_path);
@@ -72,18 +74,23 @@ impl Setting<'_> {
 
     /// √(V/n) of a part as text.
     pub(super) fn shown(&self, part: usize) -> String {
-        if self.finite { with_half_width(self.noise(part), self.replicates) } else { "not known".into() }
+        match self.known {
+            Variance::Finite => with_half_width(self.noise(part), self.replicates),
+            Variance::Infinite => "infinite variance".into(),
+            Variance::Unknown => "not known".into(),
+        }
     }
 
     /// The lines below the picture.
     fn numbers(&self, first: &Self) -> Vec<String> {
         let times = |v: Value| format!("×{}", with_half_width(v, self.replicates));
         let [per_ray, per_second] = self.efficiency(first).map(|v| v.map_or("–".into(), times));
+        let part = |i: usize| format!("noise, {}: {}", self.noise[i].0, self.shown(i));
         let plural = if self.spp == 1 { "sample" } else { "samples" };
         let mut lines = vec![
             format!("{} {plural} per pixel", self.spp),
-            format!("noise, {}: {}", self.noise[0].0, self.shown(0)),
-            format!("noise, {}: {}", self.noise[1].0, self.shown(1)),
+            part(0),
+            part(1),
             format!("{} rays per path", significant(self.rays_per_path, 3)),
             format!("efficiency {per_ray} per ray"),
         ];
@@ -96,19 +103,20 @@ impl Setting<'_> {
     }
 }
 
-/// `0.24 ± 0.01`, with the half width of the 95 % interval; without it if it is not known or below 0.5 %.
+/// `0.24 ± 0.01`, with the half width of the 95 % interval. It is left out if it is not known or below 0.5 %.
 fn with_half_width(v: Value, replicates: u64) -> String {
     let half = half_width_95(v.std_error, replicates);
     match v.value {
         x if half.is_nan() || half < 5e-3 * x.abs() => significant(x, 3),
-        x if x.abs() < 1e-3 => format!("{} ± {}", significant(x, 2), significant(half, 1)),
+        // a small number, or one that is hardly larger than its error, would lose its digits
+        x if x.abs() < 1e-3 || half > 0.5 * x.abs() => format!("{} ± {}", significant(x, 2), significant(half, 2)),
         x => plus_minus(x, half, 1),
     }
 }
 
 /// The gain that suits the quietest picture outside visible lamps.
 fn gain(settings: &[Setting]) -> f64 {
-    let known = |s: &&Setting| s.finite && s.noise(0).value.is_finite();
+    let known = |s: &&Setting| s.known == Variance::Finite && s.noise(0).value.is_finite();
     let quietest = settings.iter().filter(known).min_by(|a, b| a.noise(0).value.total_cmp(&b.noise(0).value));
     quietest.or(settings.first()).map_or(1.0, |s| auto_gain_beside_lamps(s.image, s.emission))
 }
@@ -129,9 +137,13 @@ pub(super) fn draw(
     let panels: Vec<Panel> =
         panels.map(|(s, numbers)| Panel { label: s.label.clone(), pixels: s.image, numbers }).collect();
     let seconds = if settings.iter().any(|s| s.seconds_per_path.is_some()) { " or 1/(V · seconds)" } else { "" };
+    let no_error = |s: &&Setting| s.known == Variance::Finite && s.noise[0].1.std_error.is_nan();
+    let unknown =
+        if settings.iter().any(|s| no_error(&s)) { " Without an interval: the error is not known." } else { "" };
     let foot = format!(
         "Noise: standard deviation √(V/n) of a pixel after n samples, with its 95 % interval. V is the variance of one \
-         sample, averaged over pixels and channels. Efficiency: 1/(V · rays){seconds} of {part}, relative to the first picture."
+         sample, averaged over pixels and channels; \"all k\" includes lamps seen directly. Efficiency: 1/(V · rays){seconds} \
+         of {part}, relative to the first picture.{unknown}"
     );
     side_by_side::draw(title, size, &panels, gain(settings), &foot, caption)
 }
@@ -151,7 +163,7 @@ mod tests {
             spp,
             noise: [("k ≥ 1", value), ("all", value)],
             replicates: 16,
-            finite: true,
+            known: Variance::Finite,
             rays_per_path: 4.0,
             seconds_per_path: Some(0.5),
             work,
@@ -170,9 +182,10 @@ mod tests {
         assert_eq!(per_ray.map(|v| v.value), Some(0.5));
         assert_eq!(per_second.map(|v| v.value), Some(0.25));
         assert!(per_ray.is_some_and(|v| (v.std_error - 0.5 * 0.1f64.hypot(0.1)).abs() < 1e-12));
-        let infinite = Setting { finite: false, ..setting(&image, 1.0, 25) };
+        let infinite = Setting { known: Variance::Infinite, ..setting(&image, 1.0, 25) };
         assert_eq!(infinite.efficiency(&first), [None, None]);
-        assert!(infinite.numbers(&first)[1].ends_with("not known"));
+        assert_eq!(first.efficiency(&first)[0], Some(Value { value: 1.0, std_error: 0.0 }), "the first has no error");
+        assert!(infinite.numbers(&first)[1].ends_with("infinite variance"));
     }
 
     /// The quietest picture sets the gain: the other one is 100 times brighter, which is its noise.
@@ -183,7 +196,7 @@ mod tests {
         assert_eq!(gain(&both), 8.0);
         let unknown = [setting(&noisy, f64::NAN, 16), setting(&quiet, 1.0, 16)];
         assert_eq!(gain(&unknown), 8.0);
-        let infinite = [setting(&quiet, 1.0, 16), Setting { finite: false, ..setting(&noisy, 0.1, 16) }];
+        let infinite = [setting(&quiet, 1.0, 16), Setting { known: Variance::Unknown, ..setting(&noisy, 0.1, 16) }];
         assert_eq!(gain(&infinite), 8.0);
     }
 }

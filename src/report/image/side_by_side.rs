@@ -31,13 +31,13 @@ pub const WIDEST: usize = 1920;
 /// Height above which a panel is not enlarged further.
 const TALLEST: usize = 640;
 /// Most panels in a row.
-const MOST: usize = 4;
+const MOST: usize = 5;
 /// Text is this much larger than on other sheets, to be readable on a slide that is [`WIDEST`] pixels wide.
 const TEXT: f64 = 1.75;
 /// Font size of the text below all panels.
 const SMALL: f64 = 10.5 * TEXT;
 /// Longest label in letters.
-const LETTERS: usize = 24;
+const LETTERS: usize = 22;
 
 /// One setting: its image and what is written beside it.
 #[derive(Clone, Debug)]
@@ -159,8 +159,8 @@ mod tests {
     /// Panels have at least 256 pixels, and a row of them fits, for images of any width.
     #[test]
     fn panels_are_wide_enough_and_fit() {
-        for (count, w) in (1..=9).flat_map(|n| (1..=2500).map(move |w| (n, w))) {
-            let (columns, size) = arranged(count, [w, w], 400.0);
+        for (count, w) in (1..=11).flat_map(|n| (1..=2500).map(move |w| (n, w))) {
+            let (columns, size) = arranged(count, [w, w], 340.0);
             let panel = shown(w, size);
             assert!(panel >= NARROWEST, "{count} images of {w}: {panel}");
             assert!(panel as f64 <= room(columns), "{count} images of {w}: {panel} in {columns} columns");
@@ -173,7 +173,8 @@ mod tests {
     fn few_rows_then_large_panels() {
         assert_eq!(arranged(4, [64, 64], 300.0), (4, Size::Enlarged(6)));
         assert_eq!(arranged(3, [128, 128], 300.0), (3, Size::Enlarged(4)));
-        assert_eq!(arranged(5, [256, 256], 300.0), (3, Size::Enlarged(2)));
+        assert_eq!(arranged(5, [256, 256], 300.0), (5, Size::Enlarged(1)));
+        assert_eq!(arranged(9, [48, 48], 300.0), (5, Size::Enlarged(7)));
         assert_eq!(arranged(4, [512, 512], 300.0), (2, Size::Enlarged(1)));
         assert_eq!(arranged(4, [64, 64], 500.0), (2, Size::Enlarged(10)));
     }

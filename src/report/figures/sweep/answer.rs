@@ -30,7 +30,7 @@ fn plural(over: &str) -> &'static str {
 }
 
 /// A value with the work V · rays of the whole path for the variance `v` of a slot; the slot after the last is the sum.
-pub(super) fn candidate(r: &Row, slot: usize, v: &Variance) -> Candidate {
+fn candidate(r: &Row, slot: usize, v: &Variance) -> Candidate {
     let without = r.without.get(slot).map_or(vec![], |all| all.iter().map(|v| v * r.rays_per_path()).collect());
     Candidate {
         without,
@@ -42,7 +42,7 @@ pub(super) fn candidate(r: &Row, slot: usize, v: &Variance) -> Candidate {
 }
 
 /// Returns true if the variance of the whole image is finite, so that its measured value means something.
-pub(super) fn finite(r: &Row) -> bool {
+fn finite(r: &Row) -> bool {
     r.known == crate::terms::Variance::Finite
 }
 

@@ -15,7 +15,6 @@
 //!
 //! Reference: Kajiya, *The Rendering Equation* (1986).
 
-use super::answer::finite;
 use super::rows::{Row, Sweep};
 use crate::engine::by_rays::Sampled;
 use crate::report::{
@@ -80,7 +79,7 @@ pub(super) fn setting<'a>(r: &Row, shown: &'a Shown) -> Setting<'a> {
         spp: r.spp,
         noise: [("k ≥ 1", of_reflected), ("all k", Value { value: r.total.value, std_error: r.total.std_error })],
         replicates: r.image.total.replicates,
-        finite: finite(r),
+        known: r.known,
         rays_per_path: rays,
         seconds_per_path: Some(r.seconds / r.paths as f64),
         work,
