@@ -12,6 +12,7 @@ mod program;
 mod results;
 
 use fredholm::report::image::exr;
+use fredholm::report::image::picture::{auto_gain, develop};
 use fredholm::report::text::summary;
 use fredholm::terms::World;
 use program::{Said, run_tidily};

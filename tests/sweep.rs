@@ -3,6 +3,8 @@
 
 #[path = "sweep/brief.rs"]
 mod brief;
+#[path = "sweep/pictures.rs"]
+mod pictures;
 #[path = "common/program.rs"]
 #[allow(dead_code, unreachable_pub)]
 mod program;
@@ -112,7 +114,7 @@ fn branching_takes_powers_of_its_children() {
     let mut names: Vec<String> =
         std::fs::read_dir(&s.folder).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
-    assert_eq!(names, ["summary.json", "sweep.csv", "sweep.png", "sweep.svg"]);
+    assert_eq!(names, ["pictures.png", "summary.json", "sweep.csv", "sweep.png", "sweep.svg"]);
     let summary = summary::read(&s.folder.join("summary.json")).unwrap();
     assert_eq!(summary.files, names);
     assert_eq!(summary.series.len(), 4);

@@ -228,10 +228,15 @@ pub(crate) struct Passes<'a, 'l> {
     look_on: Option<Look<'l>>,
 }
 
-impl<'a> Passes<'a, '_> {
+impl<'a, 'l> Passes<'a, 'l> {
     /// Passes that double, without a clock and without a callback.
     pub(crate) fn of(progress: Progress<'a>) -> Self {
         Self { progress, started: Instant::now(), snapshots: vec![], clock: None, look_on: None }
+    }
+
+    /// The same with a callback after each pass.
+    pub(crate) fn watched_by(self, look: Look<'l>) -> Self {
+        Self { look_on: Some(look), ..self }
     }
 
     /// Begins a render. The clock, if there is one, limits its time.

@@ -7,6 +7,7 @@
 //! | guided | both, with a matrix as a guide for the directions of rays | [`guided`] |
 //! | by matrix | `T_h^k E` and the solution of the linear system, through the same camera | [`by_matrix::radiosity`] |
 //! | batches | by rays in batches, for comparisons that are updated with every batch | [`batches::Side`] |
+//! | timing | seconds per sample, from a short pilot | [`timing::seconds_per_sample`] |
 //!
 //! All engines read [`Settings`]. The module [`known`] examines a scene before any of them runs.
 
@@ -21,6 +22,7 @@ mod matrix_error;
 mod options;
 pub mod radius;
 mod settings;
+pub mod timing;
 mod unlit;
 
 pub use settings::Settings;

@@ -3,7 +3,7 @@
 //!
 //! A block of pixels is one job. It takes all samples of its pixels, one replicate after the other, and adds the products of
 //! the slot values of every path. Blocks are added in their order, so the sums have the same bits for any number of threads.
-//! Memory does not grow with the image, because `R · slots²` sums are kept (R replicates), not an image per slot.
+//! `R · slots²` sums are kept (R replicates), and two images: of all slots together, and of slot 0. An image per slot is not kept.
 
 use super::render::Amount;
 use super::{Batch, Job, Paths, TermEstimator, TermSink};
@@ -43,6 +43,21 @@ impl TermSink for Wave {
     fn rays(&mut self, slot: usize, rays: usize) {
         self.rays[slot] += rays as u64;
     }
+}
+
+/// The means of all slots together and of slot 0, for each pixel. `sums` holds S_a by pixel, channel, replicate.
+fn means(sums: &[f64], slots: usize, replicates: usize, samples: u32) -> Vec<[[f32; 3]; 2]> {
+    let of_pixel = |pixel: &[f64]| {
+        let mean = |kept: usize| {
+            [0, 1, 2].map(|channel| {
+                let all = pixel[channel * replicates * slots..][..replicates * slots].chunks(slots);
+                let sum: f64 = all.map(|s| s[..kept].iter().sum::<f64>()).sum();
+                (sum / f64::from(samples)) as f32
+            })
+        };
+        [mean(slots), mean(1)]
+    };
+    sums.chunks(3 * replicates * slots).map(of_pixel).collect()
 }
 
 /// Records the moments of the slot values of one path. The key must give independent points, because only then is the mean
@@ -98,17 +113,22 @@ pub fn record<T: Transport>(
         }
         sums.pixels = count as u64;
         progress.advance(count as u64 * u64::from(amount.spp));
-        sums
+        (sums, means(&pixel_sums, slots, counts.len(), start(replicates)))
     };
 
     let blocks: Vec<u32> = (0..w * h).step_by(BLOCK).collect();
     let mut all = Sums::new(slots, counts.clone());
+    let (mut image, mut emission) = (vec![], vec![]);
     for some in blocks.chunks(SIDE_BY_SIDE) {
         if progress.stopped() {
             return None;
         }
-        let done: Vec<Sums> = some.par_iter().map_init(Paths::default, |paths, &first| job(paths, first)).collect();
-        done.iter().for_each(|sums| all.add(sums));
+        let done: Vec<_> = some.par_iter().map_init(Paths::default, |paths, &first| job(paths, first)).collect();
+        for (sums, means) in done {
+            all.add(&sums);
+            image.extend(means.iter().map(|m| m[0]));
+            emission.extend(means.iter().map(|m| m[1]));
+        }
     }
-    Some(all.moments(started.elapsed().as_secs_f64()))
+    Some(Recorded { image, emission, ..all.moments(started.elapsed().as_secs_f64()) })
 }

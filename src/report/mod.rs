@@ -28,6 +28,7 @@
 //! | `covariance.svg`, `split.csv` | [`figures::split`] |
 //! | contact sheets of one image after more and more paths | [`figures::stages`] |
 //! | `roulette.csv`, `roulette.svg`, and its table | [`figures::roulette`] |
+//! | `pictures.png` of a sweep and of `roulette` | [`image::side_by_side`], [`figures::sweep::pictures`], [`figures::roulette::pictures`] |
 //! | `diagnosis.svg` | [`figures::diagnosis`] |
 //! | `NAME-ratios.svg` of the zoo and its PNG | [`figures::signature`] |
 //! | list of the `_se` layers that can be trusted | [`text::pixel_errors`] |

@@ -62,6 +62,10 @@ pub struct Recorded {
     pub non_finite: u64,
     /// Wall-clock seconds.
     pub seconds: f64,
+    /// Mean of all slots together, by pixel.
+    pub image: Vec<[f32; 3]>,
+    /// Mean of slot 0, emission seen directly, by pixel.
+    pub emission: Vec<[f32; 3]>,
 }
 
 impl Recorded {
@@ -136,7 +140,8 @@ impl Sums {
         let samples: u64 = self.counts.iter().map(|&n| u64::from(n)).sum();
         let without = if replicates < 2 { vec![] } else { (0..replicates).map(|r| self.leaving(Some(r))).collect() };
         let paths = self.pixels * samples;
-        Recorded { all: self.leaving(None), without, paths, non_finite: self.non_finite, seconds }
+        let (all, non_finite) = (self.leaving(None), self.non_finite);
+        Recorded { all, without, paths, non_finite, seconds, ..Recorded::default() }
     }
 
     /// The moments without replicate `out`, or of all samples if `out` is None.

@@ -209,3 +209,50 @@ fn walks_on_the_matrix_are_held_against_its_powers() {
     let said = desk.run("walk cornell-spheres -q -o x");
     assert!(said.code == 2 && said.err.contains("help: "), "{}", said.err);
 }
+
+/// The rows of a picture of one term without the strip of text below.
+fn shown(path: &Path, [w, h]: [usize; 2]) -> Vec<[u8; 3]> {
+    let picture = image::open(path).unwrap().to_rgb8();
+    let factor = picture.width() as usize / w;
+    let at = |i: usize| picture.get_pixel((i % w * factor) as u32, (i / w * factor) as u32).0;
+    (0..w * h).map(at).collect()
+}
+
+/// With --exposure all terms have one gain, the given one or the one that suits a term; without it each has its own.
+#[test]
+fn terms_can_be_compared_at_one_exposure() {
+    let desk = Desk::new();
+    let line = "series cornell --worlds terms --spp 16";
+    desk.small("own", line);
+    let image = desk.image("own");
+    let layer = |k: usize| image.layer(&format!("T{k:02}")).unwrap();
+    let gains: Vec<f64> = (0..4).map(|k| auto_gain(layer(k))).collect();
+    assert!(gains[3] > 4.0 * gains[1], "the terms fall: {gains:?}");
+    let as_with = |dir: &str, k: usize, gain: f64| {
+        let picture = shown(&desk.path(dir).join(format!("T{k:02}.png")), [16, 16]);
+        picture == develop(16, 16, layer(k), gain).picture.pixels
+    };
+    desk.small("two", &format!("{line} --exposure 2"));
+    desk.small("direct", &format!("{line} --exposure T1"));
+    for k in 0..4 {
+        assert!(as_with("own", k, gains[k]), "T{k} at its own exposure");
+        assert!(as_with("two", k, 2.0), "T{k} at the gain 2");
+        assert!(as_with("direct", k, gains[1]), "T{k} at the gain of T1");
+    }
+    assert!(!as_with("two", 3, gains[3]) && !as_with("direct", 3, gains[3]), "the test sees the gain");
+    let sheet = |dir: &str| std::fs::read(desk.path(dir).join("terms.png")).unwrap();
+    assert!(sheet("own") != sheet("two") && sheet("two") != sheet("direct"), "the contact sheet follows");
+    let page = |dir: &str| std::fs::read_to_string(desk.path(dir).join("index.html")).unwrap();
+    assert!(page("own").contains("its own exposure") && page("two").contains("the same exposure, so"));
+    for (line, says) in [
+        ("series cornell --exposure bright", "`bright` is not auto, a gain such as 2, or a term such as T1"),
+        ("series cornell --exposure 0", "`0` is not auto"),
+        ("series cornell --max-bounces 3 --exposure T4", "the terms end at K = 3"),
+        ("series cornell --worlds path --exposure 2", "asks for no terms"),
+        ("radiosity cornell --modes 2 --exposure 2", "--exposure is for pictures of terms"),
+    ] {
+        let said = desk.run(line);
+        assert_eq!(said.code, 2, "{line}: {}", said.err);
+        assert!(said.err.contains(says), "{line}: {}", said.err);
+    }
+}

@@ -30,6 +30,7 @@ fn sweeps_answer_first_and_briefly() {
     assert_brief(
         "sweep furnace --over branching --values 1,2,3,4,5,6,7,8,9,10,11,12 --size 4x4 --spp 4 --max-bounces 1",
     );
+    assert_brief("sweep cornell --over estimator --size 8x8 --spp 16 --max-bounces 8 --equal-time");
     assert_brief("sweep cornell --over technique --values mis --size 8x8 --spp 1 --max-bounces 2");
     assert_brief("sweep cornell --over spp --estimator single,prefix,path --size 8x8 --max-bounces 3 --spp 64");
     assert_brief("sweep cornell --over spp --reference 64 --size 8x8 --max-bounces 20 --spp 64");

@@ -2,7 +2,7 @@
 
 use crate::cli::choices::{CHANNELS, SOLVERS};
 use crate::cli::options::{Frame, MATRIX, Shared, WHAT, one_of};
-use crate::cli::solve::{Mesh, Pixels, Request};
+use crate::cli::solve::{Mesh, Pictures, Pixels, Request};
 use crate::cli::write::Export;
 use clap::Args;
 use fredholm::solver::comparison::Solvers;
@@ -46,6 +46,9 @@ pub struct Radiosity {
     /// The mesh and its form factors.
     #[command(flatten)]
     pub mesh: Mesh,
+    /// The pictures of the terms.
+    #[command(flatten)]
+    pub pictures: Pictures,
     /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
@@ -53,8 +56,9 @@ pub struct Radiosity {
 
 impl From<&Radiosity> for Request {
     fn from(r: &Radiosity) -> Self {
-        let Radiosity { frame, mesh, pixels, shared, .. } = r.clone();
-        Self { frame, worlds: vec![], terms: Default::default(), light: Default::default(), pixels, mesh, shared }
+        let Radiosity { frame, mesh, pixels, pictures, shared, .. } = r.clone();
+        let (terms, light) = (Default::default(), Default::default());
+        Self { frame, worlds: vec![], terms, light, pixels, mesh, pictures, shared }
     }
 }
 

@@ -9,9 +9,14 @@ mod solvers;
 use super::base::{Ending, Failure, usage};
 use super::solve;
 pub use args::Radiosity;
+use fredholm::report::image::exposure::Exposure;
 
 /// Renders the radiosity solution, compares solvers, or finds the spectrum of T.
 pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
+    if args.pictures.exposure != Exposure::Auto && (args.solver.is_some() || args.modes.is_some()) {
+        let what = "--exposure is for pictures of terms, and --solver and --modes make none";
+        return Err(usage(what, "leave it out"));
+    }
     match (args.solver, args.modes) {
         (Some(name), _) => solvers::run(args, name),
         (None, Some(count)) => modes::run(args, count.into()),

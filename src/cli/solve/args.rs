@@ -8,9 +8,10 @@
 //! | [`Light`] | technique, guide, roulette | yes | yes | yes | |
 //! | [`Pixels`] | directions, lights, points, time | yes | yes | yes | yes |
 //! | [`Mesh`] | patches, form factors | yes | yes | | yes |
+//! | [`Pictures`] | exposure of the terms | yes | yes | | yes |
 
 use crate::cli::choices::{ESTIMATORS, FORMS, GUIDES, LIGHTS, POINTS, SAMPLINGS, TECHNIQUES, WORLDS};
-use crate::cli::options::{Frame, HOW, MATRIX, Shared, WHAT, duration, grading, one_of};
+use crate::cli::options::{Frame, HOW, MATRIX, OUTPUT, Shared, WHAT, duration, grading, one_of};
 use clap::Args;
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::Estimator;
@@ -18,6 +19,7 @@ use fredholm::engine::discretisation::{Factors, Form};
 use fredholm::engine::guided::Guiding;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::math::Points;
+use fredholm::report::image::exposure::Exposure;
 use fredholm::scene::{Selection, bsdf::Sampling};
 use fredholm::study::roulette::Schedule;
 use fredholm::terms::World;
@@ -41,6 +43,9 @@ pub struct Tour {
     /// The matrix.
     #[command(flatten)]
     pub mesh: Mesh,
+    /// The pictures of the terms.
+    #[command(flatten)]
+    pub pictures: Pictures,
     /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
@@ -67,6 +72,9 @@ pub struct Series {
     /// The matrix.
     #[command(flatten)]
     pub mesh: Mesh,
+    /// The pictures of the terms.
+    #[command(flatten)]
+    pub pictures: Pictures,
     /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
@@ -223,6 +231,18 @@ impl Default for Mesh {
     }
 }
 
+/// How the terms are shown.
+#[derive(Clone, Copy, Debug, Default, Args)]
+#[command(next_help_heading = OUTPUT)]
+pub struct Pictures {
+    /// Exposure of the terms: auto, a gain, or T1
+    ///
+    /// With `auto` each picture of a term has the gain that suits it. A number is the gain of all of them and of terms.png, for
+    /// example 2. A term, such as T1, gives all of them the gain that suits this term; then their brightness can be compared.
+    #[arg(long, default_value_t = Exposure::Auto, value_name = "GAIN|Tk", hide_short_help = true)]
+    pub exposure: Exposure,
+}
+
 /// Long help for `--roulette`: the schedules.
 const ROULETTE: &str = "Russian roulette: when paths end
 
@@ -256,27 +276,29 @@ pub struct Request {
     pub light: Light,
     pub pixels: Pixels,
     pub mesh: Mesh,
+    pub pictures: Pictures,
     pub shared: Shared,
 }
 
 impl From<&Tour> for Request {
     fn from(t: &Tour) -> Self {
-        let Tour { frame, worlds, light, pixels, mesh, shared } = t.clone();
-        Self { frame, worlds: worlds.worlds, terms: Terms::default(), light, pixels, mesh, shared }
+        let Tour { frame, worlds, light, pixels, mesh, pictures, shared } = t.clone();
+        Self { frame, worlds: worlds.worlds, terms: Terms::default(), light, pixels, mesh, pictures, shared }
     }
 }
 
 impl From<&Series> for Request {
     fn from(s: &Series) -> Self {
-        let Series { frame, worlds, terms, light, pixels, mesh, shared } = s.clone();
-        Self { frame, worlds: worlds.worlds, terms, light, pixels, mesh, shared }
+        let Series { frame, worlds, terms, light, pixels, mesh, pictures, shared } = s.clone();
+        Self { frame, worlds: worlds.worlds, terms, light, pixels, mesh, pictures, shared }
     }
 }
 
 impl From<&Render> for Request {
     fn from(r: &Render) -> Self {
         let Render { frame, light, pixels, shared } = r.clone();
-        Self { frame, worlds: vec![], terms: Terms::default(), light, pixels, mesh: Mesh::default(), shared }
+        let (terms, mesh, pictures) = (Terms::default(), Mesh::default(), Pictures::default());
+        Self { frame, worlds: vec![], terms, light, pixels, mesh, pictures, shared }
     }
 }
 

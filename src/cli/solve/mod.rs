@@ -9,11 +9,12 @@ use super::open::Opened;
 use super::session::Session;
 use super::write::{self, Export};
 use super::{notes, preflight};
-pub use args::{Mesh, Pixels, Render, Request, Series, Tour};
+pub use args::{Mesh, Pictures, Pixels, Render, Request, Series, Tour};
 use fredholm::engine::by_rays::Estimator;
 use fredholm::engine::discretisation::{Factors, Form};
 use fredholm::engine::guided::{self, Guiding};
 use fredholm::estimator::Roulette;
+use fredholm::report::image::exposure::Exposure;
 use fredholm::study::roulette::Schedule;
 use fredholm::study::run::{Asked, Run};
 use fredholm::terms::World;
@@ -75,13 +76,14 @@ fn solve(args: &Request, default: &Default) -> Result<Ending, Failure> {
     let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size.or(built_in_size))?;
     let mut run = plan(args, default, opened)?;
     session.make_folder(&format!("{}{}", run.description.name, default.name))?;
-    session.preview(write::preview(&session.folder, session.caption()));
+    let exposure = args.pictures.exposure;
+    session.preview(write::preview(&session.folder, session.caption(), exposure));
     run.solve(session.progress())?;
     if run.is_empty() {
         return Ok(session.nothing_to_save(""));
     }
     session.clear();
-    let summary = write::all(&run, &session.folder, default.export, || session.record())?;
+    let summary = write::all(&run, &session.folder, default.export, exposure, || session.record())?;
     session.sign(&summary)?;
     session.warn(&notes::warnings(&run));
     session.show(&summary, || text::people(&run, &summary, &session, default.next))?;
@@ -100,6 +102,7 @@ fn plan(args: &Request, default: &Default, opened: Opened) -> Result<Run, Failur
     preflight::suits_a_matrix(&description, &mut worlds, by_name)?;
     preflight::fits_in_a_matrix(&scene, factors, &mut worlds, by_name)?;
     let estimators = estimators(args, default, &worlds)?;
+    can_be_exposed(args.pictures.exposure, settings.max_bounces, &worlds)?;
     for &estimator in &estimators {
         preflight::tree_can_be_walked(estimator, &settings, description.camera.size)?;
     }
@@ -122,6 +125,21 @@ fn plan(args: &Request, default: &Default, opened: Opened) -> Result<Run, Failur
     }
     let asked = asked(args, worlds, estimators);
     Ok(Run::new(description, scene, settings, asked))
+}
+
+/// Refuses an exposure if no term is shown, or if its term is not among those that are kept.
+fn can_be_exposed(exposure: Exposure, last: usize, worlds: &[World]) -> Result<(), Failure> {
+    if exposure != Exposure::Auto && !worlds.iter().any(|w| *w != World::Path) {
+        let what = "--exposure is for the pictures of the terms T^k E, but --worlds asks for no terms";
+        return Err(usage(what, "leave --exposure out, or add terms to --worlds"));
+    }
+    match exposure {
+        Exposure::Term(k) if k > last => {
+            let what = format!("--exposure T{k} needs the term k = {k}, but the terms end at K = {last}");
+            Err(usage(&what, &format!("choose T0 to T{last}, or raise --max-bounces")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The estimators of the terms, if these are asked for.

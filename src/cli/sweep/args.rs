@@ -11,6 +11,7 @@ use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::math::Points;
 use fredholm::math::names::list;
+use fredholm::report::figures::sweep::Budget;
 use fredholm::scene::{Selection, bsdf::Sampling};
 use fredholm::study::roulette::Schedule;
 use std::fmt;
@@ -21,6 +22,7 @@ pub const HELP: &str = "Examples:
   fredholm sweep furnace --over branching --sampling uniform --spp 64
   fredholm sweep cornell --over technique --max-bounces 4 --size 64x64
   fredholm sweep cornell --over estimator --values prefix,single --equal-rays
+  fredholm sweep cornell --over sampling --equal-time
   fredholm sweep cornell --over patches
   fredholm sweep cube --over patches --grading 1.5 --values 96,384,1536
   fredholm sweep cornell --over patches --values 129,516,2064 --eigenvalues 6
@@ -39,7 +41,8 @@ and summary.json.
 
 A sweep over branching has 32 samples per pixel and K = 4 by default.
 
-All others write sweep.csv, sweep.svg, sweep.png and summary.json. V is the variance of one sample, averaged over the pixels. \
+All others write pictures.png, sweep.csv, sweep.svg, sweep.png and summary.json. pictures.png shows the image of every value at \
+one exposure, with its noise and its efficiency. V is the variance of one sample, averaged over the pixels. \
 1/(V rays) is the efficiency: twice the efficiency means half the rays for the same error.";
 
 /// A setting that can be swept over.
@@ -130,6 +133,13 @@ pub struct Sweep {
     /// Gives every value the rays of the most expensive one, in place of the same number of samples.
     #[arg(long, help_heading = HOW)]
     pub equal_rays: bool,
+    /// Same time for every value
+    ///
+    /// Gives every value the samples that fit into the time of the most expensive one, in place of the same number of samples. A
+    /// short pilot measures the time of a sample of every value. The numbers of samples, and with them the results, depend on the
+    /// machine and its load; they are printed. A render with --spp N repeats a value.
+    #[arg(long, help_heading = HOW)]
+    pub equal_time: bool,
     /// With --over spp: reference for the squared error
     ///
     /// Either a run's output folder, or a number of samples per pixel for a separate render with independent random numbers. Its
@@ -173,6 +183,12 @@ impl Sweep {
     /// K: by default 8, or 4 in a sweep over branching, where the number of rays grows like N^K.
     pub fn max_bounces(&self) -> usize {
         self.frame.max_bounces.unwrap_or(if self.over == Over::Branching { 4 } else { 8 }).into()
+    }
+
+    /// What all values have in common besides the number of samples, if anything.
+    pub fn budget(&self) -> Option<Budget> {
+        let rays = self.equal_rays.then_some(Budget::Rays);
+        rays.or(self.equal_time.then_some(Budget::Time))
     }
 
     /// The settings that cannot be lists, with the default roulette.
@@ -229,14 +245,19 @@ impl Sweep {
                 "leave them out, or use --over patches",
             ),
             (
-                self.equal_rays && spp,
-                "--equal-rays would make every spp the same",
+                self.equal_rays && self.equal_time,
+                "--equal-rays and --equal-time exclude each other",
+                "choose one of them",
+            ),
+            (
+                (self.equal_rays || self.equal_time) && spp,
+                "--equal-rays and --equal-time choose the numbers of samples, which --over spp sweeps over",
                 "leave it out, or sweep something else",
             ),
             (
-                self.equal_rays && split,
+                (self.equal_rays || self.equal_time) && split,
                 "--over split gives every way about the same rays already",
-                "leave --equal-rays out",
+                "leave --equal-rays and --equal-time out",
             ),
             (
                 self.values.is_some() && split,

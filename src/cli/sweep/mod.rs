@@ -1,6 +1,8 @@
 //! `fredholm sweep [SCENE] --over SETTING`: one setting, several values.
 
 mod args;
+mod budget;
+mod case;
 mod patches;
 mod reference;
 mod split;

@@ -22,6 +22,10 @@ const USUAL: &str = "38,150,600,2400";
 pub fn run(args: &Sweep) -> Result<Ending, Failure> {
     let mut session = Session::new(&args.shared, args.frame.seed)?;
     let sizes = sizes(args)?;
+    if args.budget().is_some() {
+        let what = "--equal-rays and --equal-time are for values with samples of their own";
+        return Err(usage(what, "leave it out: all meshes are seen along the same rays"));
+    }
     let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size)?;
     let (description, scene) = (opened.description, opened.scene.select_lights(args.lights));
     preflight::has_a_matrix(&description, &scene, Factors::Dense)?;

@@ -12,6 +12,7 @@ use files::{Files, Pixels};
 use fredholm::engine::by_matrix::Discrete;
 use fredholm::engine::radius::radius_limit;
 use fredholm::report::figures::bounces;
+use fredholm::report::image::exposure::Exposure;
 use fredholm::report::image::typeset::Caption;
 use fredholm::report::text::summary::{self, Summary};
 use fredholm::stats::{Limit, Rate};
@@ -26,7 +27,7 @@ pub use pictures::z_values;
 use std::path::Path;
 
 /// Writes a preview after every pass: the contact sheet of the terms so far.
-pub fn preview(folder: &Path, caption: Caption) -> impl Fn(&TermFilm) + Sync + Send + use<> {
+pub fn preview(folder: &Path, caption: Caption, exposure: Exposure) -> impl Fn(&TermFilm) + Sync + Send + use<> {
     let folder = folder.to_path_buf();
     move |film: &TermFilm| {
         let slots = film.shape.slots;
@@ -34,22 +35,34 @@ pub fn preview(folder: &Path, caption: Caption) -> impl Fn(&TermFilm) + Sync + S
         if slots > 1 && film.least_samples() <= 64 {
             let images: Vec<Pixels> = (0..slots - 1).map(|s| TermImage::of(film, s..s + 1).mean).collect();
             // an error is ignored here, because writing the final files reports the same error
-            let _ =
-                terms_sheet(film.shape.size, &images, None, &caption, &format!("{} spp so far", film.least_samples()))
-                    .and_then(|s| s.picture.write(&folder.join("terms.png")).map_err(Failure::from));
+            let _ = terms_sheet(
+                exposure,
+                film.shape.size,
+                &images,
+                None,
+                &caption,
+                &format!("{} spp so far", film.least_samples()),
+            )
+            .and_then(|s| s.picture.write(&folder.join("terms.png")).map_err(Failure::from));
         }
     }
 }
 
 /// Writes all files of a run into a folder and returns the complete record. `record` gives its common part.
-pub fn all(run: &Run, folder: &Path, export: Option<Export>, record: impl Fn() -> Summary) -> Result<Summary, Failure> {
+pub fn all(
+    run: &Run,
+    folder: &Path,
+    export: Option<Export>,
+    exposure: Exposure,
+    record: impl Fn() -> Summary,
+) -> Result<Summary, Failure> {
     let mut out = Files { folder: folder.to_path_buf(), names: vec![], record: record() };
     let Summary { command, seed, scene, .. } = record();
     let caption = Caption { command, seed, scene };
     let size = run.description.camera.size;
     let trust = pictures::pixel_errors(run);
     pictures::write_exr(run, &trust, &mut out, size)?;
-    pictures::write_pictures(run, &mut out, size, &caption)?;
+    pictures::write_pictures(run, &mut out, size, exposure, &caption)?;
     if !run.strategies.is_empty() {
         out.names.extend(strategies::FILES.map(str::to_owned));
         strategies::write(folder, &run.strategies, size.map(|s| s as usize), &caption, &out.attributes(run))?;
@@ -62,7 +75,7 @@ pub fn all(run: &Run, folder: &Path, export: Option<Export>, record: impl Fn() -
     out.names.push("summary.json".into());
     let files = out.names.clone();
     let summary = Summary { pixel_errors: trust, files, ..summarise(run, record()) };
-    page::write_page(run, &out, &summary)?;
+    page::write_page(run, &out, exposure, &summary)?;
     Ok(summary)
 }
 

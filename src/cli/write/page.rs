@@ -3,13 +3,20 @@
 use super::files::Files;
 use crate::cli::answer;
 use crate::cli::base::Failure;
+use fredholm::report::image::exposure::Exposure;
 use fredholm::report::page::html::{self, Page, Plate};
 use fredholm::report::text::sentence::sentence;
 use fredholm::report::text::summary;
 use fredholm::report::text::summary::VerdictRecord;
 use fredholm::study::run::{Run, RunVerdict};
 
-pub(super) fn write_page(run: &Run, out: &Files, summary: &summary::Summary) -> Result<(), Failure> {
+pub(super) fn write_page(
+    run: &Run,
+    out: &Files,
+    exposure: Exposure,
+    summary: &summary::Summary,
+) -> Result<(), Failure> {
+    let each = exposure == Exposure::Auto;
     let path = |name: &str| out.path(name);
     let [sheet, direct, decay, variance, z] =
         ["terms.png", "direct.png", "decay.svg", "variance.svg", "z.png"].map(path);
@@ -37,7 +44,7 @@ pub(super) fn write_page(run: &Run, out: &Files, summary: &summary::Summary) -> 
                 path: &alone,
             },
         ),
-        ("terms.png", Plate::terms(&sheet)),
+        ("terms.png", if each { Plate::terms(&sheet) } else { Plate::terms_at_one_exposure(&sheet) }),
         ("direct.png", Plate::direct_and_indirect(&direct)),
         ("decay.svg", Plate::decay(&decay)),
         ("variance.svg", Plate::variance(&variance)),
@@ -76,7 +83,7 @@ pub(super) fn write_page(run: &Run, out: &Files, summary: &summary::Summary) -> 
         series: run.results().map(|s| (s.series.label.clone(), s.series.image())).collect(),
         command: summary.command.clone(),
         facts: facts.collect(),
-        files: out.names.iter().map(|n| (n.clone(), meaning(n).to_string())).collect(),
+        files: out.names.iter().map(|n| (n.clone(), meaning(n, each).to_string())).collect(),
     };
     html::write(&out.path("index.html"), &page)?;
     Ok(())
@@ -87,7 +94,8 @@ fn comparison(verdict: &RunVerdict) -> (String, Vec<VerdictRecord>) {
     (sentence(verdict.sides, &verdict.comparison), summary::verdicts(verdict.name, &verdict.comparison))
 }
 
-fn meaning(name: &str) -> &'static str {
+/// What a file holds. `each`: every term has its own exposure.
+fn meaning(name: &str, each: bool) -> &'static str {
     match name {
         "terms.exr" => "every image with its standard error, float32, one layer each",
         "summary.json" => "every number of this page, for programs",
@@ -105,6 +113,7 @@ fn meaning(name: &str) -> &'static str {
         n if n.starts_with("decay") => "decay of the terms",
         n if n.starts_with("variance") => "variance against samples per pixel",
         n if n.starts_with("partial") => "partial sum at the exposure of the whole",
-        _ => "one term, auto-exposed",
+        _ if each => "one term at its own exposure",
+        _ => "one term at the exposure of all terms",
     }
 }

@@ -4,6 +4,7 @@ use super::files::{Files, Pixels};
 use crate::cli::base::Failure;
 use fredholm::engine::by_rays::Sampled;
 use fredholm::report::image::contact_sheet::{self, Cell, Sheet, direct_and_indirect, single};
+use fredholm::report::image::exposure::Exposure;
 use fredholm::report::image::exr;
 use fredholm::report::image::picture;
 use fredholm::report::image::typeset::{Caption, superscript};
@@ -77,17 +78,26 @@ pub(super) fn write_exr(run: &Run, trust: &[PixelErrors], out: &mut Files, size:
     Ok(())
 }
 
-pub(super) fn write_pictures(run: &Run, out: &mut Files, size: [u32; 2], caption: &Caption) -> Result<(), Failure> {
+pub(super) fn write_pictures(
+    run: &Run,
+    out: &mut Files,
+    size: [u32; 2],
+    exposure: Exposure,
+    caption: &Caption,
+) -> Result<(), Failure> {
     let [w, h] = size.map(|s| s as usize);
     let shown = run.terms.first().or(run.radiosity.as_ref().map(|r| &r.fine));
     if let Some(s) = shown {
+        let common = exposure.gain(&s.terms.iter().map(|t| t.mean.as_slice()).collect::<Vec<_>>());
         for (k, image) in s.terms.iter().enumerate() {
-            let (picture, _) = single(&format!("T{}E", superscript(k)), w, h, &image.mean, None)?;
+            let (picture, _) = single(&format!("T{}E", superscript(k)), w, h, &image.mean, common)?;
             picture.picture.write(&out.add(&format!("T{k:02}.png")))?;
         }
         let means: Vec<Pixels> = s.terms.iter().map(|t| t.mean.clone()).collect();
         let note = format!("{}, {} spp", s.series.label, s.spp);
-        terms_sheet(size, &means, Some(&s.total.mean), caption, &note)?.picture.write(&out.add("terms.png"))?;
+        terms_sheet(exposure, size, &means, Some(&s.total.mean), caption, &note)?
+            .picture
+            .write(&out.add("terms.png"))?;
         // partial sums at the exposure of the whole
         let gain = Some(whole_gain(&s.total.mean, s.terms.first()));
         let mut partial: Pixels = vec![[0.0; 3]; w * h];
@@ -142,6 +152,7 @@ fn add(sum: &mut Pixels, image: &Pixels) {
 }
 
 pub(super) fn terms_sheet(
+    exposure: Exposure,
     [w, h]: [u32; 2],
     images: &[Pixels],
     whole: Option<&Pixels>,
@@ -149,7 +160,8 @@ pub(super) fn terms_sheet(
     note: &str,
 ) -> Result<Sheet, Failure> {
     let images: Vec<&[[f32; 3]]> = images.iter().map(Vec::as_slice).collect();
-    Ok(contact_sheet::terms(w as usize, h as usize, &images, whole.map(Vec::as_slice), note, caption)?)
+    let (gain, whole) = (exposure.gain(&images), whole.map(Vec::as_slice));
+    Ok(contact_sheet::terms_at(gain, w as usize, h as usize, &images, whole, note, caption)?)
 }
 
 /// z for each pixel: the mean over the channels of a − b, divided by its standard error. The channels are treated as fully

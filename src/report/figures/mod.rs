@@ -12,6 +12,7 @@ pub mod homework;
 pub mod lit;
 pub mod modes;
 pub mod patches;
+mod pictures;
 pub mod pyramid;
 mod rate;
 pub mod refine;

@@ -269,5 +269,5 @@ pub fn sheet(
     let tiles: Vec<Tile> = modes.iter().map(tile).collect();
     let places = in_rows(tiles.len(), columns_in(1216.0, &tiles).min(4));
     let foot = Some("red: positive, blue: negative, white: zero; each at its own scale (99th percentile)");
-    Layout { title, tiles: &tiles, places: &places, heads: &[], foot, scale: 1 }.draw(caption)
+    Layout { title, tiles: &tiles, places: &places, heads: &[], foot, scale: 1.0 }.draw(caption)
 }

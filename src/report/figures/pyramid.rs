@@ -85,7 +85,7 @@ pub fn draw(
     let exposure = |gain: f64| if common { gain_label(gain) } else { String::new() };
     let head = |(k, &gain): (usize, &f64)| [format!("T{}E", superscript(k)), exposure(gain)];
     let heads: Vec<_> = gains.iter().enumerate().map(head).collect();
-    Layout { title, tiles: &tiles, places: &places, heads: &heads, foot: None, scale: 1 }.draw(caption)
+    Layout { title, tiles: &tiles, places: &places, heads: &heads, foot: None, scale: 1.0 }.draw(caption)
 }
 
 /// A table with a row per strategy: its contribution, its estimate without weight, and the variance of both.

@@ -136,7 +136,7 @@ fn laid_out(
     }
     let columns = columns.unwrap_or_else(|| balanced(&tiles));
     let places = in_rows(tiles.len(), columns);
-    let picture = Layout { title, tiles: &tiles, places: &places, heads: &[], foot: None, scale: 1 }.draw(caption)?;
+    let picture = Layout { title, tiles: &tiles, places: &places, heads: &[], foot: None, scale: 1.0 }.draw(caption)?;
     Ok(Sheet { picture, clipped })
 }
 
@@ -167,14 +167,30 @@ pub fn terms(
     note: &str,
     caption: &Caption,
 ) -> Result<Sheet, ReportError> {
+    terms_at(None, width, height, terms, whole, note, caption)
+}
+
+/// The sheet of [`terms`()] with the same gain for all pictures, if one is given.
+///
+/// # Errors
+/// As for [`grid`].
+pub fn terms_at(
+    gain: Option<f64>,
+    width: usize,
+    height: usize,
+    terms: &[&[[f32; 3]]],
+    whole: Option<&[[f32; 3]]>,
+    note: &str,
+    caption: &Caption,
+) -> Result<Sheet, ReportError> {
     let name = |k: usize| match k {
         0 => "T⁰E: emission".to_string(),
         1 => "T¹E: direct light".to_string(),
         k => format!("T{}E", superscript(k)),
     };
     let mut cells: Vec<Cell> =
-        terms.iter().enumerate().map(|(k, pixels)| Cell { label: name(k), pixels, gain: None }).collect();
-    cells.extend(whole.map(|pixels| Cell { label: "Σ, all k".into(), pixels, gain: None }));
+        terms.iter().enumerate().map(|(k, pixels)| Cell { label: name(k), pixels, gain }).collect();
+    cells.extend(whole.map(|pixels| Cell { label: "Σ, all k".into(), pixels, gain }));
     grid(&format!("The terms of L = Σ TᵏE, {note}"), width, height, &cells, caption)
 }
 

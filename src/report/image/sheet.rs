@@ -1,8 +1,8 @@
-//! A sheet: a title, rows of pictures with text above and below each, and the caption.
+//! A sheet: a title, rows of pictures with text above and below each, and the caption. All lengths of text can be scaled.
 
 use super::{
     picture::Picture,
-    typeset::{Caption, LINE, SANS, caption_elements, page_at, text_element, text_width},
+    typeset::{Caption, LINE, SANS, caption_elements, page, text_element, text_width},
 };
 use crate::report::ReportError;
 
@@ -11,7 +11,8 @@ pub(super) const LABEL: f64 = 14.0;
 const NOTE: f64 = 12.0;
 const SMALL: f64 = 10.5;
 const TITLE: f64 = 18.0;
-const GAP: f64 = 16.0;
+/// Distance between tiles, and around all of them.
+pub(super) const GAP: f64 = 16.0;
 const NARROWEST: f64 = 400.0;
 const DIM: &str = "fill=\"#333333\"";
 const BOLD: &str = "font-weight=\"bold\"";
@@ -39,22 +40,28 @@ pub struct Layout<'a> {
     pub places: &'a [(f64, usize)],
     /// Text to the left of each row: a large line and a small one. If empty, there is none.
     pub heads: &'a [[String; 2]],
-    /// A line of text below all tiles.
+    /// Text below all tiles; it may have several lines.
     pub foot: Option<&'a str>,
-    /// Pixels per CSS pixel: 1 for a screen, 2 for a projector. The pictures keep their pixels, text and gaps grow.
-    pub scale: usize,
+    /// Text and gaps are this many times as large as usual: 1 for a screen, 2 for a projector, whose sheets are at least
+    /// [`SLIDE`] pixels wide. The pictures keep their pixels.
+    pub scale: f64,
+}
+
+/// Width of the widest text of a tile: its label or one of its notes.
+pub(super) fn words(label: &str, notes: &[String], scale: f64) -> f64 {
+    let notes = notes.iter().map(|note| text_width(note, SANS, NOTE * scale));
+    notes.fold(text_width(label, SANS, LABEL * scale), f64::max)
 }
 
 /// Width of a tile without the gap: the width of its picture or of its widest text.
-fn room(tiles: &[Tile], scale: usize) -> f64 {
-    let notes = tiles.iter().flat_map(|t| &t.notes).map(|note| text_width(note, SANS, NOTE));
-    let words = notes.chain(tiles.iter().map(|t| text_width(&t.label, SANS, LABEL)));
-    words.fold(tiles.first().map_or(0.0, |t| t.image.width as f64 / scale as f64), f64::max).ceil()
+fn room(tiles: &[Tile], scale: f64) -> f64 {
+    let widest = tiles.iter().map(|t| words(&t.label, &t.notes, scale));
+    widest.fold(tiles.first().map_or(0.0, |t| t.image.width as f64), f64::max).ceil()
 }
 
 /// Number of columns that fit in `width` pixels: at least one, and at most the number of tiles.
 pub fn columns_in(width: f64, tiles: &[Tile]) -> usize {
-    (((width - GAP) / (room(tiles, 1) + GAP)).floor() as usize).clamp(1, tiles.len().max(1))
+    (((width - GAP) / (room(tiles, 1.0) + GAP)).floor() as usize).clamp(1, tiles.len().max(1))
 }
 
 /// A sheet for a projector, [`SLIDE`] pixels wide: the pictures in `columns`, row by row.
@@ -69,7 +76,7 @@ pub fn slide(
     caption: &Caption,
 ) -> Result<Picture, ReportError> {
     let places = in_rows(tiles.len(), columns);
-    Layout { title, tiles, places: &places, heads: &[], foot, scale: 2 }.draw(caption)
+    Layout { title, tiles, places: &places, heads: &[], foot, scale: 2.0 }.draw(caption)
 }
 
 /// Places tiles row by row: column and row of each.
@@ -78,60 +85,55 @@ pub fn in_rows(tiles: usize, columns: usize) -> Vec<(f64, usize)> {
 }
 
 impl Layout<'_> {
-    /// Least width in CSS pixels: a sheet for a projector is [`SLIDE`] pixels wide.
-    fn at_least(&self) -> f64 {
-        if self.scale > 1 { (SLIDE / self.scale) as f64 } else { 0.0 }
-    }
-
     /// Draws the text first, then copies the pictures to their places.
     ///
     /// # Errors
     /// If the text cannot be drawn.
     pub fn draw(&self, caption: &Caption) -> Result<Picture, ReportError> {
-        let scale = self.scale as f64;
-        let image_h = self.tiles.first().map_or(0.0, |t| t.image.height as f64 / scale);
+        let scale = self.scale;
+        let [title, label, note, small, gap] = [TITLE, LABEL, NOTE, SMALL, GAP].map(|length| scale * length);
+        let image_h = self.tiles.first().map_or(0.0, |t| t.image.height as f64);
         let below = self.tiles.iter().map(|t| t.notes.len()).max().unwrap_or(0) as f64;
-        let (cell_w, cell_h) = (room(self.tiles, self.scale) + GAP, LABEL * LINE + image_h + below * NOTE * LINE + GAP);
+        let (cell_w, cell_h) = (room(self.tiles, scale) + gap, label * LINE + image_h + below * note * LINE + gap);
         let heads =
-            self.heads.iter().map(|[large, small]| text_width(large, SANS, TITLE).max(text_width(small, SANS, NOTE)));
-        let left = GAP + heads.map(|w| w + GAP).fold(0.0, f64::max).ceil();
-        let top = GAP + TITLE * LINE;
+            self.heads.iter().map(|[large, small]| text_width(large, SANS, title).max(text_width(small, SANS, note)));
+        let left = gap + heads.map(|w| w + gap).fold(0.0, f64::max).ceil();
+        let top = gap + title * LINE;
         let corner = |(column, row): (f64, usize)| (left + column * cell_w, top + row as f64 * cell_h);
 
+        let foot: Vec<&str> = self.foot.iter().flat_map(|foot| foot.lines()).collect();
         let right = self.places.iter().map(|&place| corner(place).0 + cell_w).fold(0.0, f64::max);
-        let words =
-            text_width(self.title, SANS, TITLE).max(self.foot.map_or(0.0, |foot| text_width(foot, SANS, SMALL)));
-        let width = right.max(words + 2.0 * GAP).max(NARROWEST).max(self.at_least()).ceil();
+        let words = foot.iter().map(|line| text_width(line, SANS, small));
+        let words = words.fold(text_width(self.title, SANS, title), f64::max);
+        let width = right.max(words + 2.0 * gap).max(if scale > 1.0 { SLIDE as f64 } else { NARROWEST }).ceil();
         let bottom = self.places.iter().map(|&place| corner(place).1 + cell_h).fold(top, f64::max);
-        let lines = caption.lines(width - 2.0 * GAP, SMALL);
-        let small = lines.len() + usize::from(self.foot.is_some());
-        let height = (bottom + small as f64 * SMALL * LINE + GAP).ceil();
+        let lines = caption.lines(width - 2.0 * gap, small);
+        let height = (bottom + (lines.len() + foot.len()) as f64 * small * LINE + gap).ceil();
 
-        let mut text = text_element(GAP, GAP + TITLE * 0.8, TITLE, SANS, "", self.title);
+        let mut text = text_element(gap, gap + title * 0.8, title, SANS, "", self.title);
         for (row, [large, small]) in self.heads.iter().enumerate() {
-            let y = corner((0.0, row)).1 + LABEL * LINE + 0.5 * image_h;
-            text += &text_element(GAP, y, TITLE, SANS, BOLD, large);
-            text += &text_element(GAP, y + LABEL * LINE, NOTE, SANS, DIM, small);
+            let y = corner((0.0, row)).1 + label * LINE + 0.5 * image_h;
+            text += &text_element(gap, y, title, SANS, BOLD, large);
+            text += &text_element(gap, y + label * LINE, note, SANS, DIM, small);
         }
         for (tile, &place) in self.tiles.iter().zip(self.places) {
             let (x, y) = corner(place);
-            text += &text_element(x, y + LABEL, LABEL, SANS, BOLD, &tile.label);
-            for (line, note) in tile.notes.iter().enumerate() {
-                let below = y + LABEL * LINE + image_h + NOTE * (1.2 + line as f64 * LINE);
-                text += &text_element(x, below, NOTE, SANS, DIM, note);
+            text += &text_element(x, y + label, label, SANS, BOLD, &tile.label);
+            for (line, words) in tile.notes.iter().enumerate() {
+                let below = y + label * LINE + image_h + note * (1.2 + line as f64 * LINE);
+                text += &text_element(x, below, note, SANS, DIM, words);
             }
         }
-        let mut y = bottom + SMALL;
-        if let Some(foot) = self.foot {
-            text += &text_element(GAP, y, SMALL, SANS, DIM, foot);
-            y += SMALL * LINE;
+        let mut y = bottom + small;
+        for line in foot {
+            text += &text_element(gap, y, small, SANS, DIM, line);
+            y += small * LINE;
         }
-        text += &caption_elements(&lines, GAP, y, SMALL);
-        let mut picture = page_at(self.scale, width as usize, height as usize, &text)?;
+        text += &caption_elements(&lines, gap, y, small);
+        let mut picture = page(width as usize, height as usize, &text)?;
         for (tile, &place) in self.tiles.iter().zip(self.places) {
             let (x, y) = corner(place);
-            let at = [x, y + LABEL * LINE].map(|v| (v * scale).round() as usize);
-            picture.paste(&tile.image, at[0], at[1]);
+            picture.paste(&tile.image, x.round() as usize, (y + label * LINE).round() as usize);
         }
         Ok(picture)
     }

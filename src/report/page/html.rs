@@ -64,7 +64,7 @@ pub struct Plate<'a> {
 }
 
 impl<'a> Plate<'a> {
-    /// The contact sheet of all terms.
+    /// The contact sheet of all terms, each with its own exposure.
     pub fn terms(path: &'a Path) -> Self {
         Self {
             heading: "The terms, one by one",
@@ -73,6 +73,13 @@ impl<'a> Plate<'a> {
             alt: "Contact sheet of the terms of the Neumann series",
             path,
         }
+    }
+
+    /// The contact sheet of all terms with one exposure.
+    pub fn terms_at_one_exposure(path: &'a Path) -> Self {
+        let text = "Each picture is the light that has been scattered exactly k times. All pictures have the same exposure, so \
+                    their brightness can be compared.";
+        Self { text, ..Self::terms(path) }
     }
 
     /// Direct beside direct plus indirect light.

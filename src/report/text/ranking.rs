@@ -37,7 +37,7 @@ pub struct Candidate {
 }
 
 /// The ratio of two works with its standard error.
-fn ratio(a: &Candidate, b: &Candidate) -> (f64, f64) {
+pub(crate) fn ratio(a: &Candidate, b: &Candidate) -> (f64, f64) {
     let ratio = a.work / b.work;
     let r = a.without.len() as f64;
     if r < 3.0 || a.without.len() != b.without.len() {

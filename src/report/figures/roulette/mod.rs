@@ -12,9 +12,11 @@
 mod answer;
 mod figure;
 mod optima;
+mod pictures;
 mod rows;
 
 pub use answer::{answer, quantity, small_table, verified};
 pub use figure::draw;
 pub use optima::{Shares, optima};
+pub use pictures::{Shown, pictures};
 pub use rows::{Row, csv, table};

@@ -16,11 +16,15 @@
 //! Reference: Hammersley and Handscomb, *Monte Carlo Methods* (1964), section 3.
 
 mod answer;
+mod budget;
 pub mod fall;
 pub mod fall_answer;
 mod figure;
+mod pictures;
 mod rows;
 
 pub use answer::{answer, small_table};
+pub use budget::{Budget, budget_table};
 pub use figure::draw;
+pub use pictures::{Shown, pictures, reflected};
 pub use rows::{Row, Sweep, csv, table};

@@ -1,6 +1,8 @@
 //! `fredholm roulette [SCENE]`: predicts schedules from the cross moments of one recording, verifies them by rendering, and
 //! finds the best one for the whole image and for indirect light.
 
+mod measure;
+
 use super::base::{Ending, Failure, names, usage};
 use super::choices::{AIMS, LIGHTS, SAMPLINGS, TECHNIQUES};
 use super::open::Opened;
@@ -12,8 +14,7 @@ use fredholm::engine::Settings;
 use fredholm::engine::by_matrix;
 use fredholm::engine::by_rays::Estimator;
 use fredholm::estimator::{self, Technique};
-use fredholm::progress::Progress;
-use fredholm::report::figures::roulette::{self as rows, Row, Shares};
+use fredholm::report::figures::roulette::{self as rows, Row, Shares, Shown};
 use fredholm::report::text::prose::{listed, wrapped};
 use fredholm::report::text::summary::{self, Summary};
 use fredholm::report::text::table;
@@ -26,6 +27,7 @@ use fredholm::stats::{Noise, Part};
 use fredholm::study::roulette::{self, Aim, Optimal, Radii, Relative, Schedule};
 use fredholm::terms::World;
 use fredholm::terms::cross_moments::Recorded;
+use measure::{measure, rivals};
 
 /// Below `roulette --help`.
 pub const HELP: &str = "Examples:
@@ -46,7 +48,8 @@ Paths are recorded without roulette up to vertex K. A schedule that does not dep
 K, all schedules continue with q = 1 − the largest albedo of the scene. albedo and throughput depend on the path, so they are only \
 measured.
 
-The command writes roulette.csv, roulette.svg, roulette.png and summary.json (with the cross moments). Exit code 1: a measured \
+The command writes roulette.csv, roulette.svg, roulette.png and summary.json (with the cross moments). --verify and --optimise \
+also write pictures.png: the image of every schedule that was rendered, with its noise, at one exposure. Exit code 1: a measured \
 variance contradicts its prediction.";
 
 /// Schedules that are compared unless others are given.
@@ -154,22 +157,20 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
     let predicted = asked.into_iter().filter_map(given);
     let predicted = predicted.map(|(name, s)| predict(name, s, &recorded, &scene, settings.max_bounces));
     let (mut all, schedules): (Vec<Row>, Vec<estimator::Roulette>) = predicted.unzip();
-    measure(args, (&scene, &settings), &mut all, &schedules, session.progress());
+    let shown = measure(args, (&scene, &settings), &mut all, &schedules, session.progress());
 
     let beyond = roulette::beyond(&scene);
+    let doubts = doubts(&all, &description, &scene);
+    let doubtful: Vec<&str> = doubts.iter().map(|d| d.0.as_str()).collect();
     let mut record = Summary {
         spp: args.spp.into(),
         max_bounces: settings.max_bounces,
         cross_moments: Some(summary::cross_moments(&recorded, beyond)),
-        files: names(["roulette.csv", "roulette.png", "roulette.svg", "summary.json"]),
+        files: write(&session, args.spp, &all, &shown, &doubtful)?,
         ..session.record()
     };
     record.bounds.max_albedo = scene.max_albedo().as_dvec3();
-    write_atomically(&session.folder.join("roulette.csv"), rows::csv(&all).as_bytes())?;
-    let title = format!("Roulette schedules of {}: predicted from paths without roulette", record.scene);
-    rows::draw(&all, &title, &session.caption())?.write(&session.folder, "roulette")?;
     session.sign(&record)?;
-    let doubts = doubts(&all, &description, &scene);
     session.warn(&warnings(&doubts, &recorded));
     // a variance that cannot be measured contradicts nothing
     let told = || all.iter().filter(|r| doubts.iter().all(|d| d.0 != r.name));
@@ -186,7 +187,6 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
         let (answer, mut tables) = if args.optimise {
             rows::optima(&all, &shares(&recorded), &args.aims())
         } else {
-            let doubtful: Vec<&str> = doubts.iter().map(|d| d.0.as_str()).collect();
             (rows::answer(&all, &args.aims()), vec![rows::small_table(&all, &doubtful)])
         };
         let named = |d: &&(String, Radii)| !args.optimise || rivals(args).contains(&d.0.as_str());
@@ -205,32 +205,19 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
     Ok(session.ending(contradicted))
 }
 
-/// Renders the schedules that must be rendered.
-fn measure(
-    args: &Args,
-    (scene, settings): (&Scene, &Settings),
-    all: &mut [Row],
-    schedules: &[estimator::Roulette],
-    progress: Progress<'_>,
-) {
-    if args.verify || args.optimise {
-        for (row, schedule) in all.iter_mut().zip(schedules) {
-            if args.verify || rivals(args).contains(&row.name.as_str()) {
-                let measured = roulette::measure(scene, settings, schedule, args.spp, progress);
-                row.measured = measured.map(|m| Noise::measured(&m));
-            }
-        }
+/// Writes the numbers, the figure, and the pictures of the schedules that were rendered. Returns the names of all files.
+fn write(session: &Session, spp: u32, all: &[Row], shown: &[Shown], doubtful: &[&str]) -> Result<Vec<String>, Failure> {
+    let (folder, caption, record) = (&session.folder, session.caption(), session.record());
+    write_atomically(&folder.join("roulette.csv"), rows::csv(all).as_bytes())?;
+    let title = format!("Roulette schedules of {}: predicted from paths without roulette", record.scene);
+    rows::draw(all, &title, &caption)?.write(folder, "roulette")?;
+    let mut files = names(["roulette.csv", "roulette.png", "roulette.svg", "summary.json"]);
+    if !shown.is_empty() {
+        let size = [record.width, record.height];
+        rows::pictures(all, shown, spp, size, doubtful, &caption)?.write(&folder.join("pictures.png"))?;
+        files.insert(0, "pictures.png".into());
     }
-    if args.optimise && !progress.stopped() {
-        let spp = (args.spp / 4).max(1);
-        let seconds = roulette::seconds_per_path(scene, settings, schedules, spp);
-        all.iter_mut().zip(seconds).for_each(|(row, s)| row.seconds = Some(s));
-    }
-}
-
-/// The schedules that --optimise always renders.
-fn rivals(args: &Args) -> Vec<&'static str> {
-    ["lecture", "albedo"].into_iter().chain(args.aims().into_iter().map(Aim::schedule_name)).collect()
+    Ok(files)
 }
 
 /// The settings, for --verbose.
