@@ -142,7 +142,7 @@ pub(crate) fn samples_in(seconds: f64, pilot: &Shot) -> u32 {
 /// `mean ± half width of the 95 % interval`, averaged over the channels.
 pub(crate) fn words(estimate: &Estimate) -> String {
     let (mean, half) = average(estimate);
-    plus_minus(mean, half, 2)
+    plus_minus(mean, half, 1)
 }
 
 /// Seconds in words.
