@@ -265,7 +265,7 @@ fn case(
         let (y, tip) = (at(patch.middle()), at(patch.middle() + 0.8 * patch.normal()));
         page.arrow(y, tip, Stroke::solid(VERMILION, 1.8))?;
         angle(page, y, [tip, x], 26.0, VERMILION)?;
-        maths(page, "θ_y", (y.0 - 46.0, y.1 - 12.0), words(SIZE, VERMILION))?;
+        maths(page, "θ_y", (y.0 - 50.0, y.1 - 22.0), words(SIZE, VERMILION))?;
     }
     let milli = |value: f64, error: f64| format!("{} · 10⁻³ sr", plus_minus(1e3 * value, 1e3 * error, 1));
     let ratio = solid / first;

@@ -260,7 +260,7 @@ fn table(page: &Canvas<'_>, found: &Measured, (left, top): Place) -> Drawn {
     let style = words(SIZE, BLACK);
     let text = format!(
         "± is one standard error of {} repetitions. Prefixes share vertices, so the terms are correlated, and their sum has \
-         more variance per sample. With equally many rays its variance is smaller by a factor of {}. Some paths leave the \
+         more variance per sample. With equally many rays the prefixes have less variance, by a factor of {}. Some paths leave the \
          open box, therefore fewer than {} and {} rays.",
         found.repetitions,
         significant(found.gain.value, 2),

@@ -1,13 +1,13 @@
 //! The choice of a path that shows all decisions and is easy to see: a search over pixels and samples.
 //!
 //! ```text
-//! best path = argmax over (pixel, sample) of the smallest distance of two marks in any of the three views
+//! best path = argmax over (pixel, sample) of the smallest distance of a vertex from the lines that do not end there
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | a candidate | 4 or 5 vertices, a hidden and two seen lamp points, ended by roulette, all vertices seen by the camera | [`suits`] |
-//! | marks | the vertices, and the middle of the lamp | |
+//! | distance | the smallest in all three views: picture, from above, from the side | [`clearness`] |
 //!
 //! The search has no random part besides the numbers of the paths themselves, so it always finds the same path.
 
@@ -16,7 +16,7 @@ use fredholm::estimator::Roulette;
 use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
 use fredholm::scene::{Camera, description::CameraDescription};
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 /// Projection of the camera of a scene: from points to picture coordinates in pixels.
 #[derive(Clone, Copy, Debug)]
@@ -60,22 +60,33 @@ fn suits(t: &SceneTransport<'_>, visits: &[Visit]) -> bool {
     (4..=5).contains(&visits.len()) && hidden >= 1 && seen >= 2 && visits.iter().all(faces)
 }
 
-/// The smallest distance between two marks, in the picture (pixels over its width), from above and from the side (metres
-/// over two).
+/// Distance of a point from a segment.
+fn apart(p: DVec2, [a, b]: [DVec2; 2]) -> f64 {
+    let along = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
+    p.distance(a + along * (b - a))
+}
+
+/// The smallest distance between a vertex and a line that does not end there, in the picture (pixels over its width), from
+/// above and from the side (metres over two).
 fn clearness(visits: &[Visit], projection: &Projection) -> f64 {
-    let lamp = Vec3::new(0.0, 1.0, 0.0);
-    let points: Vec<Vec3> = visits.iter().map(|v| v.at.p).chain([lamp]).collect();
     let views = |p: Vec3| {
-        let [x, y] = projection.at(p).map(|c| c / projection.size[0]);
-        let q = p.as_dvec3() * 0.5;
-        [[x, y], [q.x, q.z], [q.z, q.y]]
+        let q = 0.5 * p.as_dvec3();
+        [DVec2::from(projection.at(p)) / projection.size[0], DVec2::new(q.x, q.z), DVec2::new(q.z, q.y)]
     };
+    let vertices: Vec<[DVec2; 3]> = visits.iter().map(|v| views(v.at.p)).collect();
+    let ends: Vec<[DVec2; 3]> = visits.iter().map(|v| views(v.shadow.end)).collect();
+    let n = vertices.len();
     let mut least = f64::INFINITY;
-    for (i, a) in points.iter().enumerate() {
-        for b in &points[..i] {
-            for (p, q) in views(*a).into_iter().zip(views(*b)) {
-                least = least.min((p[0] - q[0]).hypot(p[1] - q[1]));
+    for view in 0..3 {
+        for (i, p) in vertices.iter().map(|p| p[view]).enumerate() {
+            for j in (0..n).filter(|&j| j != i) {
+                least = least.min(apart(p, [vertices[j][view], ends[j][view]]));
+                if j + 1 < n && j + 1 != i {
+                    least = least.min(apart(p, [vertices[j][view], vertices[j + 1][view]]));
+                }
             }
+            // the point on the lamp, or the end at the blocker
+            least = least.min(p.distance(ends[i][view]));
         }
     }
     least

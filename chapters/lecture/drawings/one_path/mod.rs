@@ -85,7 +85,7 @@ fn shown(folder: &Folder<'_>) -> Result<Shown> {
     let projection = Projection::new(&scene.camera, &room.camera);
     let t = SceneTransport::new(&scene);
     let key = Key::new(folder.seed, "one path");
-    let found = choose::search(&t, &Roulette::LECTURE, key, &projection, [folder.pick(8, 8), folder.pick(32, 16)]);
+    let found = choose::search(&t, &Roulette::LECTURE, key, &projection, [8, folder.pick(64, 64)]);
     let (path, visits) = found.ok_or("no path shows all decisions: try another seed")?;
     let tracer = PathTracer(Plan { max_bounces: 8, technique: Technique::Connect, roulette: Roulette::LECTURE });
     let eye =
@@ -146,7 +146,8 @@ fn draw(page: &Canvas<'_>, shown: &Shown) -> Drawn {
         views::path(page, &shown.visits, Some(view.at(front)), &|p| view.at(p.as_dvec3()))?;
     }
     let (x, y) = views[0].1.at(front);
-    page.text("from the eye", (x + 8.0, y - 16.0), words(13.0, VERMILION))?;
+    let (side, align) = if x < views[0].1.origin.0 { (8.0, Align::Left) } else { (-8.0, Align::Right) };
+    page.text("from the eye", (x + side, y - 16.0), Words { align, ..words(13.0, VERMILION) })?;
     legend(page)?;
     let lamp = views[1].1.at(DVec3::Y);
     page.text("lamp", (lamp.0 - 64.0, lamp.1 + 12.0), words(13.0, BLACK))?;
@@ -190,7 +191,8 @@ const COLUMNS: [(&str, f64, Align); 11] = [
     ("p, sr⁻¹", 850.0, Align::Right),
 ];
 /// Title, left and right end of every group of columns.
-const GROUPS: [(&str, f64, f64, Colour); 3] = [
+const GROUPS: [(&str, f64, f64, Colour); 4] = [
+    ("throughput", LEFT, 100.0, GREY),
     ("connection to the lamp point y", 128.0, 396.0, ORANGE),
     ("Russian roulette", 440.0, 650.0, BLACK),
     ("next direction", 716.0, 850.0, VERMILION),

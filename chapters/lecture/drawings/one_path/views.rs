@@ -56,11 +56,13 @@ pub fn outline(page: &Canvas<'_>, room: &Description, origin: DVec3, view: &View
     Ok(())
 }
 
-/// Draws a path: the ray of the eye from `eye`, the segments, the rays to the lamp, and the numbered vertices. Every line has
-/// a white edge, so that it can be seen on a picture.
+/// Draws a path: the ray of the eye from `eye`, the segments, the rays to the lamp, and the numbered vertices. Without `eye`
+/// it lies over a picture, and every line has a white edge.
 pub fn path(page: &Canvas<'_>, visits: &[Visit], eye: Option<Place>, at: &dyn Fn(Vec3) -> Place) -> Drawn {
     let line = |from: Place, to: Place, stroke: Stroke| {
-        page.line(from, to, Stroke { color: WHITE, width: stroke.width + 2.4, ..stroke })?;
+        if eye.is_none() {
+            page.line(from, to, Stroke { color: WHITE, width: stroke.width + 2.4, ..stroke })?;
+        }
         page.line(from, to, stroke)
     };
     for v in visits {
