@@ -81,7 +81,7 @@ fn means(folder: &Folder<'_>) -> Result<[[f64; 2]; 2]> {
     });
     let [[tree, tree_error], [path, path_error]] = found;
     let error = tree_error.hypot(path_error);
-    if (tree - path).abs() > 4.0 * error || error > 0.1 * path {
+    if (tree - path).abs() > 4.0 * error || error > 0.03 * path {
         return Err(format!("T³E is {tree} ± {tree_error} with a tree and {path} ± {path_error} with paths").into());
     }
     Ok(found)
