@@ -106,7 +106,6 @@ pub struct Measured {
 
 const SCALES: [f64; 3] = [0.1, 1.0, 10.0];
 
-// ANCHOR: measure
 /// Measures; `wrong` is the mistake that the scale reveals.
 pub fn measure(folder: &Folder<'_>, jacobian: fn(f64, f64) -> f64, wrong: &dyn Mistake) -> book::Result<Measured> {
     let scatter = |scene: &Scene| direct(folder, scene, Technique::Scatter, &Right, 64);
@@ -125,7 +124,6 @@ pub fn measure(folder: &Folder<'_>, jacobian: fn(f64, f64) -> f64, wrong: &dyn M
         lamps: [connect(&many()?, &Right, 64), connect(&many()?.select_lights(Selection::Power), &Right, 64)],
     })
 }
-// ANCHOR_END: measure
 
 /// Mean of T E over pixels and channels, and its standard error (at most the mean of the errors of the channels).
 pub fn mean(s: &Sampled) -> [f64; 2] {
@@ -140,7 +138,6 @@ pub fn variance_ratio(a: &Sampled, b: &Sampled) -> [f64; 2] {
     [ratio, ratio * (a.std_error / a.value).hypot(b.std_error / b.value)]
 }
 
-// ANCHOR: claims
 /// The claims of the text. "Equal" means: at most five standard errors apart, and these are below the number behind it.
 pub fn claims(m: &Measured) -> Vec<Claim> {
     let off = |[estimate, error]: [f64; 2], exact: f64| [estimate / exact - 1.0, error / exact]; // relative to `exact`
@@ -186,7 +183,6 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
         claim(power[0] - 5.0 * power[1] > 1.5, "a uniform choice has at least 1.5 times the variance", times(power)),
     ]
 }
-// ANCHOR_END: claims
 
 /// Measures, draws, writes and checks.
 fn program(folder: &Folder<'_>) -> book::Result<Vec<Claim>> {
