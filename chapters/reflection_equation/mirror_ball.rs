@@ -24,7 +24,7 @@ use std::sync::Arc;
 const MIRROR: &str = "{ type = 'mirror', reflectance = [1, 1, 1] }";
 const OBJECT: &str = "{ type = 'plastic', reflectance = [0.7, 0.7, 0.7], alpha = 0.2 }";
 
-/// Images of the mirror ball and of the object, all from 40 radii away.
+/// Images of the mirror ball and of the object, all from 200 radii away.
 #[derive(Clone, Debug)]
 pub struct Captured {
     /// The mirror ball of radius 5 cm.
@@ -57,8 +57,8 @@ fn room(folder: &Folder<'_>, material: &str, radius: f64) -> Result<Description,
         format!(
             "shapes[7]={{ name = 'ball', type = 'sphere', center = [0, 0, 0], radius = {radius}, material = 'ball' }}"
         ),
-        format!("camera.origin=[0, 0, {}]", 40.0 * radius),
-        format!("camera.fov={}", 2.0 * (1.0f64 / 40.0).asin().to_degrees()), // the ball touches the edges of the image
+        format!("camera.origin=[0, 0, {}]", 200.0 * radius),
+        format!("camera.fov={}", 2.0 * (1.0f64 / 200.0).asin().to_degrees()), // the ball touches the edges of the image
         format!("camera.size=[{0}, {0}]", folder.pick(144, 48)),
     ];
     Ok(load::scene("cornell", &load::Options { set, ..load::Options::default() })?.description)
