@@ -185,7 +185,7 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
     let above = |values: &[Value], limit: f64| values.iter().all(|[v, se]| v - 4.0 * se > limit);
     let claim = |holds, says, found| Claim { says, found, holds };
     let list = |values: [Value; 3]| values.map(times).join(", ");
-    let means = format!("at most {} standard errors off, of {} each", significant(off, 2), percent(noise));
+    let means = format!("off by at most {} standard errors; these are at most {}", significant(off, 2), percent(noise));
     let shares = format!("{} of the rays, {} of the reflected light", percent(rays), percent(light));
     vec![
         claim(
