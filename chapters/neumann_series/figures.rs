@@ -85,7 +85,7 @@ fn ratios(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         (format!("r(T) = {}", value(m.radius)), flat(m.radius.0), dashed(plot::SKY)),
     ];
     let axes = [Axis::counts("k", LAST, 12), Axis::linear("ratio of term k + 1 to term k", 0.4, 0.95, 8)];
-    draw(folder, "ratios", ["The ratio of consecutive terms", "cornell, furnace"], axes, &curves, &lines)
+    draw(folder, "ratios", ["The ratio of consecutive terms, red channel", "cornell, furnace"], axes, &curves, &lines)
 }
 
 fn remainder(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
@@ -98,8 +98,8 @@ fn remainder(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         ("1 % of all light".into(), flat(0.01 * (m0 + m.remainder[0].0)), dashed(plot::GREY)),
     ];
     let curves = [curve("measured, 95 % interval", &m.remainder, Look::PREFIX)];
-    let axes = [Axis::counts("K", LAST, 12), Axis::log("‖Σ TᵏE‖₁ over all k > K", [3e-6, 1.0].into_iter())];
-    draw(folder, "remainder", ["What is missing after the term K", "cornell"], axes, &curves, &lines)
+    let axes = [Axis::counts("K", LAST, 12), Axis::log("‖Σ TᵏE‖₁ over k > K, W sr⁻¹ m⁻²", [3e-6, 1.0].into_iter())];
+    draw(folder, "remainder", ["What is missing after the term K, red channel", "cornell"], axes, &curves, &lines)
 }
 
 fn scaled(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
@@ -122,9 +122,9 @@ fn scaled(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         Curve { label: "all terms, matrix".into(), points: solved, look: Look::MATRIX },
         Curve { label: format!("room with s = {DARKER}, rendered"), points: again, look: green },
     ];
-    let y = Axis::log("reflected light", [4e-3, 50.0].into_iter());
+    let y = Axis::log("mean reflected light, W sr⁻¹ m⁻²", [4e-3, 50.0].into_iter());
     let axes = [Axis::linear("s, factor of all albedos", 0.0, 1.6, 8), y];
-    draw(folder, "scaled", ["The same room with all albedos times s", "cornell"], axes, &curves, &lines)
+    draw(folder, "scaled", ["The same room with all albedos times s, red channel", "cornell"], axes, &curves, &lines)
 }
 
 /// One panel with its legend on the right.
