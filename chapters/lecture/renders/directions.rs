@@ -61,7 +61,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     (description.camera.fov, description.camera.origin.y) = (31.0, 3.0);
     let scene = Scene::new(&under_sky(description, HAZE));
     let prefix = Prefix(Plan { max_bounces: K, technique: Technique::Scatter, roulette: Roulette::Never });
-    let time = folder.pick(2.0, 0.2);
+    let time = folder.pick(2.5, 0.2);
     let shots = Sampling::ALL.map(|sampling| {
         let pilot = Shot::new(&scene, sampling, &prefix, 16, &format!("pilot, {sampling}"), folder);
         let spp = samples_in(time, &pilot);
@@ -105,7 +105,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
         "Directions where the light matters: less noise in the same time",
         &format!(
             "E[f L_i cos θ/p] is the same for every density p. Light is found only where a path hits the sky (technique \
-             scatter), k ≤ {K}. Gain {}; 95 % intervals.",
+             scatter), k ≤ {K}. Gain {}.",
             gain_label(gain)
         ),
     );
@@ -115,7 +115,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     board.lines(
         &format!(
             "Efficiency is 1/(V · seconds). BSDF directions need 1/{:.0} of the time of uniform ones for the same noise. \
-             Mean of BSDF − mean of uniform = {}.",
+             Mean of BSDF − mean of uniform: {} (95 %).",
             best.value,
             apart.words()
         ),

@@ -30,7 +30,7 @@ pub(crate) const SLIDE: Slide = Slide {
     id: "emission-rules",
     topic: "When does emission count?",
     caption: "On the left the correct image. In the other pictures one rule is broken. If emission does not count at the \
-              eye, the lamp is black. If it counts twice, everything but the lamp is twice as bright. If it never counts \
+              eye, the lamp is black. If it counts twice, everything but the lamp and its mirror image is about twice as bright. If it never counts \
               after a mirror or glass, the spheres lose the lamp and the floor loses the caustics.",
     scene: "cornell-spheres",
     program,
@@ -52,20 +52,20 @@ const CASES: [Case; 4] = [
     Case {
         name: Some("emission-missing"),
         technique: Technique::Mis,
-        label: "Not at the eye",
+        label: "Broken: 0 at the eye",
         look: "the lamp is black",
     },
     Case {
         name: Some("double-emission"),
         technique: Technique::Mis,
-        label: "Hit and connection: 1 + 1",
-        look: "twice as bright from k = 1 on",
+        label: "Broken: weights 1 + 1",
+        look: "hit 1 and connection 1",
     },
     Case {
         name: Some("no-emission-after-mirror"),
         technique: Technique::Connect,
-        label: "Never after mirror, glass",
-        look: "no lamp in mirrors, no caustics",
+        label: "Broken: 0 after a mirror",
+        look: "and after glass: no caustics",
     },
 ];
 
@@ -140,14 +140,14 @@ fn words(r: Ratio) -> String {
     format!("{:.2}", r.value)
 }
 
-/// What the pictures are said to show: r_0 = 0, r_1 = 2, and less than 1 for k = 3.
+/// What the pictures are said to show: r_0 = 0, r_1 nearly 2 (paths over the mirror count once), and less than 1 for k = 3.
 fn check(ratio: &impl Fn(&Shot, usize) -> Ratio, shots: &[Shot]) -> Result<()> {
     let [_, missing, double, mirror] = shots else { return Err("four renderers are expected".into()) };
     let (r0, r1, r3) = (ratio(missing, 0), ratio(double, 1), ratio(mirror, 3));
     if r0.value != 0.0 {
         return Err(format!("without emission at the eye, r_0 = {}", r0.value).into());
     }
-    if (r1.value - 2.0).abs() + 2.0 * r1.std_error > 0.1 {
+    if (r1.value - 1.9).abs() + 2.0 * r1.std_error > 0.2 {
         return Err(format!("with emission counted twice, r_1 = {} ± {}", r1.value, r1.std_error).into());
     }
     if r3.value + 3.0 * r3.std_error > 1.0 {

@@ -28,7 +28,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
-/// Replicates of a film; samples per pixel are multiples of it.
+/// Replicates of a film; every pixel has at least this number of samples.
 pub(crate) const REPLICATES: u32 = 16;
 
 /// A value with its standard error from the replicates.
@@ -133,10 +133,10 @@ impl Shot {
     }
 }
 
-/// The multiple of 16 samples that fits into `seconds` at the speed of a pilot render; at least 16.
+/// The number of samples that fits into `seconds` at the speed of a pilot render; at least 16.
 pub(crate) fn samples_in(seconds: f64, pilot: &Shot) -> u32 {
     let fits = seconds * f64::from(pilot.spp) / pilot.seconds;
-    (fits / f64::from(REPLICATES)).round().clamp(1.0, 4096.0) as u32 * REPLICATES
+    fits.round().clamp(f64::from(REPLICATES), 4096.0) as u32
 }
 
 /// `mean ± half width of the 95 % interval`, averaged over the channels.

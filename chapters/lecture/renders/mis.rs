@@ -15,7 +15,7 @@
 //! Guibas, *Optimally Combining Sampling Techniques* (1995).
 
 use super::board::{Board, GAP, MARGIN, Tile, WIDTH};
-use super::measure::{Measured, Shot, words};
+use super::measure::{Measured, Shot};
 use fredholm::estimator::{Job, Paths, Technique, TermEstimator, TermSink};
 use fredholm::math::{Columns, Purpose, Rgb, Rng};
 use fredholm::operator::{Kernel, Sensor};
@@ -142,8 +142,8 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     board.row(lower, [MARGIN, right]);
     let bottom = board.y;
     let variances = shots.each_ref().map(|(_, shot)| shot.variance(0..2));
-    let means = shots.each_ref().map(|(_, shot)| words(&shot.estimate(0..2)));
-    beside(&mut board, (right + 2.0 * GAP, top + 10.0), [spp, many], gain, (variances, &means));
+    let apart = shots[2].1.mean(0..2).minus(shots[0].1.mean(0..2));
+    beside(&mut board, (right + 2.0 * GAP, top + 10.0), [spp, many], gain, (variances, apart));
     board.y = bottom;
     check(variances)?;
     let mut csv = Csv::new("technique,spp,mean,std_error,variance,variance_std_error");
@@ -161,7 +161,7 @@ fn beside(
     (x, mut y): (f64, f64),
     [spp, many]: [u32; 2],
     gain: f64,
-    (v, means): ([Measured; 3], &[String; 3]),
+    (v, apart): ([Measured; 3], Measured),
 ) {
     let room = WIDTH - MARGIN - x;
     let mut say = |board: &mut Board, text: &str, size: f64, space: f64| {
@@ -187,10 +187,11 @@ fn beside(
     let end = say(
         board,
         &format!(
-            "V of MIS is {} of V of BSDF sampling and {} of V of light sampling. Means: {} (95 %).",
+            "Variance of MIS: {} of that of BSDF sampling, {} of that of light sampling. Mean of MIS − mean of BSDF sampling: \
+             {} (95 %).",
             mis.over(scatter).words(),
             mis.over(connect).words(),
-            means.join(", ")
+            apart.words()
         ),
         14.0,
         14.0,
