@@ -38,7 +38,7 @@ pub const CHAPTER: Chapter = Chapter {
     name: "05_naive_recursion",
     title: "Naive recursion explodes",
     shows: "N rays at every hit make Nᵏ rays for the term k; which N has the least variance × rays?",
-    next: &["fredholm sweep cornell --over branching --equal-rays", "fredholm chapter 6"],
+    next: &["fredholm sweep cornell --over branching --equal-rays --spp 16 --size 32x32", "fredholm chapter 6"],
     program,
 };
 /// The values of N that are compared.

@@ -35,7 +35,11 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     };
     let rows: Vec<Vec<String>> = CHILDREN.iter().zip(&m.trees).map(row).collect();
     folder.text("rays.md", &markdown::table(&["N", "k = 0", "k = 1", "k = 2", "k = 3", "k = 4", "all"], &rows))?;
+    let all = |i: usize| m.trees[i].rays.iter().sum::<f64>();
     folder.numbers(&[
+        ("more_rays", significant(all(3) / all(0), 2)),
+        ("less_variance", significant(m.trees[0].variance[K + 1][0] / m.trees[3].variance[K + 1][0], 2)),
+        ("last", percent(m.trees[3].rays[K] / all(3))),
         ("whole_2", times(price(&m.trees, 1, K + 1))),
         ("whole_8", times(price(&m.trees, 3, K + 1))),
         ("deep_2", times(price(&m.trees, 1, K))),
