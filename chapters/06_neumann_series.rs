@@ -9,7 +9,7 @@
 //! |---|---|---|
 //! | m_k, r_k | mean of T^k E over all surfaces, from random paths; ratio of consecutive terms | [`terms`], [`ratios`] |
 //! | r(T), γ | spectral radius, from two meshes; the largest albedo | [`Measured`] |
-//! | s | factor of all albedos | [`scaled`], [`darker`] |
+//! | s | factor of all albedos | [`scaled`] |
 //!
 //! All numbers are those of the red channel, in which the terms decay most slowly; the tables average the channels.
 //!
@@ -20,13 +20,10 @@
 
 use fredholm::engine::{Settings, by_matrix, by_rays::Estimator, radius::radius_limit};
 use fredholm::estimator::{Roulette, Technique};
-use fredholm::operator::matrix::{LinearOperator, PatchOperator};
 use fredholm::progress::Progress;
 use fredholm::report::book::{self, Chapter, Claim, Folder};
 use fredholm::report::text::{number::plus_minus, table::significant};
-use fredholm::scene::description::{Description, Material};
 use fredholm::scene::{Scene, load};
-use fredholm::solver::direct;
 use fredholm::stats::{TermMeans, observed_rate, ratio};
 use fredholm::study::{bounces, surface};
 use fredholm::terms::functional::Replicates;
@@ -34,6 +31,9 @@ use std::process::ExitCode;
 
 #[path = "neumann_series/figures.rs"]
 mod figures;
+#[path = "neumann_series/scaled.rs"]
+mod scaled;
+use scaled::DARKER;
 
 /// This chapter.
 pub const CHAPTER: Chapter = Chapter {
@@ -48,33 +48,36 @@ pub const CHAPTER: Chapter = Chapter {
 /// K: longer paths are counted together.
 const LAST: usize = 24;
 const RED: usize = 0;
-/// s of the room that is rendered anew.
-const DARKER: f64 = 0.8;
-/// s r(T) of the rooms that the matrix solves.
-const TOWARDS_THE_POLE: [f64; 11] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.99, 0.999];
 /// The parts of the light that may be missing.
 const PARTS: [f64; 3] = [0.1, 0.01, 0.001];
 
 /// An estimate with its standard error, or a limit with half the width of its interval.
 pub type Value = (f64, f64);
 
-/// All that claims and figures need: γ; m_k from paths and from the matrix; Σ_{k>K} m_k for K = 0, 1, …; r(T) for h → 0; r_k
-/// of the furnace and of the Cornell box; the rates fitted to the terms up to k = 6 and up to K; the bounces that are enough,
-/// measured (none if not decided) and guaranteed, for all light and for indirect light; light in a darker room, from the terms
-/// and rendered anew; s and the light of the matrix, for brighter and brighter walls.
+/// All that claims and figures need.
 #[derive(Clone)]
-#[allow(missing_docs)]
 pub struct Measured {
+    /// γ.
     pub albedo: f64,
+    /// m_k by paths, and by the matrix.
     pub terms: TermMeans,
+    /// See `terms`.
     pub matrix: Vec<f64>,
+    /// Σ_{k>K} m_k for K = 0, 1, ….
     pub remainder: Vec<Value>,
+    /// r(T) for h → 0.
     pub radius: Value,
+    /// r_k of the furnace, and of the Cornell box.
     pub furnace: Vec<Value>,
+    /// See `furnace`.
     pub ratios: Vec<Value>,
+    /// The rates fitted to the terms up to k = 6, and up to K.
     pub rates: [Value; 2],
+    /// Bounces that are enough, measured (none if not decided) and guaranteed: for all light, then for indirect light.
     pub enough: Vec<[Option<usize>; 2]>,
+    /// Reflected light of a darker room, from the terms and rendered anew.
     pub scaled: [Value; 2],
+    /// s, and the reflected light of the matrix with all albedos times s.
     pub towards_pole: Vec<(f64, f64)>,
 }
 
@@ -92,22 +95,6 @@ fn ratios(terms: &TermMeans) -> Vec<Value> {
 }
 // ANCHOR_END: terms
 
-// ANCHOR: scaled
-/// Σ weight(s, k) m_k over k ≥ 1, with weight s^k; everything beyond K gets the weight of k = K + 1.
-fn scaled(terms: &Replicates, s: f64, weight: fn(f64, usize) -> f64) -> Value {
-    let sum = |m: &dyn Fn(usize) -> f64| (1..LAST + 2).map(|k| weight(s, k) * m(k)).sum::<f64>();
-    let n = terms.deviation.len() as f64;
-    let squares: f64 = terms.deviation.iter().map(|d| sum(&|k| d[k][RED]).powi(2)).sum();
-    (sum(&|k| terms.mean[k][RED]), (squares * n / (n - 1.0)).sqrt())
-}
-
-/// The same room with all albedos times s.
-fn darker(room: &Description, s: f64) -> Description {
-    let dark = |m: &Material| Material::diffuse(&m.name, s * m.lambertian().unwrap_or_default(), m.sides);
-    Description { materials: room.materials.iter().map(dark).collect(), ..room.clone() }
-}
-// ANCHOR_END: scaled
-
 /// Measures everything. `closed` names the scene of the furnace; `weight(s, k)` is s^k.
 ///
 /// # Errors
@@ -120,16 +107,8 @@ pub fn measure(quick: bool, seed: u64, closed: &str, weight: fn(f64, usize) -> f
     let [coarse, fine] = meshes.map(|n| by_matrix::dense_matrix(&room, &scene, n, 1.0, LAST, Progress::NONE));
     let (coarse, fine) = (coarse?, fine?);
     let radius = radius_limit(&[coarse.radii[0], fine.radii[0]]).ok_or("the meshes are too coarse")?[RED];
-    let (t, e) = (fine.radiosity.operator(RED), fine.radiosity.emission(RED));
-    let (area, on_mesh) = (t.area().iter().sum::<f64>(), fine.radii[0].value[RED]);
-    let reflected = |sr: f64| {
-        let scaled = PatchOperator::new(t.factors, t.rho.iter().map(|rho| sr / on_mesh * rho).collect());
-        let light = direct::solve(&scaled, &e)?.x;
-        Ok((sr / on_mesh, light.iter().zip(&e).zip(t.area()).map(|((l, e), a)| a * (l - e) / area).sum()))
-    };
-
     let all = terms(&scene, paths, seed, Technique::Mis);
-    let again = terms(&Scene::new(&darker(&room, DARKER)), paths, seed + 1, Technique::Mis);
+    let again = terms(&Scene::new(&scaled::darker(&room, DARKER)), paths, seed + 1, Technique::Mis);
     let mut m = TermMeans::channel(&all, RED);
     m.mean[0] = fine.surface[0][RED]; // E is known, so m_0 needs no paths
     m.covariance.fill_row(0, 0.0);
@@ -147,8 +126,8 @@ pub fn measure(quick: bool, seed: u64, closed: &str, weight: fn(f64, usize) -> f
         ratios: ratios(&m),
         rates: [observed_rate(&six)?, observed_rate(&m)?].map(|fit| (fit.rate, fit.std_error)),
         enough: [0, 2].into_iter().flat_map(|from| PARTS.map(|part| enough(from, part))).collect(),
-        scaled: [scaled(&all, DARKER, weight), scaled(&again, 1.0, |_, _| 1.0)],
-        towards_pole: TOWARDS_THE_POLE.into_iter().map(reflected).collect::<Result<_, direct::Singular>>()?,
+        scaled: [scaled::sum(&all, DARKER, weight), scaled::sum(&again, 1.0, |_, _| 1.0)],
+        towards_pole: scaled::towards_pole(&fine)?,
         terms: m,
     })
 }

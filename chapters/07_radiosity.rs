@@ -7,7 +7,7 @@
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | F_ij | the part of the light leaving patch i that arrives at patch j | `FormFactors`; by rays: [`form_factor`] |
+//! | F_ij | the part of the light leaving patch i that arrives at patch j | `FormFactors`; by rays: [`form_factor`](mod@form_factor) |
 //! | T_h, E | diag(ρ) F and emission of one channel, on patches of width h | `PatchOperator`, `Radiosity::emission` |
 //! | m_k | mean of the k-th term over all surfaces, by matrix and by paths | [`Measured::matrix`], [`Measured::paths`] |
 //! | ‖x‖_w | √Σ A x²/ρ, the norm in which T_h is symmetric | `PatchOperator::weighted_norm` |
@@ -18,22 +18,26 @@
 //! `fredholm chapter 7`, or `cargo run --release --example 07_radiosity -- [--out DIR] [--quick]`.
 #![allow(clippy::print_stdout)] // a program, not the library
 
-use fredholm::engine::{Settings, by_matrix, by_matrix::Matrix, by_rays::Estimator};
-use fredholm::math::{Key, Purpose, Rng, direction::cosine_hemisphere};
+use fredholm::engine::{Settings, by_matrix, by_rays::Estimator};
+use fredholm::math::direction::cosine_hemisphere;
 use fredholm::operator::matrix::{LinearOperator, PatchOperator};
 use fredholm::progress::Progress;
 use fredholm::report::book::{self, Chapter, Claim, Folder};
 use fredholm::report::text::number::{plus_minus, significant};
-use fredholm::scene::{Description, Scene, Side, SurfaceSensor, load};
+use fredholm::scene::{Description, Scene, load};
 use fredholm::solver::comparison::{History, Limits, Solver, System};
-use fredholm::solver::{Iteration, Jacobi, Neumann, PartialSums, Radiosity};
+use fredholm::solver::{Iteration, Jacobi, Neumann, PartialSums};
 use fredholm::stats::convergence_order;
 use fredholm::study::surface;
-use glam::Vec3;
 use std::process::ExitCode;
 
 #[path = "radiosity/figures.rs"]
 mod figures;
+#[path = "radiosity/form_factor.rs"]
+pub mod form_factor;
+#[path = "radiosity/mesh.rs"]
+mod mesh;
+use form_factor::{Direction, exchange};
 
 /// This chapter.
 pub const CHAPTER: Chapter = Chapter {
@@ -48,63 +52,37 @@ pub const CHAPTER: Chapter = Chapter {
 /// K of the terms that are compared with paths.
 const LAST: usize = 6;
 const RED: usize = 0;
-/// The cube: a closed room. Its green light is known to 7 digits from a method without patches.
-const GREEN: usize = 1;
-/// Mean radiance of the walls y = 0, y = 1, z = 0, z = 1, x = 0, x = 1 of the cube, from `scenes/cube.toml`.
-const KNOWN: [f64; 6] = [0.303_755_5, 1.209_892_4, 0.319_333_3, 0.319_333_3, 0.114_853_9, 0.180_889_0];
-/// Rays start this far above their surface, in metres, so that they do not hit it.
-const ABOVE: f32 = 1e-4;
 
 /// An estimate and its standard error.
 pub type Value = (f64, f64);
-/// A way to draw a direction about a normal from two random numbers, with its cosine.
-pub type Direction = fn(Vec3, [f32; 2]) -> (Vec3, f32);
 /// Makes the iteration that is compared with the partial sums.
 pub type Sweeps = for<'a> fn(&'a PatchOperator<'a>, &[f64]) -> Box<dyn Iteration + 'a>;
 
-/// All that claims and figures need: the least and the largest row sum of F in the closed cube, their mean in the open Cornell
-/// box; A_i F_ij and A_j F_ji between floor and tall block, by rays; m_k by paths, and by the matrix on a coarse and a fine mesh;
-/// the largest difference of iterates and partial sums, relative to the largest radiance; r(T_h); the errors of the solvers;
-/// widths of patches and errors in the cube, and the order of these errors; ratios of terms in ‖·‖_w and in ‖·‖₁.
+/// All that claims and figures need.
 #[derive(Clone)]
-#[allow(missing_docs)]
 pub struct Measured {
+    /// The least and the largest row sum of F in the closed cube.
     pub row_sums: [f64; 2],
+    /// Their mean over the surfaces of the open Cornell box.
     pub open: f64,
+    /// A_i F_ij and A_j F_ji between floor and tall block, by rays.
     pub exchange: [Value; 2],
+    /// m_k by paths, and by the matrix on a coarse and a fine mesh.
     pub paths: Vec<Value>,
+    /// See `paths`.
     pub matrix: [Vec<f64>; 2],
+    /// The largest difference of Jacobi's iterates and the partial sums, relative to the largest radiance.
     pub sweeps_apart: f64,
+    /// r(T_h).
     pub radius: f64,
+    /// Errors of Jacobi, Gauss–Seidel and conjugate gradients.
     pub histories: Vec<History>,
+    /// Widths of the patches of the cube with the errors, and the order p of these errors.
     pub mesh: Vec<(f64, f64)>,
+    /// See `mesh`.
     pub order: f64,
+    /// Ratios of consecutive terms in ‖·‖_w and in ‖·‖₁.
     pub ratios: [Vec<f64>; 2],
-}
-
-// ANCHOR: form_factor
-/// F from the sides `from` to the sides `to`: the part of `n` rays that arrive there, and its standard error. The rays start
-/// at uniform points, in directions with density cos θ/π.
-fn form_factor(scene: &Scene, from: &[Side], to: &[Side], n: u32, key: Key, direction: Direction) -> Value {
-    let sensor = SurfaceSensor::of(scene, from.to_vec());
-    let arrives = |i: &u32| {
-        let x = sensor.vertex(scene, &mut Rng::at(key, 0, *i, 0, Purpose::Start));
-        let [u, v, ..] = Rng::at(key, 0, *i, 0, Purpose::Scatter).four();
-        let hit = scene.trace(x.p + ABOVE * x.n, direction(x.n, [u, v]).0);
-        hit.is_some_and(|y| to.contains(&y.side))
-    };
-    let part = (0..n).filter(arrives).count() as f64 / f64::from(n);
-    (part, (part * (1.0 - part) / f64::from(n)).sqrt())
-}
-// ANCHOR_END: form_factor
-
-/// The reflecting sides of the shapes of this name, and their area.
-fn sides(room: &Description, scene: &Scene, name: &str) -> (Vec<Side>, f64) {
-    let primitives = room.primitives().into_iter().enumerate();
-    let named = primitives.filter(|(_, (shape, _))| room.shapes[*shape].name == name).map(|(i, _)| 2 * i as Side);
-    let sides: Vec<Side> = named.collect();
-    let area = sides.iter().map(|&s| scene.area(s)).sum();
-    (sides, area)
 }
 
 // ANCHOR: sweeps
@@ -120,20 +98,6 @@ fn apart(t: &PatchOperator<'_>, e: &[f64], mut sweeps: Box<dyn Iteration + '_>, 
     largest / series.iterate().iter().copied().fold(0.0, f64::max)
 }
 // ANCHOR_END: sweeps
-
-// ANCHOR: mesh
-/// Width of the patches, and the root mean square over the walls of the error of their mean radiance.
-fn mesh_error(cube: &Matrix<Radiosity>) -> (f64, f64) {
-    let patches = &cube.radiosity.patches;
-    let mean = |wall: usize| {
-        let on = patches.iter().zip(&cube.solution.radiance).filter(|(p, _)| p.side.primitive == wall);
-        let (light, area) = on.fold((0.0, 0.0), |s, (p, l)| (s.0 + p.area * l[GREEN], s.1 + p.area));
-        light / area
-    };
-    let squares: f64 = (0..6).map(|wall| (mean(wall) - KNOWN[wall]).powi(2)).sum();
-    (cube.radii[0].h, (squares / 6.0).sqrt())
-}
-// ANCHOR_END: mesh
 
 /// Measures everything. `direction` draws the rays of form factors, `sweeps` makes the iteration next to the partial sums.
 ///
@@ -151,10 +115,6 @@ pub fn measure(quick: bool, seed: u64, direction: Direction, sweeps: Sweeps) -> 
     let (coarse, fine) = (coarse?, fine?);
     let cubes = cubes.map(|n| matrix(&cube, n)).into_iter().collect::<Result<Vec<_>, _>>()?;
 
-    let [(floor, a_floor), (block, a_block)] = ["floor", "tall block"].map(|name| sides(&room, &scene, name));
-    let key = Key::new(seed, "form factors");
-    let there = form_factor(&scene, &floor, &block, rays, key, direction);
-    let back = form_factor(&scene, &block, &floor, rays, key.branch(1), direction);
     let settings = Settings { seed, max_bounces: LAST, ..Settings::default() };
     let paths = surface::norms(&scene, Estimator::Prefix, paths, &settings, Progress::NONE);
     let estimate = |k: usize| (paths.mean[k][RED], paths.estimate(k..k + 1).std_error[RED]);
@@ -169,16 +129,13 @@ pub fn measure(quick: bool, seed: u64, direction: Direction, sweeps: Sweeps) -> 
     let weighted = ratios(&|x| t.weighted_norm(x));
     let mean = ratios(&|x| t.inner(&vec![1.0; x.len()], x));
     // ANCHOR_END: ratios
-    let (invariants, one) = (cubes[2].invariants, vec![1.0; t.len()]);
-    let white = PatchOperator::new(&fine.radiosity.factors, one.clone());
-    let mut rows = one.clone();
-    white.apply(&one, &mut rows);
-    let mesh: Vec<(f64, f64)> = cubes.iter().map(mesh_error).collect();
+    let mesh: Vec<(f64, f64)> = cubes.iter().map(mesh::error).collect();
     let orders: Vec<_> = mesh.iter().map(|&(h, error)| (h, error, 0.0)).collect();
+    let invariants = cubes[2].invariants;
     Ok(Measured {
         row_sums: [invariants.row_sum_min, invariants.row_sum_max],
-        open: white.inner(&one, &rows) / white.inner(&one, &one),
-        exchange: [(a_floor * there.0, a_floor * there.1), (a_block * back.0, a_block * back.1)],
+        open: form_factor::mean_row_sum(&fine.radiosity.factors),
+        exchange: exchange(&room, &scene, ["floor", "tall block"], rays, seed, direction),
         paths: (0..=LAST).map(estimate).collect(),
         matrix: [&coarse, &fine].map(|m| m.surface.iter().map(|m| m[RED]).collect()),
         sweeps_apart: apart(&t, &e, sweeps(&t, &e), 30),

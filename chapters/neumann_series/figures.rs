@@ -7,7 +7,8 @@
 //! | `scaled` | Σ s^k m_k against s: partial sums, and all terms by the matrix, up to the pole at s = 1/r(T) |
 //! | `enough.md`, `lit.md` | how many bounces are enough; which bounce lights which surface |
 
-use super::{DARKER, LAST, Measured, PARTS, TOWARDS_THE_POLE, Value, or_dash, value};
+use super::scaled::{DARKER, TOWARDS_THE_POLE};
+use super::{LAST, Measured, PARTS, Value, or_dash, value};
 use fredholm::engine::Settings;
 use fredholm::progress::Progress;
 use fredholm::report::book::{self, Folder};
