@@ -31,7 +31,7 @@ pub mod mirror_ball;
 pub mod number;
 #[path = "reflection_equation/scenes.rs"]
 mod scenes;
-use mirror_ball::{Captured, capture};
+use mirror_ball::{Captured, capture, excess};
 use number::Number;
 use scenes::{BESIDE, HOLLOW, INSIDE, ONE, PATCH, SKY, UPWARDS, ball, disc, point, scene};
 
@@ -98,7 +98,7 @@ pub fn limit(folder: &Folder<'_>, mistake: &dyn Mistake) -> book::Result<Vec<(f6
     let of_point = irradiance(folder, mistake, "", &point([0.0, 1.0, 0.0], 1.0 / PI))?; // I = Φ/π with Φ = 1 W
     let differ = |radius: f64| -> book::Result<_> {
         let of_disc = irradiance(folder, mistake, &disc(radius, 1.0, "power = [1, 1, 1]"), "")?;
-        Ok((radius, of_point.over(of_disc).plus(-1.0)))
+        Ok((radius, excess(of_point, of_disc)))
     };
     [0.8, 0.4, 0.2, 0.1].into_iter().map(differ).collect()
 }

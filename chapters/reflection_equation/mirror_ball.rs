@@ -41,12 +41,12 @@ impl Captured {
     /// Radius of the object, and its brightness under the photograph divided by that in the room, minus 1.
     pub fn differences(&self) -> Vec<(f64, Number)> {
         let under = brightness(&self.under);
-        self.in_room.iter().map(|(r, image)| (*r, under.over(brightness(image)).plus(-1.0))).collect()
+        self.in_room.iter().map(|(r, image)| (*r, excess(under, brightness(image)))).collect()
     }
 
     /// The same for the smallest object and the photograph that is cut at 1.
     pub fn clipped(&self) -> Number {
-        brightness(&self.under_clipped).over(brightness(&self.in_room[0].1)).plus(-1.0)
+        excess(brightness(&self.under_clipped), brightness(&self.in_room[0].1))
     }
 }
 
@@ -87,6 +87,12 @@ pub fn capture(folder: &Folder<'_>, white: f32) -> book::Result<Captured> {
     let object = |radius| -> book::Result<_> { Ok((radius, see(&room(folder, OBJECT, radius)?))) };
     let in_room = [0.05, 0.1, 0.3].into_iter().map(object).collect::<book::Result<_>>()?;
     Ok(Captured { photo, under: lit, under_clipped: clipped, in_room })
+}
+
+/// x/y − 1.
+pub fn excess(x: Number, y: Number) -> Number {
+    let ratio = x.over(y);
+    Number { value: ratio.value - 1.0, ..ratio }
 }
 
 /// Mean over the pixels inside the ball and over the three colours.

@@ -14,7 +14,7 @@ use fredholm::terms::Estimate;
 use std::fmt;
 
 /// A measured value with its standard error.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Number {
     /// The value.
     pub value: f64,
@@ -34,11 +34,6 @@ impl Number {
         Self { value, error: value.abs() * (self.error / self.value).hypot(other.error / other.value) }
     }
 
-    /// The number plus an exact one.
-    pub fn plus(self, x: f64) -> Self {
-        Self { value: self.value + x, ..self }
-    }
-
     /// The number times an exact one.
     pub fn times(self, x: f64) -> Self {
         Self { value: self.value * x, error: self.error * x.abs() }
@@ -54,8 +49,8 @@ impl From<&Estimate> for Number {
 
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // differences below single precision are rounding
-        let error = if self.error < 1e-7 * self.value.abs() { 0.0 } else { self.error };
+        // an error that would not show in five digits is left out
+        let error = if self.error < 1e-5 * self.value.abs() { 0.0 } else { self.error };
         f.write_str(&plus_minus(self.value, error, 2))
     }
 }
