@@ -20,17 +20,20 @@
 use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Branching, Plan, Roulette, Technique};
 use fredholm::math::{Key, Purpose, Rgb, Rng};
-use fredholm::operator::{SceneTransport, Sensor, Transport};
+use fredholm::operator::{SceneTransport, Transport};
 use fredholm::report::book::{self, Chapter, Claim, Folder};
 use fredholm::report::text::number::significant;
-use fredholm::scene::{Camera, Scene, Vertex, load::Options};
+use fredholm::scene::{Scene, load::Options};
 use fredholm::terms::{functional::image_replicates, scatter::Scatter};
 use glam::Vec3;
 use std::process::ExitCode;
 
 #[path = "naive_recursion/figures.rs"]
 mod figures;
+#[path = "naive_recursion/pixels.rs"]
+mod pixels;
 use figures::{percent, times};
+use pixels::SomePixels;
 
 /// This chapter.
 pub const CHAPTER: Chapter = Chapter {
@@ -109,19 +112,6 @@ fn load(scene: &str, side: u32) -> book::Result<Scene> {
     Ok(Scene::new(&fredholm::scene::load::scene(scene, &size)?.description))
 }
 
-/// 16 × 16 pixels, spread evenly over the image of a camera.
-struct SomePixels<'a>(&'a Camera);
-impl Sensor<SceneTransport<'_>> for SomePixels<'_> {
-    fn size(&self) -> [u32; 2] {
-        [16, 16]
-    }
-    fn start(&self, t: &SceneTransport<'_>, pixel: u32, rng: &mut Rng) -> Option<Vertex> {
-        let [width, height] = self.0.size;
-        let [x, y] = [(pixel % 16, width), (pixel / 16, height)].map(|(i, n)| (2 * i + 1) * n / 32);
-        self.0.start(t, y * width + x, rng)
-    }
-}
-
 // ANCHOR: tree
 fn tree(scene: &Scene, k: usize, n: u32, spp: u32, folder: &Folder<'_>) -> Tree {
     let amount = Amount { spp, replicates: spp.min(64) as usize, key: Key::new(folder.seed, "tree").branch(n) };
@@ -173,7 +163,7 @@ pub fn price(trees: &[Tree], i: usize, k: usize) -> Value {
 pub fn claims(m: &Measured) -> Vec<Claim> {
     let powers = CHILDREN.map(|n| [0, 1, 2, 3, 4].map(|k| u64::from(n).pow(k)));
     let exact = 0.06 * (1.0 + 0.6 + 0.36 + 0.216); // T^k E = 0.06 · 0.6^(k−1) on the sphere
-    let largest = |of: &dyn Fn(&Value) -> f64| m.sphere.iter().map(of).fold(0.0, f64::max);
+    let largest = |of: &dyn Fn(&Value) -> f64| m.sphere.iter().map(of).max_by(f64::total_cmp).unwrap_or(f64::NAN);
     let (off, noise) = (largest(&|[l, se]| (l - exact).abs() / se), largest(&|[_, se]| se / exact));
     let rays = m.trees[3].rays[K] / m.trees[3].rays.iter().sum::<f64>();
     let light = m.trees[0].mean[K] / m.trees[0].mean[1..=K].iter().sum::<f64>();
