@@ -2,13 +2,13 @@
 //!
 //! ```text
 //! L = Σ T^k E,  m_k = ‖T^k E‖₁,  r_k = m_{k+1}/m_k → r(T)          L(s) = Σ s^k T^k E: all albedos times s
-//! ‖Σ_{k>K} T^k E‖₁ ≤ γ/(1 − γ) m_K ≤ γ^(K+1)/(1 − γ) m_0            γ = max ρ ≥ ‖T‖₁
+//! ‖Σ_{k>K} T^k E‖₁ ≤ g/(1 − g) m_K ≤ g^(K+1)/(1 − g) m_0            g = ρ_max ≥ ‖T‖₁
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | m_k, r_k | mean of T^k E over all surfaces, from random paths; ratio of consecutive terms | [`terms`], [`ratios`] |
-//! | r(T), γ | spectral radius, from two meshes; the largest albedo | [`Measured`] |
+//! | r(T), g | spectral radius, from two meshes; the largest albedo | [`Measured`] |
 //! | s | factor of all albedos | [`scaled`] |
 //!
 //! All numbers are those of the red channel, in which the terms decay most slowly; the tables average the channels.
@@ -57,7 +57,7 @@ pub type Value = (f64, f64);
 /// All that claims and figures need.
 #[derive(Clone)]
 pub struct Measured {
-    /// γ.
+    /// g, the largest albedo.
     pub albedo: f64,
     /// m_k by paths, and by the matrix.
     pub terms: TermMeans,

@@ -2,7 +2,7 @@
 //!
 //! | file | shows |
 //! |---|---|
-//! | `ratios` | r_k of the Cornell box, from paths and from the matrix, and of the furnace, below γ and r(T) |
+//! | `ratios` | r_k of the Cornell box, from paths and from the matrix, and of the furnace, below the largest albedo and r(T) |
 //! | `remainder` | Σ_{k>K} m_k against K, below its two bounds |
 //! | `scaled` | Σ s^k m_k against s: partial sums, and all terms by the matrix, up to the pole at s = 1/r(T) |
 //! | `enough.md`, `lit.md` | how many bounces are enough; which bounce lights which surface |
@@ -82,7 +82,7 @@ fn ratios(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         curve("furnace, paths", &m.furnace, Look::SINGLE),
     ];
     let lines = [
-        (format!("γ = {:.3}: no ratio is above", m.albedo), flat(m.albedo), solid(plot::GREEN)),
+        (format!("largest albedo {:.3}: no ratio is larger", m.albedo), flat(m.albedo), solid(plot::GREEN)),
         (format!("r(T) = {}", value(m.radius)), flat(m.radius.0), dashed(plot::SKY)),
     ];
     let axes = [Axis::counts("k", LAST, 12), Axis::linear("ratio of term k + 1 to term k", 0.4, 0.95, 8)];
@@ -94,13 +94,20 @@ fn remainder(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     let before = (0..=LAST).map(|k| (k as f64, g.powi(k as i32 + 1) / (1.0 - g) * m0)).collect();
     let after = m.terms.mean.iter().enumerate().map(|(k, m)| (k as f64, g / (1.0 - g) * m)).collect();
     let lines = [
-        ("bound from term 0: γᴷ⁺¹/(1 − γ) ‖E‖₁".into(), before, solid(plot::GREEN)),
-        ("bound from term K: γ/(1 − γ) ‖TᴷE‖₁".into(), after, dashed(plot::PURPLE)),
+        ("bound from term 0: gᴷ⁺¹/(1 − g) ‖E‖₁".into(), before, solid(plot::GREEN)),
+        ("bound from term K: g/(1 − g) ‖TᴷE‖₁".into(), after, dashed(plot::PURPLE)),
         ("1 % of all light".into(), flat(0.01 * (m0 + m.remainder[0].0)), dashed(plot::GREY)),
     ];
     let curves = [curve("measured, 95 % interval", &m.remainder, Look::PREFIX)];
     let axes = [Axis::counts("K", LAST, 12), Axis::log("‖Σ TᵏE‖₁ over k > K, W sr⁻¹ m⁻²", [3e-6, 1.0].into_iter())];
-    draw(folder, "remainder", ["What is missing after the term K, red channel", "cornell"], axes, &curves, &lines)
+    draw(
+        folder,
+        "remainder",
+        ["What is missing after the term K, red channel; g is the largest albedo", "cornell"],
+        axes,
+        &curves,
+        &lines,
+    )
 }
 
 fn scaled(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
