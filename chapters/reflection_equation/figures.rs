@@ -35,7 +35,6 @@ pub(super) fn draw(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     folder.text("captured.md", &markdown::table(&["radius of the object", "photograph/room − 1"], &rows))?;
     let differences = m.captured.differences();
     folder.numbers(&[
-        ("small", percent(differences[0].1.value)),
         ("large", percent(differences[2].1.value)),
         ("clipped", percent(-m.captured.clipped().value)),
         ("largest", format!("{:.2}", m.limit[0].1.value)),
