@@ -25,7 +25,7 @@ use fredholm::terms::{TermImage, scatter::Scatter};
 pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     let row = |k: usize| {
         let name = if k > K { "1 to 4 in one tree".to_string() } else { k.to_string() };
-        [name].into_iter().chain((0..4).map(|i| times(price(&m.trees, i, k)))).collect::<Vec<_>>()
+        [name, "1".into()].into_iter().chain((1..4).map(|i| times(price(&m.trees, i, k)))).collect::<Vec<_>>()
     };
     let rows: Vec<_> = (1..=K + 1).map(row).collect();
     folder.text("price.md", &markdown::table(&["k", "N = 1", "N = 2", "N = 4", "N = 8"], &rows))?;
@@ -45,10 +45,22 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         ("deep_2", times(price(&m.trees, 1, K))),
         ("small_4", times(price(&m.direct[0], 2, 1))),
         ("large_4", times(price(&m.direct[1], 2, 1))),
+        ("star_small", times(best(&m.direct[0]))),
+        ("star_large", times(best(&m.direct[1]))),
     ])?;
     folder.figure("price", &plot(m, folder)?)?;
     folder.picture("equal_rays.png", &pictures(m, folder)?)?;
     Ok(())
+}
+
+/// N* = √(a_1 c_0/(a_0 c_1)) for k = 1, with a_0 and a_1 from the variances for N = 1 and N = 8.
+fn best(trees: &[Tree]) -> Value {
+    let [[v_1, se_1], [v_8, se_8]] = [0, 3].map(|i| trees[i].variance[1]);
+    let (a_0, a_1) = ((8.0 * v_8 - v_1) / 7.0, 8.0 * (v_1 - v_8) / 7.0);
+    let star = (a_1 * trees[0].rays[0] / (a_0 * trees[0].rays[1])).sqrt();
+    // d ln N* = ½ (d a_1/a_1 − d a_0/a_0), with d a_1 = 8/7 (d v_1 − d v_8) and d a_0 = (8 d v_8 − d v_1)/7
+    let (by_1, by_8) = (8.0 / a_1 + 1.0 / a_0, -8.0 / a_1 - 8.0 / a_0);
+    [star, star / 14.0 * (by_1 * se_1).hypot(by_8 * se_8)]
 }
 
 /// Left: rays of every depth. Right: V C relative to N = 1.
