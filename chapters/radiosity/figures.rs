@@ -40,6 +40,7 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         ("jacobi", products(0, 1e-6)),
         ("jacobi4", products(0, 1e-4)),
         ("order", significant(m.order, 3)),
+        ("factor", significant(2f64.powf(m.order), 2)),
         ("ratio1", significant(m.ratios[1][1], 4)),
         ("ratio2", significant(m.ratios[1][2], 4)),
     ])?;
