@@ -1,0 +1,164 @@
+//! Renders with their mean, their noise and their cost.
+//!
+//! ```text
+//! V = mean over pixels and channels of se²      efficiency = 1/(V t)      n = t/t₁ samples fit into the time t
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | se | standard error of a pixel, from replicates | [`fredholm::terms::film`] |
+//! | V | variance of the image; √V is its noise | [`Shot::variance`] |
+//! | t, t₁ | seconds of a render, seconds per sample of every pixel | [`Shot::seconds`], [`samples_in`] |
+//!
+//! Reference: Pharr, Jakob and Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 2.1 (efficiency).
+
+use fredholm::estimator::render::{Amount, render};
+use fredholm::estimator::{Plan, Prefix, Roulette, Technique, TermEstimator};
+use fredholm::math::Key;
+use fredholm::operator::SceneTransport;
+use fredholm::report::book::{Folder, Result};
+use fredholm::report::text::number::{average, plus_minus, significant};
+use fredholm::scene::bsdf::Sampling;
+use fredholm::scene::{Description, Scene, load};
+use fredholm::stats::half_width_95;
+use fredholm::terms::functional::image_replicates;
+use fredholm::terms::scatter::Scatter;
+use fredholm::terms::{Estimate, TermFilm, TermImage};
+use std::ops::Range;
+use std::path::Path;
+use std::time::Instant;
+
+/// Replicates of a film; every pixel has at least this number of samples.
+pub(crate) const REPLICATES: u32 = 16;
+
+/// A value with its standard error from the replicates.
+#[derive(Clone, Copy)]
+pub(crate) struct Measured {
+    pub(crate) value: f64,
+    pub(crate) error: f64,
+}
+
+impl Measured {
+    /// `value ± half width of the 95 % interval`.
+    pub(crate) fn words(self) -> String {
+        plus_minus(self.value, half_width_95(self.error, u64::from(REPLICATES)), 2)
+    }
+
+    /// self/other, for independent values.
+    pub(crate) fn over(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self { value, error: value.abs() * (self.error / self.value).hypot(other.error / other.value) }
+    }
+
+    /// self − other, for independent values.
+    pub(crate) fn minus(self, other: Self) -> Self {
+        Self { value: self.value - other.value, error: self.error.hypot(other.error) }
+    }
+
+    /// The largest absolute value inside the 95 % interval.
+    pub(crate) fn at_most(self) -> f64 {
+        self.value.abs() + half_width_95(self.error, u64::from(REPLICATES))
+    }
+}
+
+/// A film with the seconds that it took.
+pub(crate) struct Shot {
+    pub(crate) film: TermFilm,
+    pub(crate) seconds: f64,
+    pub(crate) spp: u32,
+}
+
+impl Shot {
+    /// Renders the camera image of a scene. `stream` names the random numbers.
+    pub(crate) fn new<'s>(
+        scene: &'s Scene,
+        sampling: Sampling,
+        estimator: &impl TermEstimator<SceneTransport<'s>>,
+        spp: u32,
+        stream: &str,
+        folder: &Folder<'_>,
+    ) -> Self {
+        let t = SceneTransport { scene, sampling };
+        let start = Instant::now();
+        let amount = Amount::new(spp, Key::new(folder.seed, stream));
+        let film = render(&t, &scene.camera, estimator, amount, folder.progress);
+        Self { film, seconds: start.elapsed().as_secs_f64(), spp }
+    }
+
+    /// The terms k ≤ K by prefixes of paths that no roulette ends, with MIS.
+    pub(crate) fn terms(scene: &Scene, max_bounces: usize, spp: u32, stream: &str, folder: &Folder<'_>) -> Self {
+        let plan = Plan { max_bounces, technique: Technique::Mis, roulette: Roulette::Never };
+        Self::new(scene, Sampling::Bsdf, &Prefix(plan), spp, stream, folder)
+    }
+
+    /// The image of the sum of some slots.
+    pub(crate) fn image(&self, slots: Range<usize>) -> TermImage {
+        TermImage::of(&self.film, slots)
+    }
+
+    /// Mean over the image of the sum of some slots.
+    pub(crate) fn estimate(&self, slots: Range<usize>) -> Estimate {
+        image_replicates(&self.film).estimate(slots)
+    }
+
+    /// The same mean over the three channels.
+    pub(crate) fn mean(&self, slots: Range<usize>) -> Measured {
+        let e = self.estimate(slots);
+        Measured { value: e.mean.element_sum() / 3.0, error: e.std_error.element_sum() / 3.0 }
+    }
+
+    /// V of the sum of some slots.
+    pub(crate) fn variance(&self, slots: Range<usize>) -> Measured {
+        let scatter = Scatter::of(&self.film, slots, None);
+        Measured { value: scatter.variance(), error: scatter.variance_error() }
+    }
+
+    /// √V.
+    pub(crate) fn noise(&self, slots: Range<usize>) -> Measured {
+        let v = self.variance(slots);
+        Measured { value: v.value.sqrt(), error: v.error / (2.0 * v.value.sqrt()) }
+    }
+
+    /// 1/(V t), without the error of t.
+    pub(crate) fn efficiency(&self, slots: Range<usize>) -> Measured {
+        let v = self.variance(slots);
+        let value = 1.0 / (v.value * self.seconds);
+        Measured { value, error: value * v.error / v.value }
+    }
+
+    /// Rays per path.
+    pub(crate) fn rays_per_path(&self) -> f64 {
+        let paths: f64 = self.film.samples.iter().map(|&n| f64::from(n)).sum();
+        self.film.rays.iter().sum::<u64>() as f64 / paths
+    }
+}
+
+/// The number of samples that fits into `seconds` at the speed of a pilot render; at least 16.
+pub(crate) fn samples_in(seconds: f64, pilot: &Shot) -> u32 {
+    let fits = seconds * f64::from(pilot.spp) / pilot.seconds;
+    fits.round().clamp(f64::from(REPLICATES), 4096.0) as u32
+}
+
+/// `mean ± half width of the 95 % interval`, averaged over the channels.
+pub(crate) fn words(estimate: &Estimate) -> String {
+    let (mean, half) = average(estimate);
+    plus_minus(mean, half, 1)
+}
+
+/// Seconds in words.
+pub(crate) fn seconds(shot: &Shot) -> String {
+    format!("{} s", significant(shot.seconds, 2))
+}
+
+/// A built-in scene with an image of this size.
+pub(crate) fn built_in(name: &str, [w, h]: [u32; 2]) -> Result<Description> {
+    let set = vec![format!("camera.size=[{w},{h}]")];
+    Ok(load::scene(name, &load::Options { set, ..load::Options::default() })?.description)
+}
+
+/// A scene given as text, with an image of this size.
+pub(crate) fn from_text(text: &str, [w, h]: [u32; 2]) -> Result<Description> {
+    let set = vec![format!("camera.size=[{w},{h}]")];
+    Ok(load::toml(text, Path::new("(scene of a slide)"), &load::Options { set, ..load::Options::default() })?
+        .description)
+}

@@ -1,0 +1,56 @@
+//! A measured number with its standard error.
+//!
+//! ```text
+//! x ± s      s(x/y) = |x/y| √((s_x/x)² + (s_y/y)²)      x is c to ± δ:  |x − c| + 5 s ≤ δ
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | x, s | value and standard error | [`Number`] |
+//! | c, δ | the value of the statement, and its margin | [`Number::is`] |
+
+use fredholm::report::text::number::plus_minus;
+use fredholm::terms::Estimate;
+use std::fmt;
+
+/// A measured value with its standard error.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Number {
+    /// The value.
+    pub value: f64,
+    /// Its standard error.
+    pub error: f64,
+}
+
+impl Number {
+    /// Returns true if the interval of ± 5 standard errors lies within `margin` of `exact`.
+    pub fn is(self, exact: f64, margin: f64) -> bool {
+        (self.value - exact).abs() + 5.0 * self.error <= margin
+    }
+
+    /// The ratio of two independent numbers.
+    pub fn over(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self { value, error: value.abs() * (self.error / self.value).hypot(other.error / other.value) }
+    }
+
+    /// The number times an exact one.
+    pub fn times(self, x: f64) -> Self {
+        Self { value: self.value * x, error: self.error * x.abs() }
+    }
+}
+
+impl From<&Estimate> for Number {
+    /// The first channel: the scenes with numbers are grey.
+    fn from(e: &Estimate) -> Self {
+        Self { value: e.mean.x, error: e.std_error.x }
+    }
+}
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // an error that would not show in five digits is left out
+        let error = if self.error < 1e-5 * self.value.abs() { 0.0 } else { self.error };
+        f.write_str(&plus_minus(self.value, error, 2))
+    }
+}

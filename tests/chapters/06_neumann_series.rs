@@ -1,0 +1,53 @@
+//! Every claim of chapter 6 holds, and each of them fails if one ingredient is made wrong.
+
+use crate::neumann_series::{Measured, claims, measure};
+use fredholm::study::bounces::guaranteed;
+
+/// s^k.
+fn power(s: f64, k: usize) -> f64 {
+    s.powi(k as i32)
+}
+
+#[test]
+fn every_claim_of_chapter_6_can_fail() {
+    let right = measure(true, 0, "furnace", power).unwrap();
+    let refuted = |m: &Measured| claims(m).into_iter().filter(|c| !c.holds).map(|c| c.says).collect::<Vec<_>>();
+    assert_eq!(refuted(&right), [""; 0]);
+
+    // a closed room whose walls differ is no furnace
+    let uneven = Measured { furnace: measure(true, 0, "cube", power).unwrap().furnace, ..right.clone() };
+    // the formula of the slide, taken literally: every ratio is the rate
+    let mut literal = right.clone();
+    literal.ratios.iter_mut().for_each(|r| r.0 = right.radius.0);
+    // a fit that begins too early
+    let early = Measured { rates: [right.rates[0]; 2], ..right.clone() };
+    // the mean albedo in place of the largest
+    let mean_albedo = Measured { albedo: 0.5, ..right.clone() };
+    // r(T) in place of the largest albedo
+    let mut no_bound = right.clone();
+    for (i, [_, bound]) in no_bound.enough.iter_mut().enumerate() {
+        *bound = guaranteed(right.radius.0, [0, 2][i / 3], [0.1, 0.01, 0.001][i % 3]);
+    }
+    // the term k has k + 1 reflections
+    let shifted = measure(true, 0, "furnace", |s, k| power(s, k + 1)).unwrap();
+    let shifted = Measured { scaled: shifted.scaled, ..right.clone() };
+    // a pole at 1/γ, far from the room of the last point
+    let mut elsewhere = right.clone();
+    let far = |s: f64| 1.0 / (1.0 - s * right.albedo);
+    elsewhere.towards_pole.iter_mut().for_each(|point| point.1 = far(point.0));
+
+    let mutants = [
+        ("in the furnace", uneven),
+        ("in the Cornell box", literal),
+        ("the rate of the late terms", early),
+        ("no remainder exceeds", mean_albedo),
+        ("less than a third", no_bound),
+        ("albedos times 0.8", shifted),
+        ("ten times closer", elsewhere),
+    ];
+    assert_eq!(mutants.len(), claims(&right).len(), "a claim without a mutation");
+    for (words, wrong) in mutants {
+        let found = refuted(&wrong);
+        assert!(found.len() == 1 && found[0].contains(words), "{words}: {found:?}");
+    }
+}
