@@ -79,7 +79,7 @@ fn pictures(
 ) -> book::Result<()> {
     let places = sheet::in_rows(tiles.len(), columns);
     let foot = Some("T E only: the emission E of the lamp itself is not shown.");
-    let layout = sheet::Layout { title, tiles, places: &places, heads, foot, scale: 2 };
+    let layout = sheet::Layout { title, tiles, places: &places, heads, foot, scale: 2.0 };
     Ok(folder.picture(&format!("{name}.png"), &layout.draw(&folder.caption("cornell"))?)?)
 }
 

@@ -134,7 +134,7 @@ fn spheres(folder: &Folder<'_>) -> book::Result<()> {
     };
     let tiles = [0, 1, 2].map(tile);
     let title = "A glossy sphere on a matt disc: the same light, T E, with three densities of directions";
-    let layout = Layout { title, tiles: &tiles, places: &in_rows(3, 3), heads: &[], foot: None, scale: 2 };
+    let layout = Layout { title, tiles: &tiles, places: &in_rows(3, 3), heads: &[], foot: None, scale: 2.0 };
     let caption = folder.caption("a lamp and a sky over a sphere, 16 directions per pixel");
     Ok(folder.picture("spheres.png", &layout.draw(&caption)?)?)
 }

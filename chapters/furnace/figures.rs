@@ -105,7 +105,7 @@ fn mistakes(m: &Measured, folder: &Folder<'_>) -> book::Result<Picture> {
     }
     let heads = [["furnace", "ρ = 0.5"], ["cornell", "Cornell box"]].map(|words| words.map(String::from));
     let title = "Two wrong renderers: the furnace shows only one of them";
-    let layout = Layout { title, tiles: &tiles, places: &in_rows(6, 3), heads: &heads, foot: None, scale: 2 };
+    let layout = Layout { title, tiles: &tiles, places: &in_rows(6, 3), heads: &heads, foot: None, scale: 2.0 };
     Ok(layout.draw(&folder.caption("furnace, cornell"))?)
 }
 
@@ -119,7 +119,7 @@ fn glass(images: &[Pixels], folder: &Folder<'_>) -> book::Result<Picture> {
     };
     let tiles: Vec<Tile> = images.iter().zip(["k = 1", "k = 2", "k = 3", "all k together"]).map(tile).collect();
     let title = "A glass ball in a sky of radiance 1; all pictures at gain ×0.5";
-    let layout = Layout { title, tiles: &tiles, places: &in_rows(4, 4), heads: &[], foot: None, scale: 2 };
+    let layout = Layout { title, tiles: &tiles, places: &in_rows(4, 4), heads: &[], foot: None, scale: 2.0 };
     Ok(layout.draw(&folder.caption("glass-furnace"))?)
 }
 

@@ -128,7 +128,7 @@ fn pictures(m: &Measured, folder: &Folder<'_>) -> book::Result<Picture> {
         places: &in_rows(6, 3),
         heads: &heads,
         foot: None,
-        scale: 2,
+        scale: 2.0,
     };
     Ok(layout.draw(&folder.caption("cornell"))?)
 }

@@ -64,7 +64,7 @@ fn terms(folder: &Folder<'_>, run: &Run, a: &Answers<'_>) -> book::Result<()> {
     let title = format!("The terms TᵏE, {} paths per pixel and term", run.settings.spp);
     let foot = Some("× and ÷: the exposure of each picture. Mean: over pixels and channels, W sr⁻¹ m⁻².");
     let places = sheet::in_rows(tiles.len(), 5);
-    let layout = sheet::Layout { title: &title, tiles: &tiles, places: &places, heads: &[], foot, scale: 2 };
+    let layout = sheet::Layout { title: &title, tiles: &tiles, places: &places, heads: &[], foot, scale: 2.0 };
     Ok(folder.picture("terms.png", &layout.draw(&folder.caption("cornell"))?)?)
 }
 

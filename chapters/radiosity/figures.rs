@@ -134,6 +134,6 @@ fn signed(pixels: usize, image: &TermImage) -> Picture {
 
 fn sheet(folder: &Folder<'_>, name: &str, title: &str, tiles: &[Tile]) -> book::Result<()> {
     let places = in_rows(tiles.len(), tiles.len());
-    let layout = Layout { title, tiles, places: &places, heads: &[], foot: None, scale: 2 };
+    let layout = Layout { title, tiles, places: &places, heads: &[], foot: None, scale: 2.0 };
     Ok(folder.picture(name, &layout.draw(&folder.caption("cornell"))?)?)
 }

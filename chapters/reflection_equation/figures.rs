@@ -46,7 +46,7 @@ pub(super) fn draw(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
 /// Pictures of one size with a label and a line below each, in one row for a projector.
 fn sheet(folder: &Folder<'_>, file: &str, title: &str, of: &str, tiles: &[Tile]) -> book::Result<()> {
     let places = in_rows(tiles.len(), tiles.len());
-    let layout = Layout { title, tiles, places: &places, heads: &[], foot: None, scale: 2 };
+    let layout = Layout { title, tiles, places: &places, heads: &[], foot: None, scale: 2.0 };
     Ok(folder.picture(file, &layout.draw(&folder.caption(of))?)?)
 }
 

@@ -2,17 +2,12 @@
 
 use super::base::{Ending, Failure, print, usage};
 use super::options::{Manner, OUTPUT, WHAT};
+use super::programs::CHAPTERS;
 use super::session::Session;
 use clap::Args;
-use fredholm::report::book::{Chapter, Folder};
+use fredholm::report::book::Folder;
 use fredholm::report::text::summary::Summary;
 use std::path::PathBuf;
-
-#[path = "../../chapters/01_one_box_three_answers.rs"]
-#[allow(dead_code)] // its `main` is for `cargo run --example`
-mod one_box_three_answers;
-
-const CHAPTERS: [Chapter; 1] = [one_box_three_answers::CHAPTER];
 
 /// Below `chapter --help`.
 pub const HELP: &str = "Examples:

@@ -27,6 +27,7 @@ mod options;
 mod output;
 mod pages;
 mod preflight;
+mod programs;
 mod progress;
 mod radiosity;
 mod roulette;
