@@ -5,8 +5,9 @@
 //! p_ω = p_A r²/cos θ_y      f cos θ_x E/p_ω = f E cos θ_x cos θ_y/(r² p_A)
 //! ```
 //!
-//! None of these mistakes gives the same image if the scene is made ten times as large. None of them shows under a sky,
-//! because the density of the sky is per solid angle from the start.
+//! Without 1/r², the image depends on the scale: in a scene ten times as large, direct light is a hundred times as bright. A
+//! missing cosine alone has no unit, so that it gives the same wrong image at every scale. None of these mistakes shows under
+//! a sky, because the density of the sky is per solid angle from the start.
 //!
 //! Inside an emitting sphere of radius R, one bounce should give ρ. It gives 2ρ without cos θ_y, 2ρR² without 1/r², and
 //! 8ρR²/3 without both. Under a disk of radius R at height h, with d² = h² + R², direct light should be `R²/d²`. It is
