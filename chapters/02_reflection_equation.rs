@@ -73,7 +73,7 @@ fn render(folder: &Folder<'_>, mistake: &dyn Mistake, text: [&str; 3], spp: u32)
 /// E = π L_r/ρ of a white patch under a lamp, or under a light without a surface.
 fn irradiance(folder: &Folder<'_>, mistake: &dyn Mistake, lamp: &str, light: &str) -> book::Result<Number> {
     let shapes = if lamp.is_empty() { PATCH.into() } else { format!("{PATCH}, {lamp}") };
-    let [_, reflected, _] = render(folder, mistake, [BESIDE, &shapes, light], folder.pick(8192, 4096))?;
+    let [_, reflected, _] = render(folder, mistake, [BESIDE, &shapes, light], folder.pick(8192, 3072))?;
     Ok(reflected.times(PI))
 }
 // ANCHOR_END: render

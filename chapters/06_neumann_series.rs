@@ -103,7 +103,7 @@ pub fn measure(quick: bool, seed: u64, closed: &str, weight: fn(f64, usize) -> f
     let load = |name: &str| load::scene(name, &load::Options::default()).map(|s| s.description);
     let (furnace, room) = (Scene::new(&load(closed)?), load("cornell")?);
     let scene = Scene::new(&room);
-    let (paths, meshes) = if quick { (1 << 17, [75, 300]) } else { (1 << 20, [300, 1200]) };
+    let (paths, meshes) = if quick { (1 << 18, [75, 300]) } else { (1 << 20, [300, 1200]) };
     let [coarse, fine] = meshes.map(|n| by_matrix::dense_matrix(&room, &scene, n, 1.0, LAST, Progress::NONE));
     let (coarse, fine) = (coarse?, fine?);
     let radius = radius_limit(&[coarse.radii[0], fine.radii[0]]).ok_or("the meshes are too coarse")?[RED];
@@ -132,7 +132,6 @@ pub fn measure(quick: bool, seed: u64, closed: &str, weight: fn(f64, usize) -> f
     })
 }
 
-// ANCHOR: claims
 /// The statements of the text.
 pub fn claims(m: &Measured) -> Vec<Claim> {
     let claim = |says, found: String, holds: bool| Claim { says, found, holds };
@@ -143,7 +142,7 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
     let early = top(&[m.ratios[0], m.ratios[2]], 0.0) / (r - half);
     let late = ((rate - r).abs() + 5.0 * s + half) / r;
     let over = |bound: &dyn Fn(usize) -> f64| {
-        m.remainder.iter().enumerate().map(|(k, (x, s))| (x + 5.0 * s) / bound(k)).fold(0.0, f64::max)
+        m.remainder[..=12].iter().enumerate().map(|(k, (x, s))| (x + 5.0 * s) / bound(k)).fold(0.0, f64::max)
     };
     let after = over(&|k| g / (1.0 - g) * (m.terms.mean[k] - 5.0 * m.terms.covariance[(k, k)].sqrt()));
     let before = over(&|k| g.powi(k as i32 + 1) / (1.0 - g) * m.terms.mean[0]);
@@ -164,7 +163,7 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
         ),
         claim("in the Cornell box r₀ and r₂ are at least 5 % below r(T)", ratios, early < 0.95),
         claim("the rate of the late terms is r(T), to 5 %", rates, late < 0.05),
-        claim("no remainder exceeds its bounds", bounds, after < 1.0 && before < 1.0),
+        claim("no remainder after K = 0 to 12 exceeds its bounds", bounds, after < 1.0 && before < 1.0),
         claim("less than a third of the guaranteed bounces are enough", ks.join(", "), third),
         claim("the terms give the light of a room with albedos times 0.8, to 3 %", light, apart < 0.03),
         claim(
@@ -174,7 +173,6 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
         ),
     ]
 }
-// ANCHOR_END: claims
 
 fn value((x, s): Value) -> String {
     plus_minus(x, s, 1)

@@ -109,7 +109,7 @@ pub fn measure(quick: bool, seed: u64, direction: Direction, sweeps: Sweeps) -> 
     let (room, cube) = (load("cornell")?, load("cube")?);
     let scene = Scene::new(&room);
     let widths = if quick { [100, 400] } else { [300, 1200] };
-    let (rays, paths, n) = if quick { (1 << 17, 1 << 19, 2) } else { (1 << 20, 1 << 20, 3) };
+    let (rays, paths, n) = if quick { (1 << 18, 1 << 19, 2) } else { (1 << 20, 1 << 20, 3) };
     let cubes = [n, 2 * n, 4 * n].map(|n| 6 * n * n); // n × n patches on each wall
     let [coarse, fine] = widths.map(|n| matrix(&room, n));
     let (coarse, fine) = (coarse?, fine?);
@@ -147,7 +147,6 @@ pub fn measure(quick: bool, seed: u64, direction: Direction, sweeps: Sweeps) -> 
     })
 }
 
-// ANCHOR: claims
 /// The statements of the text.
 pub fn claims(m: &Measured) -> Vec<Claim> {
     let claim = |says, found: String, holds: bool| Claim { says, found, holds };
@@ -192,7 +191,6 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
         ),
     ]
 }
-// ANCHOR_END: claims
 
 fn percent(x: f64) -> String {
     format!("{} %", significant(100.0 * x, 2))

@@ -18,7 +18,7 @@ use fredholm::report::book::{self, Folder};
 use fredholm::report::image::picture::{develop, mean};
 use fredholm::report::image::sheet::{Layout, Tile, in_rows};
 use fredholm::report::plot::{Axis, Drawn, Entry, GREY, Look, Panel, Sample, Stroke, Words, figure};
-use fredholm::report::text::{markdown, number::significant};
+use fredholm::report::text::markdown;
 use fredholm::scene::{Scene, load};
 use fredholm::terms::TermImage;
 use std::path::Path;
@@ -36,13 +36,19 @@ fn tables(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     let light = |angle: f64| if angle == 90.0 { "sky".to_string() } else { format!("lamp, α = {angle}°") };
     let rows = m.spreads.iter().zip(SITUATIONS).map(|(row, (surface, angle))| {
         let [u, c, f] = row.map(|s| if s.variance.value < 1e-9 { "0".into() } else { s.variance.to_string() });
-        let rays = row.map(|s| significant((1e4 * s.variance.value).max(1.0), 2)).join(" / ");
+        let rays = row.map(|s| two_digits((1e4 * s.variance.value).max(1.0))).join(" / ");
         [format!("{surface}, {}", light(angle)), u, c, f, rays]
     });
     let header = ["situation", "V, uniform", "V, by the cosine", "V, by f", "rays for an error of 1 %"];
     folder.text("spreads.md", &markdown::table(&header, &rows.collect::<Vec<_>>()))?;
     let [right, wrong] = m.distance;
     Ok(folder.numbers(&[("distance", format!("{right:.3}")), ("wrong_distance", format!("{wrong:.3}"))])?)
+}
+
+/// A number of rays, rounded to two digits.
+fn two_digits(n: f64) -> String {
+    let unit = 10f64.powf((n.log10().floor() - 1.0).max(0.0));
+    format!("{:.0}", (n / unit).round() * unit)
 }
 
 /// Bars from `start` in steps of `step`: the fraction of the values in each step. Values below the first step

@@ -14,7 +14,10 @@ use fredholm::report::book::{self, Folder};
 use fredholm::report::figures::decay::{self, Decay, RateLine};
 use fredholm::report::image::{picture, sheet, sheet::Tile, typeset::superscript};
 use fredholm::report::plot::{Curve, Look};
-use fredholm::report::text::{markdown, number::significant};
+use fredholm::report::text::{
+    markdown,
+    number::{average, significant},
+};
 use fredholm::stats::TermMeans;
 use fredholm::study::run::Run;
 use fredholm::terms::TermImage;
@@ -33,16 +36,25 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured, a: &Answers<'_>) -> book:
     norms(folder, &m.run, a)
 }
 
-/// ‖T^K E‖₁, the bound on the tail that follows from it, and the tail, in the red channel; what part of the bounds is
-/// reached.
+/// In the red channel: ‖T^K E‖₁, the bound on the tail that follows from it, the tail, their ratio r, and the rate r/(1 + r)
+/// of the geometric series with this tail. Then what part of the bounds is reached, and the share of T³E in the picture.
 fn numbers(folder: &Folder<'_>, run: &Run, a: &Answers<'_>) -> book::Result<()> {
     let (g, k) = (run.guaranteed_rate().x, run.settings.max_bounces);
     let [last, tail] = [k, k + 1].map(|n| a.norms.mean[n].x);
-    let bound = last * g / (1.0 - g);
-    let [last, bound, tail] = [last, bound, tail].map(|x| significant(x, 3));
-    let [term, rest] = of_bounds(&run.scene, a).map(percent);
-    let numbers = [("last", last), ("bound", bound), ("tail", tail), ("term_of_bound", term), ("tail_of_bound", rest)];
-    Ok(folder.numbers(&numbers)?)
+    let ratio = tail / last;
+    let image = a.series.series.image();
+    let [term, rest] = of_bounds(&run.scene, a);
+    folder.numbers(&[
+        ("last", significant(last, 3)),
+        ("bound", significant(last * g / (1.0 - g), 3)),
+        ("tail", significant(tail, 3)),
+        ("ratio", significant(ratio, 3)),
+        ("rate", significant(ratio / (1.0 + ratio), 2)),
+        ("term_of_bound", percent(term)),
+        ("tail_of_bound", percent(rest)),
+        ("third", percent(average(&image.terms[3]).0 / average(&image.total).0)),
+    ])?;
+    Ok(())
 }
 
 /// The terms and the whole image, each at its own exposure.

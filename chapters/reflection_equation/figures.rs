@@ -13,8 +13,7 @@ use super::number::Number;
 use super::scenes::{ball, point, scene};
 use super::{Captured, Measured};
 use fredholm::engine::{Settings, by_rays};
-use fredholm::estimator::Roulette;
-use fredholm::math::Points;
+use fredholm::estimator::{Roulette, Technique};
 use fredholm::report::book::{self, Folder};
 use fredholm::report::image::picture::{auto_gain, develop, gain_label};
 use fredholm::report::image::sheet::{Layout, Tile, in_rows};
@@ -61,24 +60,27 @@ fn lights(folder: &Folder<'_>) -> book::Result<()> {
     let lamp = |r: f64| format!("{objects}, {}", ball(r, place, &format!("power = [{power}, {power}, {power}]")));
     let point = point(place, power / (4.0 * PI));
     let sky = "{ type = 'environment', radiance = [0.7, 0.7, 0.7] }";
-    let settings = Settings {
+    // the method with little noise for each light: random directions for the sky, random points for a lamp
+    let (scatter, connect) = (Technique::Scatter, Technique::Connect);
+    let settings = |technique| Settings {
         spp: 16,
-        points: Points::Sobol,
+        technique,
         max_bounces: 1,
         roulette: Roulette::Never,
         seed: folder.seed,
         ..Settings::default()
     };
     let mut tiles = vec![];
-    for (label, note, shapes, light) in [
-        ("the sky", "L the same from everywhere", objects.to_string(), sky),
-        ("a large lamp", "sphere, R = 60 cm", lamp(0.6), ""),
-        ("a small lamp", "sphere, R = 15 cm, same power", lamp(0.15), ""),
-        ("a point", "R → 0, same power", objects.to_string(), point.as_str()),
+    for (label, note, shapes, light, technique) in [
+        ("the sky", "L the same from everywhere", objects.to_string(), sky, scatter),
+        ("a large lamp", "sphere, R = 60 cm", lamp(0.6), "", connect),
+        ("a small lamp", "sphere, R = 15 cm, same power", lamp(0.15), "", connect),
+        ("a point", "R → 0, same power", objects.to_string(), point.as_str(), connect),
     ] {
         let scene = scene([&camera, &shapes, light])?;
-        let image = by_rays::terms(&scene, by_rays::Estimator::Prefix, &settings, folder.progress).terms.swap_remove(1);
-        let image = develop(size as usize, size as usize, &image.mean, 1.0).picture;
+        let found = by_rays::terms(&scene, by_rays::Estimator::Prefix, &settings(technique), folder.progress);
+        let image = &found.terms[1].mean;
+        let image = develop(size as usize, size as usize, image, 1.0).picture;
         tiles.push(Tile { image, label: label.into(), notes: vec![note.into()] });
     }
     let of = "a white sphere on a grey disc, T E at 16 samples per pixel";

@@ -7,7 +7,7 @@
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | L_i(0, ω) | light that arrives at the ball, from almost all directions | `photo` |
-//! | L_r | light that the object reflects, in the room or under the photograph | [`brightness`] |
+//! | L_r | light that the object reflects, in the room or under the photograph | `brightness` |
 //!
 //! Reference: Paul Debevec, *Rendering synthetic objects into real scenes*, SIGGRAPH 1998.
 

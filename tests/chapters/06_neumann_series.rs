@@ -40,7 +40,7 @@ fn every_claim_of_chapter_6_can_fail() {
         ("in the furnace", uneven),
         ("in the Cornell box", literal),
         ("the rate of the late terms", early),
-        ("no remainder exceeds", mean_albedo),
+        ("no remainder", mean_albedo),
         ("less than a third", no_bound),
         ("albedos times 0.8", shifted),
         ("ten times closer", elsewhere),
