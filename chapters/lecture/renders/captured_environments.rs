@@ -190,7 +190,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     let mut board = Board::new(
         "A captured environment: light that depends on the direction only",
         &format!(
-            "L_i(x, d) ≈ L_map(d). The same gain {} for all pictures; 1 m from the sphere to each wall.",
+            "Lᵢ(x, d) ≈ L_map(d). All pictures: gain {}. The walls are 1 m from the centre of the sphere. ± is the 95 % interval.",
             gain_label(gain)
         ),
     );

@@ -15,7 +15,7 @@
 //! Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 2.2 (importance sampling).
 
 use super::board::{Board, Tile};
-use super::measure::{Shot, samples_in, seconds, words};
+use super::measure::{Shot, in_equal_time, seconds, words};
 use super::stage::{HAZE, SKY, spheres, under_sky};
 use fredholm::estimator::{Plan, Prefix, Roulette, Technique};
 use fredholm::report::book::{Folder, Result, Slide};
@@ -62,12 +62,8 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     let scene = Scene::new(&under_sky(description, HAZE));
     let prefix = Prefix(Plan { max_bounces: K, technique: Technique::Scatter, roulette: Roulette::Never });
     let time = folder.pick(2.5, 0.2);
-    let shots = Sampling::ALL.map(|sampling| {
-        let pilot = Shot::new(&scene, sampling, &prefix, 16, &format!("pilot, {sampling}"), folder);
-        let spp = samples_in(time, &pilot);
-        (sampling, Shot::new(&scene, sampling, &prefix, spp, &sampling.to_string(), folder))
-    });
-    let [(_, uniform), _, (_, by_bsdf)] = &shots;
+    let shots = in_equal_time(time, |i, spp, stream| Shot::new(&scene, Sampling::ALL[i], &prefix, spp, stream, folder));
+    let [uniform, _, by_bsdf] = &shots;
     let all = 0..K + 1;
     let gain = auto_gain(&by_bsdf.image(all.clone()).mean);
     let name = |sampling| match sampling {
@@ -77,7 +73,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     };
     let gain_of = |shot: &Shot| shot.efficiency(all.clone()).over(uniform.efficiency(all.clone()));
     let mut csv = Csv::new("directions,spp,seconds,mean,std_error,variance,variance_std_error,relative_efficiency");
-    let tiles = shots.iter().map(|(sampling, shot)| {
+    let tiles = Sampling::ALL.iter().zip(&shots).map(|(sampling, shot)| {
         let relative = gain_of(shot);
         let efficiency = match sampling {
             Sampling::Uniform => "relative efficiency 1".to_string(),
@@ -100,11 +96,11 @@ fn program(folder: &Folder<'_>) -> Result<()> {
         }
         tile
     });
-    let tiles = tiles.collect();
+    let tiles = tiles.collect::<Vec<_>>();
     let mut board = Board::new(
         "Directions where the light matters: less noise in the same time",
         &format!(
-            "E[f L_i cos θ/p] is the same for every density p. Light is found only where a path hits the sky (technique \
+            "E[f Lᵢ cos θ/p] is the same for every density p. Light is found only where a path hits the sky (technique \
              scatter), k ≤ {K}. Gain {}.",
             gain_label(gain)
         ),

@@ -70,7 +70,7 @@ const CASES: [Case; 4] = [
 ];
 
 fn program(folder: &Folder<'_>) -> Result<()> {
-    let size = folder.pick(222, 128);
+    let size = folder.pick(222, 111);
     let scene = Scene::new(&built_in("cornell-spheres", [size, size])?);
     let spp = folder.pick(32, 16);
     let shots = CASES.iter().map(|case| {
@@ -99,10 +99,10 @@ fn program(folder: &Folder<'_>) -> Result<()> {
             });
         } else {
             notes.push(format!("mean {}", super::measure::words(&shot.estimate(0..K + 1))));
-            notes.push("r_k = 1 for every k".into());
+            notes.push("rₖ = 1 for every k".into());
         }
         let tile = Tile::new(size, &shot.image(0..K + 1).mean, gain, case.label, notes);
-        tiles.push(if folder.quick { Tile { image: tile.image.enlarged(2), fine: 2, ..tile } } else { tile });
+        tiles.push(if folder.quick { Tile { image: tile.image.enlarged(2), ..tile } } else { tile });
     }
     check(&ratio, &shots)?;
     let mut board = Board::new(
@@ -123,7 +123,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     }
     board.y += 8.0;
     board.wide_row(tiles);
-    board.lines("r_k = term k of the wrong image over term k of the right one; ± is the 95 % interval.", 14.0);
+    board.lines("rₖ = term k of the wrong image over term k of the right one; ± is the 95 % interval.", 14.0);
     folder.text("emission-rules.csv", &csv.text())?;
     board.finish(folder, &SLIDE, |_| Ok(()))
 }

@@ -8,7 +8,8 @@
 //! |---|---|---|
 //! | se | standard error of a pixel, from replicates | [`fredholm::terms::film`] |
 //! | V | variance of the image; √V is its noise | [`Shot::variance`] |
-//! | t, t₁ | seconds of a render, seconds per sample of every pixel | [`Shot::seconds`], [`samples_in`] |
+//! | t, t₁ | seconds of a render, seconds per sample of every pixel | [`Shot::seconds`], [`Shot::cost`] |
+//! | n | samples per pixel | [`Shot::spp`], [`in_equal_time`] |
 //!
 //! Reference: Pharr, Jakob and Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 2.1 (efficiency).
 
@@ -28,7 +29,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
-/// Replicates of a film; every pixel has at least this number of samples.
+/// Replicates of a film. With a multiple of it as number of samples, all replicates have the same size.
 pub(crate) const REPLICATES: u32 = 16;
 
 /// A value with its standard error from the replicates.
@@ -50,6 +51,11 @@ impl Measured {
         Self { value, error: value.abs() * (self.error / self.value).hypot(other.error / other.value) }
     }
 
+    /// The value times a known factor.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        Self { value: factor * self.value, error: factor.abs() * self.error }
+    }
+
     /// self − other, for independent values.
     pub(crate) fn minus(self, other: Self) -> Self {
         Self { value: self.value - other.value, error: self.error.hypot(other.error) }
@@ -64,8 +70,11 @@ impl Measured {
 /// A film with the seconds that it took.
 pub(crate) struct Shot {
     pub(crate) film: TermFilm,
+    /// Wall-clock seconds of this render.
     pub(crate) seconds: f64,
     pub(crate) spp: u32,
+    /// Seconds per sample of every pixel: the least of several renders, if there are several.
+    pub(crate) cost: f64,
 }
 
 impl Shot {
@@ -82,7 +91,8 @@ impl Shot {
         let start = Instant::now();
         let amount = Amount::new(spp, Key::new(folder.seed, stream));
         let film = render(&t, &scene.camera, estimator, amount, folder.progress);
-        Self { film, seconds: start.elapsed().as_secs_f64(), spp }
+        let seconds = start.elapsed().as_secs_f64();
+        Self { film, seconds, spp, cost: seconds / f64::from(spp) }
     }
 
     /// The terms k ≤ K by prefixes of paths that no roulette ends, with MIS.
@@ -119,10 +129,10 @@ impl Shot {
         Measured { value: v.value.sqrt(), error: v.error / (2.0 * v.value.sqrt()) }
     }
 
-    /// 1/(V t), without the error of t.
+    /// 1/(V n t₁), without the error of t₁.
     pub(crate) fn efficiency(&self, slots: Range<usize>) -> Measured {
         let v = self.variance(slots);
-        let value = 1.0 / (v.value * self.seconds);
+        let value = 1.0 / (v.value * self.cost * f64::from(self.spp));
         Measured { value, error: value * v.error / v.value }
     }
 
@@ -133,10 +143,20 @@ impl Shot {
     }
 }
 
-/// The number of samples that fits into `seconds` at the speed of a pilot render; at least 16.
-pub(crate) fn samples_in(seconds: f64, pilot: &Shot) -> u32 {
-    let fits = seconds * f64::from(pilot.spp) / pilot.seconds;
-    fits.round().clamp(f64::from(REPLICATES), 4096.0) as u32
+/// Renders N ways in about equal time, each with a multiple of 16 samples. `render` gets the number of the way, the samples per pixel and the name of a stream.
+///
+/// Two pilot renders of each way, in turn, measure its time per sample. The least time counts, because other programs can
+/// only make a render slower.
+pub(crate) fn in_equal_time<const N: usize>(time: f64, render: impl Fn(usize, u32, &str) -> Shot) -> [Shot; N] {
+    let pilot =
+        |round: &str| std::array::from_fn::<f64, N, _>(|i| render(i, REPLICATES, &format!("{round}, {i}")).cost);
+    let (first, second) = (pilot("first pilot"), pilot("second pilot"));
+    std::array::from_fn(|i| {
+        let cost = first[i].min(second[i]);
+        let spp = (time / (cost * f64::from(REPLICATES))).round().clamp(1.0, 256.0) as u32 * REPLICATES;
+        let shot = render(i, spp, &format!("way {i}"));
+        Shot { cost: shot.cost.min(cost), ..shot }
+    })
 }
 
 /// `mean ± half width of the 95 % interval`, averaged over the channels.

@@ -91,9 +91,9 @@ fn colour(share: f64) -> [u8; 3] {
 }
 
 const TECHNIQUES: [(Technique, &str); 3] = [
-    (Technique::Scatter, "BSDF sampling, w = (1, 0)"),
-    (Technique::Connect, "light sampling, w = (0, 1)"),
-    (Technique::Mis, "MIS, balance heuristic"),
+    (Technique::Scatter, "BSDF sampling: w_s = 1"),
+    (Technique::Connect, "light sampling: w_c = 1"),
+    (Technique::Mis, "MIS: w_s + w_c = 1"),
 ];
 
 fn program(folder: &Folder<'_>) -> Result<()> {
@@ -200,10 +200,10 @@ fn beside(
     let bar = (0..w * h).map(|i| colour(((i % w) as f64 + 0.5) / w as f64)).collect();
     board.picture(Picture { width: w, height: h, pixels: bar }, [x as u32, end as u32], 2);
     let words = Words { size: 13.0, ..Words::default() };
-    board.text("light sampling", (x, end + 28.0), room / 2.0, words);
-    board.text("BSDF sampling", (x + room, end + 28.0), room / 2.0, Words { align: Align::Right, ..words });
+    board.text("0: light sampling", (x, end + 28.0), room / 2.0, words);
+    board.text("1: BSDF sampling", (x + room, end + 28.0), room / 2.0, Words { align: Align::Right, ..words });
     let note = Words { size: 13.0, color: GREY, ..Words::default() };
-    board.text("share of the direct light; grey: none", (x, end + 46.0), room, note);
+    board.text("share of BSDF sampling; grey: no light", (x, end + 46.0), room, note);
 }
 
 /// MIS must be proved less noisy than each of the two techniques.

@@ -40,27 +40,28 @@ const LIGHTS: [Light; 3] = [
     (
         "A sky: light from every direction",
         SKY,
-        "L_o = ∫ f L_sky(ω) V cos θ dω",
-        "Soft shadows. The mirror shows the sky and its sun; the glossy sphere shows them blurred.",
+        "Lₒ = ∫ f L(ω) V cos θ dω",
+        "L: sky, V: visible. Soft shadows. The mirror shows the sky and its sun; the glossy sphere shows them blurred.",
     ),
     (
         "A lamp: light from an area",
         LAMP,
-        "L_o = ∫ f L_e V cos θ cos θ_y/r² dA",
-        "Shadows with a soft edge. The mirror shows the lamp, and the ground as black: it does not emit.",
+        "Lₒ = ∫ f Lₑ V cos θ cos θ′/r² dA",
+        "θ′: angle at the lamp. Shadows with a soft edge. The mirror shows the lamp, and the ground as black: it does \
+         not emit.",
     ),
     (
         "A point light: light from one point",
         POINT,
-        "L_o = f V I cos θ/r²",
-        "Sharp shadows. The mirror is black: it reflects one direction only, and a point has no area to be hit.",
+        "Lₒ = f V I cos θ/r²",
+        "I: intensity. Sharp shadows. The mirror is black: it reflects one direction only, and a point has no area to be hit.",
     ),
 ];
 
 fn program(folder: &Folder<'_>) -> Result<()> {
     let size: [u32; 2] = folder.pick([400, 128], [200, 64]);
     let mut board = Board::new(
-        "L_o = ∫ f L_i cos θ dω: one reflection of three lights",
+        "Lₒ = ∫ f Lᵢ cos θ dω: one reflection of three lights",
         "Matt, glossy (GGX, α = 0.2), mirror. Only light after one reflection, k = 1. Gain: the 99th percentile is shown \
          as about 0.8.",
     );

@@ -16,7 +16,7 @@
 //! Reference: Arvo and Kirk, *Particle Transport and Image Synthesis* (SIGGRAPH 1990).
 
 use super::board::{Board, Tile};
-use super::measure::{Measured, Shot, built_in, samples_in, seconds, words};
+use super::measure::{Measured, Shot, built_in, in_equal_time, seconds};
 use fredholm::engine::{Settings, by_rays};
 use fredholm::estimator::{Plan, Prefix, Roulette, Technique};
 use fredholm::report::book::{Folder, Result, Slide};
@@ -55,40 +55,42 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     let size = folder.pick(300, 150);
     let scene = Scene::new(&built_in("cornell", [size, size])?);
     let time = folder.pick(2.5, 0.2);
-    let shots = rules().map(|(name, roulette)| {
-        let prefix = Prefix(Plan { max_bounces: K, technique: Technique::Mis, roulette });
-        let pilot = Shot::new(&scene, Sampling::Bsdf, &prefix, 16, &format!("pilot, {name}"), folder);
-        let spp = samples_in(time, &pilot);
-        (name, Shot::new(&scene, Sampling::Bsdf, &prefix, spp, name, folder))
+    let shots = in_equal_time(time, |i, spp, stream| {
+        let prefix = Prefix(Plan { max_bounces: K, technique: Technique::Mis, roulette: rules()[i].1.clone() });
+        Shot::new(&scene, Sampling::Bsdf, &prefix, spp, stream, folder)
     });
-    let [(_, none), (_, lecture), (_, albedo)] = &shots;
+    let [none, lecture, albedo] = &shots;
     let gain = auto_gain(&albedo.image(INDIRECT).mean);
-    let mut csv =
-        Csv::new("rule,rays_per_path,spp,seconds,mean,std_error,variance,variance_std_error,relative_efficiency");
-    let tiles = shots.iter().map(|(name, shot)| {
+    let mut csv = Csv::new(
+        "rule,rays_per_path,spp,seconds,mean,std_error,variance,variance_std_error,efficiency_by_time,efficiency_by_rays",
+    );
+    let tiles = rules().into_iter().zip(&shots).map(|((name, _), shot)| {
         let relative = shot.efficiency(INDIRECT).over(none.efficiency(INDIRECT));
         let (mean, v) = (shot.mean(INDIRECT), shot.variance(INDIRECT));
-        let numbers = [shot.seconds, mean.value, mean.error, v.value, v.error, relative.value];
+        let rays = (none.film.rays.iter().sum::<u64>() as f64) / (shot.film.rays.iter().sum::<u64>() as f64);
+        let per_ray = none.variance(INDIRECT).over(v).times(rays);
+        let [efficiency, by_rays] =
+            [relative, per_ray].map(|r| if std::ptr::eq(shot, none) { "1".into() } else { r.words() });
+        let numbers = [shot.seconds, mean.value, mean.error, v.value, v.error, relative.value, per_ray.value];
         csv.put(name).numbers([shot.rays_per_path()]).put(shot.spp).numbers(numbers).end();
-        let efficiency = if std::ptr::eq(shot, none) { "1".into() } else { relative.words() };
         let notes = vec![
             format!("{} rays per path", significant(shot.rays_per_path(), 3)),
             format!("{} samples per pixel in {}", shot.spp, seconds(shot)),
             format!("noise √V = {}", shot.noise(INDIRECT).words()),
-            format!("relative efficiency {efficiency}"),
-            format!("mean {}", words(&shot.estimate(INDIRECT))),
+            format!("relative efficiency by time {efficiency}"),
+            format!("relative efficiency by rays {by_rays}"),
         ];
-        let mut tile = Tile::new(size, &shot.image(INDIRECT).mean, gain, *name, notes);
+        let mut tile = Tile::new(size, &shot.image(INDIRECT).mean, gain, name, notes);
         if folder.quick {
             tile.image = tile.image.enlarged(2);
         }
         tile
     });
-    let tiles = tiles.collect();
+    let tiles = tiles.collect::<Vec<_>>();
     let mut board = Board::new(
         "Russian roulette: shorter paths, the same mean",
         &format!(
-            "Indirect light only, 2 ≤ k ≤ {K}. The same time for each rule; gain {}. Efficiency is 1/(V · seconds).",
+            "Indirect light only, 2 ≤ k ≤ {K}. The same time for each rule; gain {}. Efficiency: 1/(V · seconds) or 1/(V · rays); ±: error of V, 95 %.",
             gain_label(gain)
         ),
     );

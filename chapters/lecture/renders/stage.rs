@@ -17,7 +17,7 @@ use fredholm::report::book::Result;
 use fredholm::scene::Description;
 use fredholm::scene::description::{LightDescription, Sky};
 use fredholm::scene::raster::Raster;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -154,10 +154,4 @@ pub(crate) fn lat_long(h: u32, radiance: impl Fn(Vec3) -> Rgb) -> Vec<[f32; 3]> 
         radiance(direction(column / (2 * h) as f32, row / h as f32)).to_array()
     };
     (0..2 * h * h).map(pixel).collect()
-}
-
-/// The distance of a point from the line through `origin` in the unit direction `direction`.
-pub(crate) fn distance_to_line(point: DVec3, origin: DVec3, direction: DVec3) -> f64 {
-    let to = point - origin;
-    (to - direction * to.dot(direction)).length()
 }

@@ -41,11 +41,11 @@ pub(crate) const SLIDE: Slide = Slide {
     program,
 };
 
-/// Relative efforts of the columns.
-const EFFORT: [u32; 4] = [1, 4, 16, 64];
+/// Relative efforts of the columns, in a full and in a short run.
+const EFFORT: [[u32; 4]; 2] = [[1, 4, 16, 64], [1, 2, 4, 8]];
 /// Samples per pixel, or patches, for the effort 1.
 const SAMPLES: u32 = 4;
-const PATCHES: u32 = 24;
+const PATCHES: u32 = 32;
 /// The largest value of a clamped sample.
 const CLAMP: f32 = 0.5;
 /// Width of a picture.
@@ -98,22 +98,23 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     let scene = Scene::new(&description);
     let plan = Plan { max_bounces: 2, technique: Technique::Connect, roulette: Roulette::Albedo { from: 2 } };
     let prefix = Prefix(plan.clone());
-    let right = Shot::new(&scene, Sampling::Bsdf, &prefix, folder.pick(512, 512), "reference", folder);
-    let reference = functionals(&right.film)[0].total.clone();
+    let right = Shot::new(&scene, Sampling::Bsdf, &prefix, folder.pick(384, 128), "reference", folder);
+    let reference = functionals(&right.film)[0].total;
 
     let sampled = |shot: &Shot| {
         let pixels = shot.image(0..shot.film.shape.slots).mean;
         Stage::new(pixels, format!("n = {}", shot.spp), &functionals(&shot.film)[0].total, &reference)
     };
-    let unbiased = EFFORT
+    let effort = EFFORT[usize::from(folder.quick)];
+    let unbiased = effort
         .map(|n| sampled(&Shot::new(&scene, Sampling::Bsdf, &prefix, n * SAMPLES, &format!("unbiased {n}"), folder)));
-    let clamped = EFFORT.map(|n| {
+    let clamped = effort.map(|n| {
         let walk = Whole(Walk { plan: plan.clone(), mistake: &Clamped(CLAMP) });
         sampled(&Shot::new(&scene, Sampling::Bsdf, &walk, n * SAMPLES, &format!("clamped {n}"), folder))
     });
-    let settings = Settings { spp: 64, max_bounces: 1, read_patches: true, seed: folder.seed, ..Settings::default() };
+    let settings = Settings { spp: 32, max_bounces: 1, read_patches: true, seed: folder.seed, ..Settings::default() };
     let mut patches = vec![];
-    for n in EFFORT {
+    for n in effort {
         let matrix = by_matrix::matrix(&description, &scene, (n * PATCHES) as usize, &settings, folder.progress)?;
         let seen = matrix.through_camera(&scene, &settings, folder.progress);
         let name = format!("{} patches", matrix.radiosity.patches().len());
@@ -124,12 +125,12 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     let found = check(&rows);
     let mut csv = Csv::new("method,effort,amount,error_percent,std_error");
     for ((name, _), row) in ROWS.iter().zip(&rows) {
-        for (n, s) in EFFORT.iter().zip(row) {
+        for (n, s) in effort.iter().zip(row) {
             csv.put(name).put(n).put(&s.amount).numbers([s.error.value, s.error.error]).end();
         }
     }
     folder.text("unbiased-and-consistent.csv", &csv.text())?;
-    draw(folder, &rows, gain)?;
+    draw(folder, effort, &rows, gain)?;
     found
 }
 
@@ -144,21 +145,22 @@ fn check(rows: &[Vec<Stage>; 3]) -> Result<()> {
         return Err("the error of the patches does not fall".into());
     }
     let [.., before, last] = clamped.as_slice() else { return Err("four stages are expected".into()) };
-    if !certain(last) || (last.error.value / before.error.value - 1.0).abs() > 0.1 {
+    let change = last.error.minus(before.error);
+    if !certain(last) || change.value.abs() > 0.1 * last.error.value.abs() + 3.0 * change.error {
         return Err("the error of clamped samples is not constant".into());
     }
     Ok(())
 }
 
-fn draw(folder: &Folder<'_>, rows: &[Vec<Stage>; 3], gain: f64) -> Result<()> {
+fn draw(folder: &Folder<'_>, effort: [u32; 4], rows: &[Vec<Stage>; 3], gain: f64) -> Result<()> {
     let mut board = Board::new("More effort: does the error go to zero?", "");
     board.y -= 24.0;
     let right = MARGIN + 4.0 * PITCH + 16.0;
     let room = WIDTH - MARGIN - right;
     let y = board.paragraph(
         &format!(
-            "Error of the image mean, with 95 % intervals. Effort 1: {SAMPLES} samples per pixel, or {PATCHES} patches. An \
-             arrow is an upper limit: the error cannot be told from 0. Gain {}.",
+            "Effort 1: {SAMPLES} samples per pixel, or {PATCHES} patches. The plot shows the error of the mean of the \
+             image, ± 95 %. Arrow: an upper limit, because the error may be 0. Pictures: gain {}.",
             gain_label(gain)
         ),
         (right, board.y + 4.0),
@@ -183,28 +185,28 @@ fn draw(folder: &Folder<'_>, rows: &[Vec<Stage>; 3], gain: f64) -> Result<()> {
     }
     let frame = [right + 62.0, y + 24.0, room - 66.0, 230.0];
     let table = y + 24.0 + 230.0 + 66.0;
-    let columns = [0.17, 0.46, 0.73].map(|part| right + part * room);
+    let columns = [0.09, 0.40, 0.71].map(|part| right + part * room);
     let words = Words { size: 13.0, ..Words::default() };
-    board.text("effort, and error in %", (right, table - 18.0), room, words);
-    for (line, n) in EFFORT.iter().enumerate() {
+    board.text("effort, and error of the mean in %", (right, table - 18.0), room, words);
+    for (line, n) in effort.iter().enumerate() {
         let y = table + 18.0 * (line as f64 + 1.0);
         board.text(&n.to_string(), (right, y), room, words);
         for (x, row) in columns.iter().zip(rows) {
             let s = &row[line];
-            board.text(&plus_minus(s.error.value, s.half(), 1), (*x, y), 0.28 * room, words);
+            board.text(&plus_minus(s.error.value, s.half(), 2), (*x, y), 0.3 * room, words);
         }
     }
     marks.extend(columns.iter().enumerate().map(|(i, x)| ((x + 6.0, table), Look::nth(i))));
     board.finish(folder, &SLIDE, |canvas| {
         marks.iter().try_for_each(|&(place, look)| canvas.mark(place, look))?;
-        plot(canvas, frame, rows)
+        plot(canvas, frame, effort, rows)
     })
 }
 
 /// |error of the mean| against effort, with 95 % intervals.
-fn plot(canvas: &Canvas<'_>, frame: [f64; 4], rows: &[Vec<Stage>; 3]) -> Drawn {
+fn plot(canvas: &Canvas<'_>, frame: [f64; 4], effort: [u32; 4], rows: &[Vec<Stage>; 3]) -> Drawn {
     let all = || rows.iter().flatten().map(|s| s.error.value.abs());
-    let x = Axis::powers_of_two("effort", EFFORT.iter().map(|&n| f64::from(n)), 7);
+    let x = Axis::powers_of_two("effort", effort.iter().map(|&n| f64::from(n)), 7);
     let y = Axis::log("|error of the mean| in %", all().filter(|v| *v > 0.05).chain([0.05]));
     let panel = Panel::draw(canvas, "", frame, x, y)?;
     for (i, row) in rows.iter().enumerate() {
@@ -214,7 +216,7 @@ fn plot(canvas: &Canvas<'_>, frame: [f64; 4], rows: &[Vec<Stage>; 3]) -> Drawn {
             std_error: s.error.error,
             replicates: s.replicates,
         };
-        let points = EFFORT.iter().zip(row).map(point).collect();
+        let points = effort.iter().zip(row).map(point).collect();
         panel.curve(&Curve { label: ROWS[i].0.into(), points, look: Look::nth(i) }, 4.0 * (i as f64 - 1.0), true)?;
     }
     Ok(())
