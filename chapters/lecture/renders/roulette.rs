@@ -52,7 +52,7 @@ fn rules() -> [(&'static str, Roulette); 3] {
 }
 
 fn program(folder: &Folder<'_>) -> Result<()> {
-    let size = folder.pick(300, 150);
+    let size = folder.pick(300, 100);
     let scene = Scene::new(&built_in("cornell", [size, size])?);
     let time = folder.pick(2.5, 0.2);
     let shots = in_equal_time(time, |i, spp, stream| {
@@ -82,7 +82,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
         ];
         let mut tile = Tile::new(size, &shot.image(INDIRECT).mean, gain, name, notes);
         if folder.quick {
-            tile.image = tile.image.enlarged(2);
+            tile.image = tile.image.enlarged(3);
         }
         tile
     });
