@@ -11,7 +11,7 @@
 //! | L | mean of the image by an independent render with many samples | `reference` |
 //! | b | bias: of patches it falls with their width h, of clamped samples it stays | [`Stage::error`] |
 //!
-//! Reference: Veach, *Robust Monte Carlo Methods for Light Transport Simulation* (1997), sec. 2.4.4.
+//! Reference: Veach, *Robust Monte Carlo Methods for Light Transport Simulation* (1997), ch. 2.
 
 use super::board::{Board, MARGIN, WIDTH};
 use super::measure::{Measured, REPLICATES, Shot, built_in};
