@@ -75,13 +75,15 @@ pub(crate) struct Board {
 }
 
 impl Board {
-    /// A page with its title and a text below it.
+    /// A page with its title and a text below it, which may be empty.
     pub(crate) fn new(title: &str, lead: &str) -> Self {
         let mut board = Self { y: 26.0, pictures: vec![], texts: vec![], too_wide: vec![] };
         let words = Words { size: TITLE, bold: true, ..Words::default() };
         board.text(title, (MARGIN, board.y), WIDTH - 2.0 * MARGIN, words);
         board.y += 0.5 * TITLE + 12.0;
-        board.lines(lead, 14.0);
+        if !lead.is_empty() {
+            board.lines(lead, 14.0);
+        }
         board
     }
 
@@ -138,7 +140,7 @@ impl Board {
         self.row(tiles, [MARGIN, WIDTH - MARGIN]);
     }
 
-    /// A row of pictures without text between two places.
+    /// A picture without text, with `fine` picture pixels per CSS pixel.
     pub(crate) fn picture(&mut self, image: Picture, at: [u32; 2], fine: usize) {
         self.pictures.push((image, at, fine));
     }

@@ -216,7 +216,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     let differences = by_size(folder, &sky)?;
     let (x, mut y) = (MARGIN + width + GAP, top + 26.0);
     y = board.paragraph(
-        "Matt sphere: mean with the map − mean in the room, by radius",
+        "Matt sphere: mean by the map − mean in the room, in % of it, by radius",
         (x, y),
         WIDTH - MARGIN - x,
         13.0,

@@ -15,7 +15,7 @@
 //! Reference: Pharr, Jakob and Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 9.5.
 
 use super::board::{Board, Tile};
-use super::measure::{Shot, seconds, words};
+use super::measure::{Shot, words};
 use super::stage::{SKY, SUN, spheres, under_sky};
 use fredholm::report::book::{Folder, Result, Slide};
 use fredholm::report::image::picture::{auto_gain, gain_label};
@@ -70,7 +70,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     let tile = |shot: &Shot, label: &str| {
         let numbers = vec![
             format!("mean {}", words(&shot.estimate(all.clone()))),
-            format!("noise √V = {}, {spp} spp in {}", shot.noise(all.clone()).words(), seconds(shot)),
+            format!("noise √V = {} with {spp} samples per pixel", shot.noise(all.clone()).words()),
         ];
         let mut tile = Tile::new(size[0], &shot.image(all.clone()).mean, gain, label, numbers);
         if folder.quick {
@@ -104,10 +104,10 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     if ratio.value - 3.0 * ratio.error < 1.0 {
         return Err(format!("p = 1/2 is not proved noisier: ratio of the variances {}", ratio.words()).into());
     }
-    let mut csv = Csv::new("choice,mean,std_error,variance,variance_std_error,spp,seconds");
+    let mut csv = Csv::new("choice,mean,std_error,variance,variance_std_error,spp");
     for (name, shot) in [("fresnel", &fresnel), ("0.5", &constant)] {
         let (mean, v) = (shot.mean(all.clone()), shot.variance(all.clone()));
-        let numbers = [mean.value, mean.error, v.value, v.error, f64::from(spp), shot.seconds];
+        let numbers = [mean.value, mean.error, v.value, v.error, f64::from(spp)];
         csv.put(name).numbers(numbers).end();
     }
     folder.text("fresnel-choice.csv", &csv.text())?;

@@ -20,9 +20,10 @@ use super::measure::{Measured, Shot, built_in, in_equal_time, seconds};
 use fredholm::engine::{Settings, by_rays};
 use fredholm::estimator::{Plan, Prefix, Roulette, Technique};
 use fredholm::report::book::{Folder, Result, Slide};
+use fredholm::report::half_width_95;
 use fredholm::report::image::picture::{auto_gain, gain_label};
 use fredholm::report::text::csv::Csv;
-use fredholm::report::text::number::{percent, significant};
+use fredholm::report::text::number::{percent, plus_minus, significant};
 use fredholm::scene::Scene;
 use fredholm::scene::bsdf::Sampling;
 use std::ops::Range;
@@ -40,6 +41,8 @@ pub(crate) const SLIDE: Slide = Slide {
 
 /// K: the last term with a slot of its own, and the last one of paths without roulette.
 const K: usize = 16;
+/// Independent populations of walkers from which the engine computes the error of a growth.
+const POPULATIONS: u64 = 8;
 /// Slots of the indirect light that all three rules find; for every rule its variance is finite.
 const INDIRECT: Range<usize> = 2..K + 1;
 
@@ -52,7 +55,7 @@ fn rules() -> [(&'static str, Roulette); 3] {
 }
 
 fn program(folder: &Folder<'_>) -> Result<()> {
-    let size = folder.pick(300, 150);
+    let size = folder.pick(300, 100);
     let scene = Scene::new(&built_in("cornell", [size, size])?);
     let time = folder.pick(2.5, 0.2);
     let shots = in_equal_time(time, |i, spp, stream| {
@@ -82,7 +85,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
         ];
         let mut tile = Tile::new(size, &shot.image(INDIRECT).mean, gain, name, notes);
         if folder.quick {
-            tile.image = tile.image.enlarged(2);
+            tile.image = tile.image.enlarged(3);
         }
         tile
     });
@@ -90,7 +93,8 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     let mut board = Board::new(
         "Russian roulette: shorter paths, the same mean",
         &format!(
-            "Indirect light only, 2 ≤ k ≤ {K}. The same time for each rule; gain {}. Efficiency: 1/(V · seconds) or 1/(V · rays); ±: error of V, 95 %.",
+            "Indirect light only, 2 ≤ k ≤ {K}. The same time for each rule; gain {}. Efficiency: 1/(V · seconds) or \
+             1/(V · rays); ±: error of V, 95 %.",
             gain_label(gain)
         ),
     );
@@ -106,7 +110,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
             apart.words(),
             albedo.mean(INDIRECT).minus(none.mean(INDIRECT)).words(),
             percent(tail.value),
-            grows.words(),
+            plus_minus(grows.value, half_width_95(grows.error, POPULATIONS), 2),
         ),
         14.0,
     );

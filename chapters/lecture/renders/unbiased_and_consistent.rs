@@ -11,7 +11,7 @@
 //! | L | mean of the image by an independent render with many samples | `reference` |
 //! | b | bias: of patches it falls with their width h, of clamped samples it stays | [`Stage::error`] |
 //!
-//! Reference: Veach, *Robust Monte Carlo Methods for Light Transport Simulation* (1997), sec. 2.4.4.
+//! Reference: Veach, *Robust Monte Carlo Methods for Light Transport Simulation* (1997), ch. 2.
 
 use super::board::{Board, MARGIN, WIDTH};
 use super::measure::{Measured, REPLICATES, Shot, built_in};
@@ -34,7 +34,7 @@ use glam::DVec3;
 pub(crate) const SLIDE: Slide = Slide {
     id: "unbiased-and-consistent",
     topic: "Unbiased and consistent",
-    caption: "Each row is a method, each column has four times the effort of the one before. The path tracer is noisy, but \
+    caption: "Each row is a method, each column has four times the effort of the one before. Path tracing is noisy, but \
               its mean is right at every effort. Radiosity has no noise; its error falls with the patches, and it is never \
               zero. With clamped samples the noise falls as well, but the error stays: more samples do not help.",
     scene: "cornell",
@@ -81,7 +81,7 @@ impl Stage {
 }
 
 const ROWS: [(&str, &str); 3] = [
-    ("Unbiased: path tracer", "The noise falls. The mean is right for every n."),
+    ("Unbiased: path tracing", "The noise falls. The mean is right for every n."),
     ("Biased, consistent: radiosity", "The error falls with the width of the patches."),
     ("Neither: samples clamped at 0.5", "The noise falls, the error stays."),
 ];
@@ -139,7 +139,7 @@ fn check(rows: &[Vec<Stage>; 3]) -> Result<()> {
     let [unbiased, patches, clamped] = rows;
     let certain = |s: &Stage| s.error.value.abs() > 3.0 * s.error.error;
     if unbiased.iter().any(|s| s.error.value.abs() > 4.0 * s.error.error) {
-        return Err("the path tracer has a bias".into());
+        return Err("path tracing has a bias".into());
     }
     if patches.windows(2).any(|s| s[1].error.value.abs() >= s[0].error.value.abs()) {
         return Err("the error of the patches does not fall".into());
@@ -154,13 +154,13 @@ fn check(rows: &[Vec<Stage>; 3]) -> Result<()> {
 
 fn draw(folder: &Folder<'_>, effort: [u32; 4], rows: &[Vec<Stage>; 3], gain: f64) -> Result<()> {
     let mut board = Board::new("More effort: does the error go to zero?", "");
-    board.y -= 24.0;
+    board.y -= 2.0;
     let right = MARGIN + 4.0 * PITCH + 16.0;
     let room = WIDTH - MARGIN - right;
     let y = board.paragraph(
         &format!(
             "Effort 1: {SAMPLES} samples per pixel, or {PATCHES} patches. The plot shows the error of the mean of the \
-             image, ± 95 %. Arrow: an upper limit, because the error may be 0. Pictures: gain {}.",
+             image, ±\u{a0}95\u{a0}%. Arrow: an upper limit, because the error may be\u{a0}0. Pictures: gain {}.",
             gain_label(gain)
         ),
         (right, board.y + 4.0),
