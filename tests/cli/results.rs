@@ -227,7 +227,7 @@ fn terms_can_be_compared_at_one_exposure() {
     let image = desk.image("own");
     let layer = |k: usize| image.layer(&format!("T{k:02}")).unwrap();
     let gains: Vec<f64> = (0..4).map(|k| auto_gain(layer(k))).collect();
-    assert!(gains[3] > 4.0 * gains[1], "the terms fall: {gains:?}");
+    assert!(gains[3] >= 4.0 * gains[1], "the terms fall: {gains:?}");
     let as_with = |dir: &str, k: usize, gain: f64| {
         let picture = shown(&desk.path(dir).join(format!("T{k:02}.png")), [16, 16]);
         picture == develop(16, 16, layer(k), gain).picture.pixels

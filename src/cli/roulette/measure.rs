@@ -1,6 +1,6 @@
 //! Renders schedules: their noise, their images, and with `--optimise` their seconds.
 
-use super::Args;
+use super::args::Args;
 use fredholm::engine::Settings;
 use fredholm::estimator;
 use fredholm::progress::Progress;

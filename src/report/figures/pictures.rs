@@ -136,14 +136,19 @@ pub(super) fn draw(
     let panels = settings.iter().zip(numbers);
     let panels: Vec<Panel> =
         panels.map(|(s, numbers)| Panel { label: s.label.clone(), pixels: s.image, numbers }).collect();
-    let seconds = if settings.iter().any(|s| s.seconds_per_path.is_some()) { " or 1/(V · seconds)" } else { "" };
-    let no_error = |s: &&Setting| s.known == Variance::Finite && s.noise[0].1.std_error.is_nan();
+    let timed = settings.iter().any(|s| s.seconds_per_path.is_some());
+    let (seconds, time) = if timed {
+        (" or 1/(V\u{a0}·\u{a0}s)", " The interval per s leaves out the error of the time.")
+    } else {
+        ("", "")
+    };
+    let no_error = |s: &Setting| s.known == Variance::Finite && s.noise[0].1.std_error.is_nan();
     let unknown =
-        if settings.iter().any(|s| no_error(&s)) { " Without an interval: the error is not known." } else { "" };
+        if settings.iter().any(no_error) { " Noise without an interval: its error is not known." } else { "" };
     let foot = format!(
         "Noise: standard deviation √(V/n) of a pixel after n samples, with its 95 % interval. V is the variance of one \
-         sample, averaged over pixels and channels; \"all k\" includes lamps seen directly. Efficiency: 1/(V · rays){seconds} \
-         of {part}, relative to the first picture.{unknown}"
+         sample, averaged over pixels and channels; \"all k\" includes lamps seen directly. \
+         Efficiency: 1/(V\u{a0}·\u{a0}rays){seconds} of {part}, relative to the first picture.{time}{unknown}"
     );
     side_by_side::draw(title, size, &panels, gain(settings), &foot, caption)
 }
