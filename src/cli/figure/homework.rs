@@ -1,6 +1,6 @@
 //! `fredholm figure cs184-part4`: the pictures that a well-known homework asks for, with the decay and a verdict.
 
-use super::Figure;
+use super::args::Figure;
 use crate::cli::base::{Ending, Failure};
 use crate::cli::options::Changes;
 use crate::cli::session::Session;

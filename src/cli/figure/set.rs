@@ -1,7 +1,7 @@
 //! Many figures, each made by a process of its own, so that each carries the command that makes it alone; and a page that shows
 //! them.
 
-use super::Figure;
+use super::args::Figure;
 use super::named::{Kind, Named};
 use crate::cli::base::{Ending, Failure, note, print};
 use crate::cli::progress::stop_flag;

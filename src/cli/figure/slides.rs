@@ -1,6 +1,6 @@
 //! A figure of the lecture: its program, compiled in, and its record.
 
-use super::Figure;
+use super::args::Figure;
 use crate::cli::base::{Ending, Failure};
 use crate::cli::session::Session;
 use fredholm::report::book::{Folder, Slide};

@@ -1,6 +1,6 @@
 //! A figure of one image at growing numbers of paths per pixel.
 
-use super::Figure;
+use super::args::Figure;
 use crate::cli::base::{Ending, Failure, names};
 use crate::cli::options::Changes;
 use crate::cli::preflight;
