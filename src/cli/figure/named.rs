@@ -67,7 +67,7 @@ const COMMANDS: &[Recipes] = &[
         caption: "The same room three times: the sum of the terms, the path tracer, and the radiosity matrix. They are different \
                   programs for the same equation, and the verdicts say with error bars whether they agree.",
         picture: "three.png",
-        words: &["series", "cornell", "--size", "256x256", "--spp", "128", "--patches", "2400"],
+        words: &["series", "cornell", "--size", "512x512", "--spp", "24", "--patches", "2400"],
         quick: SMALL_MESH,
     },
     Recipes {

@@ -8,12 +8,12 @@ use crate::report::{
     image::{
         contact_sheet::shown,
         picture::{Picture, auto_gain, auto_gain_beside_lamps, gain_label, mean},
-        sheet::{Tile, slide},
+        sheet::{Layout, READABLE, Tile, in_rows},
         typeset::{Caption, superscript},
     },
     text::{
         csv::Csv,
-        number::{average, count, percent, plus_minus, significant},
+        number::{average, percent, plus_minus, significant},
     },
 };
 use crate::study::homework::{Homework, LAST, ROULETTE};
@@ -83,7 +83,10 @@ pub fn sheets(
         label,
         notes,
     };
-    let sheet = |title: &str, tiles: &[Tile]| slide(title, 3, tiles, None, caption);
+    let sheet = |title: &str, tiles: &[Tile]| {
+        let places = in_rows(tiles.len(), 3);
+        Layout { title, tiles, places: &places, heads: &[], foot: None, scale: READABLE }.draw(caption)
+    };
     let image = done.terms.series.image();
     let whole = average(&done.roulette.series.image().total).0;
     let term = |m: usize, gain: f64| {
@@ -119,7 +122,7 @@ pub fn sheets(
         .collect();
     let grown = done.grown.iter().map(|s| {
         let error = if s.squared_error < 0.0 { "≤ noise".into() } else { significant(s.squared_error.sqrt(), 2) };
-        tile(format!("{} spp", count(s.spp.into())), &s.pixels, g, vec![format!("RMSE {error}")])
+        tile(format!("{} spp", s.spp), &s.pixels, g, vec![format!("RMSE {error}")])
     });
     let grown: Vec<Tile> = grown.collect();
     let shared = gain_label(g);

@@ -12,7 +12,7 @@ use crate::report::{
     ReportError,
     image::{
         picture::Picture,
-        sheet::{Layout, Tile, columns_in, in_rows},
+        sheet::{Layout, READABLE, SLIDE, Tile, columns_in, in_rows},
         typeset::Caption,
         zmap,
     },
@@ -263,11 +263,11 @@ pub fn sheet(
         let scale = sizes[(sizes.len() - 1) * 99 / 100].max(f64::MIN_POSITIVE);
         // the map goes from −4 to 4
         let pixels = m.values.iter().map(|v| zmap::color(4.0 * v / scale)).collect();
-        let image = Picture { width, height, pixels }.enlarged(192usize.div_ceil(width));
+        let image = Picture { width, height, pixels }.enlarged(256usize.div_ceil(width));
         Tile { image, label: m.label.clone(), notes: vec![] }
     };
     let tiles: Vec<Tile> = modes.iter().map(tile).collect();
-    let places = in_rows(tiles.len(), columns_in(1216.0, &tiles).min(4));
+    let places = in_rows(tiles.len(), columns_in(SLIDE as f64, &tiles, READABLE).min(4));
     let foot = Some("red: positive, blue: negative, white: zero; each at its own scale (99th percentile)");
-    Layout { title, tiles: &tiles, places: &places, heads: &[], foot, scale: 1.0 }.draw(caption)
+    Layout { title, tiles: &tiles, places: &places, heads: &[], foot, scale: READABLE }.draw(caption)
 }

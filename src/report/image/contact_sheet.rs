@@ -1,19 +1,19 @@
 //! Pictures with labels: single terms with a strip of text below, and grids of labelled cells.
 //!
-//! Text never covers a pixel; it is written next to the images. Images narrower than 128 pixels are enlarged by repeating
+//! Text never covers a pixel; it is written next to the images. Images narrower than 256 pixels are enlarged by repeating
 //! pixels. In grids, images wider than 512 pixels are averaged down in linear radiance; single pictures are not. Gain and
 //! mean always come from the full image.
 
 use super::{
     picture::{Developed, Picture, auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shrink},
-    sheet::{LABEL, Layout, Tile, columns_in, in_rows},
+    sheet::{LABEL, Layout, READABLE, SLIDE, Tile, columns_in, in_rows},
     typeset::{Caption, SANS, page, superscript, text_element, text_width},
 };
 use crate::report::{ReportError, text::number::significant};
 
-const NARROWEST: usize = 128;
+const NARROWEST: usize = 256;
 const WIDEST: usize = 512;
-const SHEET: f64 = 1600.0;
+const SHEET: f64 = SLIDE as f64;
 
 /// One image of a sheet.
 #[derive(Clone, Debug)]
@@ -136,13 +136,14 @@ fn laid_out(
     }
     let columns = columns.unwrap_or_else(|| balanced(&tiles));
     let places = in_rows(tiles.len(), columns);
-    let picture = Layout { title, tiles: &tiles, places: &places, heads: &[], foot: None, scale: 1.0 }.draw(caption)?;
+    let picture =
+        Layout { title, tiles: &tiles, places: &places, heads: &[], foot: None, scale: READABLE }.draw(caption)?;
     Ok(Sheet { picture, clipped })
 }
 
 /// Number of columns: as many as fit, then reduced as far as the number of rows stays the same.
 fn balanced(tiles: &[Tile]) -> usize {
-    let (count, mut fit) = (tiles.len(), columns_in(SHEET, tiles));
+    let (count, mut fit) = (tiles.len(), columns_in(SHEET, tiles, READABLE));
     if count > 4 {
         fit = fit.min((count as f64 * 1.8).sqrt().ceil() as usize);
     }

@@ -12,10 +12,15 @@ const NOTE: f64 = 12.0;
 const SMALL: f64 = 10.5;
 const TITLE: f64 = 18.0;
 /// Distance between tiles, and around all of them.
+/// Bold letters are wider than the measured ones by about this factor.
+const BOLDER: f64 = 1.12;
 pub(super) const GAP: f64 = 16.0;
 const NARROWEST: f64 = 400.0;
 const DIM: &str = "fill=\"#333333\"";
 const BOLD: &str = "font-weight=\"bold\"";
+
+/// Scale of the text of a sheet that is read on a screen and on a projector.
+pub const READABLE: f64 = 1.75;
 
 /// Width of a slide in pixels.
 pub const SLIDE: usize = 1920;
@@ -42,15 +47,15 @@ pub struct Layout<'a> {
     pub heads: &'a [[String; 2]],
     /// Text below all tiles; it may have several lines.
     pub foot: Option<&'a str>,
-    /// Text and gaps are this many times as large as usual: 1 for a screen, 2 for a projector, whose sheets are at least
-    /// [`SLIDE`] pixels wide. The pictures keep their pixels.
+    /// Text and gaps are this many times as large as 14 pixels for a label: [`READABLE`] for sheets that are also projected, 2
+    /// for slides, which are at least [`SLIDE`] pixels wide. The pictures keep their pixels.
     pub scale: f64,
 }
 
 /// Width of the widest text of a tile: its label or one of its notes.
 pub(super) fn words(label: &str, notes: &[String], scale: f64) -> f64 {
     let notes = notes.iter().map(|note| text_width(note, SANS, NOTE * scale));
-    notes.fold(text_width(label, SANS, LABEL * scale), f64::max)
+    notes.fold(BOLDER * text_width(label, SANS, LABEL * scale), f64::max)
 }
 
 /// Width of a tile without the gap: the width of its picture or of its widest text.
@@ -60,8 +65,9 @@ fn room(tiles: &[Tile], scale: f64) -> f64 {
 }
 
 /// Number of columns that fit in `width` pixels: at least one, and at most the number of tiles.
-pub fn columns_in(width: f64, tiles: &[Tile]) -> usize {
-    (((width - GAP) / (room(tiles, 1.0) + GAP)).floor() as usize).clamp(1, tiles.len().max(1))
+pub fn columns_in(width: f64, tiles: &[Tile], scale: f64) -> usize {
+    let gap = GAP * scale;
+    (((width - gap) / (room(tiles, scale) + gap)).floor() as usize).clamp(1, tiles.len().max(1))
 }
 
 /// A sheet for a projector, [`SLIDE`] pixels wide: the pictures in `columns`, row by row.
@@ -105,7 +111,7 @@ impl Layout<'_> {
         let right = self.places.iter().map(|&place| corner(place).0 + cell_w).fold(0.0, f64::max);
         let words = foot.iter().map(|line| text_width(line, SANS, small));
         let words = words.fold(text_width(self.title, SANS, title), f64::max);
-        let width = right.max(words + 2.0 * gap).max(if scale > 1.0 { SLIDE as f64 } else { NARROWEST }).ceil();
+        let width = right.max(words + 2.0 * gap).max(if scale >= 2.0 { SLIDE as f64 } else { NARROWEST }).ceil();
         let bottom = self.places.iter().map(|&place| corner(place).1 + cell_h).fold(top, f64::max);
         let lines = caption.lines(width - 2.0 * gap, small);
         let height = (bottom + (lines.len() + foot.len()) as f64 * small * LINE + gap).ceil();

@@ -19,7 +19,7 @@
 
 use super::{
     picture::{Picture, develop, gain_label, shrink},
-    sheet::{GAP, Layout, Tile, in_rows, words},
+    sheet::{GAP, Layout, READABLE, Tile, in_rows, words},
     typeset::{Caption, SANS, text_width, wrap},
 };
 use crate::report::ReportError;
@@ -32,8 +32,8 @@ pub const WIDEST: usize = 1920;
 const TALLEST: usize = 640;
 /// Most panels in a row.
 const MOST: usize = 5;
-/// Text is this much larger than on other sheets, to be readable on a slide that is [`WIDEST`] pixels wide.
-const TEXT: f64 = 1.75;
+/// Scale of the text.
+const TEXT: f64 = READABLE;
 /// Font size of the text below all panels.
 const SMALL: f64 = 10.5 * TEXT;
 /// Longest label in letters.
