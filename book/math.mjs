@@ -22,10 +22,13 @@ const CODE = /(^ *(`{3,}|~{3,})[\s\S]*?^ *\2 *$|`[^`\n]+`)/m;
 const DISPLAY = /\$\$([\s\S]+?)\$\$/g;
 const INLINE = /(?<![\\$])\$(?!\s)([^$\n]+?)(?<!\s)\$(?!\d)/g; // "$5 and $6" is money
 
+// Markdown reads the text between HTML tags: its marks must not look like emphasis, code, links or escapes.
+const plain = (html) => html.replace(/>([^<]+)</g, (_, text) => `>${text.replace(/[*_`\\[\]~|]/g, (c) => `&#${c.charCodeAt(0)};`)}<`);
+
 function page(name, markdown) {
   const tex = (source, displayMode) => {
     try {
-      return katex.renderToString(source, { ...options, displayMode, macros: { ...macros } });
+      return plain(katex.renderToString(source, { ...options, displayMode, macros: { ...macros } }));
     } catch (error) {
       throw new Error(`${name}: ${error.message}\n  in: ${source}`);
     }

@@ -11,9 +11,9 @@ pub(super) const LABEL: f64 = 14.0;
 const NOTE: f64 = 12.0;
 const SMALL: f64 = 10.5;
 const TITLE: f64 = 18.0;
-/// Distance between tiles, and around all of them.
 /// Bold letters are wider than the measured ones by about this factor.
 const BOLDER: f64 = 1.12;
+/// Distance between tiles, and around all of them.
 pub(super) const GAP: f64 = 16.0;
 const NARROWEST: f64 = 400.0;
 const DIM: &str = "fill=\"#333333\"";
