@@ -19,7 +19,7 @@
 
 use fredholm::engine::Settings;
 use fredholm::estimator::{Plan, Technique};
-use fredholm::report::book::{self, Chapter, Claim, Folder};
+use fredholm::report::book::{self, Chapter, Claim, Folder, Number};
 use fredholm::zoo::{self, Mistake, Right};
 use std::{f64::consts::PI, process::ExitCode};
 
@@ -27,12 +27,9 @@ use std::{f64::consts::PI, process::ExitCode};
 mod figures;
 #[path = "reflection_equation/mirror_ball.rs"]
 pub mod mirror_ball;
-#[path = "reflection_equation/number.rs"]
-pub mod number;
 #[path = "reflection_equation/scenes.rs"]
 mod scenes;
 use mirror_ball::{Captured, capture, excess};
-use number::Number;
 use scenes::{BESIDE, HOLLOW, INSIDE, ONE, PATCH, SKY, UPWARDS, ball, disc, point, scene};
 
 /// This chapter.

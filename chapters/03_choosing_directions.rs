@@ -20,7 +20,7 @@
 
 use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::{Kernel, SceneTransport, Transport};
-use fredholm::report::book::{self, Chapter, Claim, Folder};
+use fredholm::report::book::{self, Chapter, Claim, Folder, Number};
 use fredholm::report::text::number::significant;
 use fredholm::scene::{Vertex, bsdf::Sampling};
 use fredholm::zoo::Right;
@@ -30,14 +30,11 @@ use std::process::ExitCode;
 mod figures;
 #[path = "choosing_directions/mistakes.rs"]
 pub mod mistakes;
-#[path = "reflection_equation/number.rs"]
-pub mod number;
 #[path = "choosing_directions/situations.rs"]
 pub mod situations;
 #[path = "choosing_directions/spread.rs"]
 pub mod spread;
 use mistakes::{distance, member, with};
-use number::Number;
 use situations::{ALPHA, RHO, SITUATIONS, situation};
 use spread::{Spread, spread};
 

@@ -11,11 +11,10 @@
 //!
 //! Reference: Veach, *Robust Monte Carlo Methods for Light Transport Simulation* (1997), ch. 2.
 
-use super::number::Number;
 use super::situations::{RHO, SITUATIONS, situation};
 use super::spread::spread;
 use fredholm::math::{Key, Purpose, Rgb, Rng};
-use fredholm::report::book::{self, Folder};
+use fredholm::report::book::{self, Folder, Number};
 use fredholm::scene::{Scene, bsdf::Sampling};
 use fredholm::stats::uniformity;
 use fredholm::zoo::{self, Mistake};

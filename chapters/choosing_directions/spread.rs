@@ -13,8 +13,8 @@
 //! Both come from 64 independent batches, so that every number has an error. The error of V adds those of Var X and of m²:
 //! the two may be correlated, and the sum is right in every case.
 
-use super::number::Number;
 use fredholm::math::{Key, Purpose, Rng};
+use fredholm::report::book::Number;
 use fredholm::stats::Moments;
 use rayon::prelude::*;
 

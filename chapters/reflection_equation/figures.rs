@@ -9,12 +9,11 @@
 //! | T E | light reflected once, as a picture | [`lights`] |
 //! | R/h, d | size and distance of a lamp | [`limits`] |
 
-use super::number::Number;
 use super::scenes::{ball, point, scene};
 use super::{Captured, Measured};
 use fredholm::engine::{Settings, by_rays};
 use fredholm::estimator::{Roulette, Technique};
-use fredholm::report::book::{self, Folder};
+use fredholm::report::book::{self, Folder, Number};
 use fredholm::report::image::picture::{auto_gain, develop, gain_label};
 use fredholm::report::image::sheet::{Layout, Tile, in_rows};
 use fredholm::report::plot::{Axis, Curve, Entry, GREY, Look, Panel, Point, Sample, Stroke, Words, figure};

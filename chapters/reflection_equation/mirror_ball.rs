@@ -11,10 +11,9 @@
 //!
 //! Reference: Paul Debevec, *Rendering synthetic objects into real scenes*, SIGGRAPH 1998.
 
-use super::number::Number;
 use fredholm::engine::{Settings, by_rays};
 use fredholm::estimator::Roulette;
-use fredholm::report::book::{self, Folder};
+use fredholm::report::book::{self, Folder, Number};
 use fredholm::scene::description::{LightDescription, Sky};
 use fredholm::scene::{Description, Scene, SceneError, load, raster::Raster};
 use fredholm::terms::TermImage;

@@ -16,6 +16,7 @@
 use super::image::{picture::Picture, typeset::Caption};
 use super::plot::Figure;
 pub use super::text::markdown::Claim;
+pub use super::text::measured::Number;
 use super::text::{markdown, prose::wrapped};
 use super::{ReportError, write_atomically};
 use crate::progress::Progress;

@@ -29,12 +29,13 @@ pub fn run(args: &Figure) -> Result<Ending, Failure> {
     if args.list {
         return list(&figures).map(|()| Ending::Ok);
     }
+    let session = || Session::new(manner(args), args.seed);
     let id = match (args.all, args.id.as_deref()) {
-        (true, _) => return set::run(args, "figures", "All figures", &figures),
+        (true, _) => return set::run(args, "All figures", &figures, session()?, "figures"),
         (_, None) => return Err(usage("which figure?", "`fredholm figure --list` names them, --all makes them all")),
         (_, Some(LECTURE)) => {
             let lecture: Vec<_> = figures.into_iter().filter(|f| named::LECTURE.contains(&f.id)).collect();
-            return set::run(args, LECTURE, "The figures of the lecture", &lecture);
+            return set::run(args, "The figures of the lecture", &lecture, session()?, LECTURE);
         }
         (_, Some(id)) => id,
     };
@@ -42,7 +43,6 @@ pub fn run(args: &Figure) -> Result<Ending, Failure> {
         let ids: Vec<_> = figures.iter().map(|f| f.id).chain([LECTURE]).collect();
         return Err(usage(&format!("no figure is called `{id}`"), &suggest(id, "figures", &ids)));
     };
-    let session = || Session::new(manner(args), args.seed);
     match figure.kind {
         Kind::Slide(slide) => slides::run(args, slide, session()?),
         Kind::Stages(recipe) => stages::run(args, recipe, session()?),

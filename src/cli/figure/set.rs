@@ -3,66 +3,90 @@
 
 use super::args::Figure;
 use super::named::{Kind, Named};
-use crate::cli::base::{Ending, Failure, note, print};
-use crate::cli::progress::stop_flag;
+use crate::cli::base::{Ending, Failure, names, note, print};
+use crate::cli::session::Session;
 use fredholm::report::page::gallery::{self, Exhibit};
 use fredholm::report::text::prose::wrapped;
-use std::path::PathBuf;
+use fredholm::report::text::summary::Summary;
+use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+/// How a figure was made.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Made {
+    Well,
+    /// It is there, and one of its comparisons failed.
+    Doubtful,
+    NotAtAll,
+}
+
 /// Makes the figures one after the other, then the page.
-pub fn run(args: &Figure, name: &str, title: &str, figures: &[Named]) -> Result<Ending, Failure> {
-    let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("fredholm-out").join(name));
-    std::fs::create_dir_all(&folder)?;
-    let start = Instant::now();
-    let (mut made, mut failed) = (vec![], vec![]);
+pub fn run(args: &Figure, title: &str, figures: &[Named], mut session: Session, name: &str) -> Result<Ending, Failure> {
+    session.about("several", "");
+    session.make_folder(name)?;
+    let (mut exhibits, mut doubtful, mut failed) = (vec![], vec![], vec![]);
     for (i, figure) in figures.iter().enumerate() {
-        if stop_flag().load(Ordering::Relaxed) {
+        if session.stopped() {
             break;
         }
-        let one = Instant::now();
+        let begun = Instant::now();
         let words = words(args, figure);
-        let output = folder.join(figure.id);
-        let ended = Command::new(std::env::current_exe()?)
-            .args(&words)
-            .arg("--out")
-            .arg(&output)
-            .args(args.force.then_some("--force"))
-            .arg("--quiet")
-            .stdout(Stdio::null())
-            .status()?;
-        let seconds = one.elapsed().as_secs_f64();
-        // a comparison that is not decided with few samples is no failure of the figure
-        let good = output.join(&figure.picture).exists() && matches!(ended.code(), Some(0 | 1));
-        if !args.quiet {
-            let mark = if good { '✓' } else { '✗' };
-            note(&format!("{mark} {:>2}/{} {} {seconds:.1} s", i + 1, figures.len(), figure.id));
+        let made = make(args, figure, &words, &session.folder.join(figure.id))?;
+        match made {
+            Made::NotAtAll => failed.push(figure.id),
+            Made::Doubtful => doubtful.push(figure.id),
+            Made::Well => {}
         }
-        if good {
-            made.push(exhibit(figure, &words));
-        } else {
-            failed.push(figure.id);
+        if made != Made::NotAtAll {
+            exhibits.push(exhibit(figure, &words));
+        }
+        if !args.quiet {
+            let (done, elapsed) = (i + 1, session.since().elapsed().as_secs_f64());
+            let left = elapsed / done as f64 * (figures.len() - done) as f64;
+            let mark = if made == Made::NotAtAll { '✗' } else { '✓' };
+            let seconds = begun.elapsed().as_secs_f64();
+            note(&format!("{mark} {done:>2}/{} {}: {seconds:.1} s; about {left:.0} s left", figures.len(), figure.id));
         }
     }
     let sentence = format!(
         "{} figures. Click on one to see it in full size. Each is a file of its own folder, next to this page.",
-        made.len()
+        exhibits.len()
     );
-    gallery::write(&folder.join("index.html"), title, &sentence, &made)?;
+    gallery::write(&session.folder.join("index.html"), title, &sentence, &exhibits)?;
+    session.sign(&Summary { files: names(["index.html", "summary.json"]), ..session.record() })?;
     let answer = format!(
         "{title}: {} of {} made in {:.0} s. They are in {}; open index.html there.",
-        made.len(),
+        exhibits.len(),
         figures.len(),
-        start.elapsed().as_secs_f64(),
-        folder.display()
+        session.since().elapsed().as_secs_f64(),
+        session.folder.display()
     );
     print(&wrapped(&answer))?;
-    Ok(match (stop_flag().load(Ordering::Relaxed), failed.is_empty()) {
-        (true, _) => Ending::Interrupted,
-        (_, true) => Ending::Ok,
-        _ => return Err(Failure::input(&format!("these figures could not be made: {}", failed.join(", ")))),
+    if !session.stopped() && !failed.is_empty() {
+        return Err(Failure::input(&format!("these figures could not be made: {}", failed.join(", "))));
+    }
+    if !doubtful.is_empty() {
+        note(&format!("a comparison failed in {}: run it alone to read which", doubtful.join(", ")));
+    }
+    Ok(session.ending(!doubtful.is_empty()))
+}
+
+/// Makes one figure by a process of its own.
+fn make(args: &Figure, figure: &Named, words: &[String], folder: &Path) -> Result<Made, Failure> {
+    let ended = Command::new(std::env::current_exe()?)
+        .args(words)
+        .arg("--out")
+        .arg(folder)
+        .args(args.force.then_some("--force"))
+        .arg("--quiet")
+        .stdout(Stdio::null())
+        .status()?;
+    Ok(match ended.code() {
+        _ if !folder.join(&figure.picture).exists() => Made::NotAtAll,
+        Some(0) => Made::Well,
+        Some(1) => Made::Doubtful,
+        _ => Made::NotAtAll,
     })
 }
 

@@ -3,6 +3,7 @@
 pub mod csv;
 pub mod grid;
 pub mod markdown;
+pub mod measured;
 mod null_as_nan;
 pub mod number;
 pub mod pixel_errors;

@@ -9,11 +9,19 @@
 //! | x, s | value and standard error | [`Number`] |
 //! | c, δ | the value of the statement, and its margin | [`Number::is`] |
 
-use fredholm::report::text::number::plus_minus;
-use fredholm::terms::Estimate;
+use super::number::plus_minus;
+use crate::terms::Estimate;
 use std::fmt;
 
 /// A measured value with its standard error.
+///
+/// ```
+/// use fredholm::report::book::Number;
+/// let (a, b) = (Number { value: 2.0, error: 0.02 }, Number { value: 4.0, error: 0.03 });
+/// assert_eq!(a.over(b).to_string(), "0.5000 ± 0.0063");
+/// // 5 standard errors must fit into the margin
+/// assert!(a.is(2.0, 0.11) && !a.is(2.0, 0.09) && !a.is(2.1, 0.11));
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Number {
     /// The value.
