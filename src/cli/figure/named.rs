@@ -55,8 +55,9 @@ const COMMANDS: &[Recipes] = &[
     Recipes {
         id: "decay-cornell",
         topic: "The Neumann series and its decay",
-        caption: "The mean of each term over all surfaces, on a logarithmic axis. The terms fall at first faster or slower, \
-                  and then by the same factor each time: the spectral radius of T. The bound of the largest albedo lies far above.",
+        caption: "The mean of each term over all surfaces, on a logarithmic axis. The terms fall, at first \
+                  by different factors, later by the same factor each time: the spectral radius of T. The bound from the largest \
+                  albedo lies far above.",
         picture: "decay.png",
         words: &["series", "cornell", "--size", "128x128", "--max-bounces", "12", "--estimator", "single"],
         quick: SMALL_MESH,

@@ -126,8 +126,10 @@ pub fn sheet(title: &str, [w, h]: [usize; 2], grown: &Grown, caption: &Caption) 
         let label = if reference { "reference".into() } else { format!("{} paths per pixel", r.name) };
         let error =
             if reference { format!("noise {}", number(r.deviation, 3)) } else { format!("RMSE {}", rmse(r.mse[0])) };
+        let half =
+            if r.mean[1].is_nan() { ", error not known".into() } else { format!(" ± {}", number(r.mean[1], 2)) };
         let notes = vec![
-            format!("mean {} ± {}", number(mean(pixels), 4), number(r.mean[1], 2)),
+            format!("mean {}{half}", number(mean(pixels), 4)),
             format!("mean shown {}", number(r.shown, 4)),
             error,
             format!("clipped {:.2} %", 100.0 * r.clipped),
