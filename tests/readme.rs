@@ -25,7 +25,7 @@ fn commands() -> Vec<String> {
 }
 
 /// Flags that make a command quick, by the words with which it starts.
-const QUICK: [(&str, &str); 10] = [
+const QUICK: [(&str, &str); 12] = [
     ("series", "--spp 16 --size 16x16 --patches 60"),
     ("sweep", "--spp 16 --size 16x16"),
     ("check bias", "--spp 64 --size 8x8"),
@@ -36,6 +36,8 @@ const QUICK: [(&str, &str); 10] = [
     ("diagnose", "--spp 64 --paths 4096"),
     ("zoo", "--spp 16 --size 16x16"),
     ("info", ""),
+    ("figure --list", ""),
+    ("figure", "--quick"),
 ];
 
 /// The command with its quick flags in place of its own.
