@@ -141,7 +141,7 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
             cones,
         ),
         claim(
-            "E_point/E_disc − 1 = (R/h)² at the same power, to ± 10 % of (R/h)²",
+            "E_point/E_disc − 1 = (R/h)² at the same intensity on the axis, to ± 10 % of (R/h)²",
             m.limit.iter().all(|(r, e)| e.is(r * r, 0.1 * r * r)),
             limit,
         ),
@@ -161,12 +161,12 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
             format!("{} and {}", m.sphere[0], m.sphere[1]),
         ),
         claim(
-            "a photograph of a mirror ball lights an object of 5 cm as the room does, to ± 5 %",
+            "a photograph of a mirror ball lights an object of radius 5 cm as the room does, to ± 5 %",
             small.is(0.0, 0.05),
             format!("difference {small}"),
         ),
         claim(
-            "for an object of 30 cm the photograph is off by more than 10 %",
+            "for an object of radius 30 cm the photograph is off by more than 10 %",
             large.value.abs() - 5.0 * large.error > 0.1,
             format!("difference {large}"),
         ),

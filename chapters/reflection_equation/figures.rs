@@ -83,7 +83,7 @@ fn lights(folder: &Folder<'_>) -> book::Result<()> {
         tiles.push(Tile { image, label: label.into(), notes: vec![note.into()] });
     }
     let of = "a white sphere on a grey disc, T E at 16 samples per pixel";
-    sheet(folder, "lights.png", "One sphere, four lights: the light that is reflected once, T E", of, &tiles)
+    sheet(folder, "lights.png", "One sphere, four lights: the light that is reflected once, T E (×1)", of, &tiles)
 }
 
 /// The photograph, and the object under it and in the room.
@@ -91,9 +91,9 @@ fn captured(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     let c: &Captured = &m.captured;
     let size = c.photo.mean.len().isqrt();
     let gain = auto_gain(&c.under.mean);
-    let room = |i: usize| (format!("{} cm, in the room", 100.0 * c.in_room[i].0), "all bounces", &c.in_room[i].1);
+    let room = |i: usize| (format!("R = {} cm, in the room", 100.0 * c.in_room[i].0), "all bounces", &c.in_room[i].1);
     let pictures = [
-        ("photograph".to_string(), "a mirror ball of 5 cm", &c.photo),
+        ("photograph".to_string(), "a mirror ball, R = 5 cm", &c.photo),
         ("under the photograph".into(), "one reflection", &c.under),
         room(0),
         room(2),

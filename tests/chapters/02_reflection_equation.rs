@@ -36,8 +36,8 @@ fn every_claim_fails_if_its_measurement_is_wrong() {
             Measured { distance: distance(&folder, mistake("no-inverse-square")).unwrap(), ..right.clone() },
         ),
         ("Pharr's sphere", Measured { sphere: sphere(&folder, mistake("half-bounce")).unwrap(), ..right.clone() }),
-        ("5 cm", Measured { captured: clipped, ..right.clone() }),
-        ("30 cm", same_size),
+        ("radius 5 cm", Measured { captured: clipped, ..right.clone() }),
+        ("radius 30 cm", same_size),
         ("cuts radiance", never_cut),
     ];
     for (words, measured) in &wrong {
