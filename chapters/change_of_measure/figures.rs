@@ -45,7 +45,7 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     let unit = &m.scales[1][0];
     let row = |i: usize| m.scales.iter().zip(SCALES).map(move |(pair, s)| (&pair[i], s));
     let tiles = row(0).chain(row(1)).map(|(s, scale)| {
-        let note = format!("mean: {} × that of the right room", significant(mean(s)[0] / mean(unit)[0], 3));
+        let note = format!("mean: {} × that of the right image at scale 1", significant(mean(s)[0] / mean(unit)[0], 3));
         tile(s, unit, &format!("lengths × {scale}"), vec![note])
     });
     let heads = [["right", "p_ω = p_A d²/cos θ"], ["wrong", "p_A used as p_ω"]].map(|row| row.map(String::from));

@@ -94,8 +94,8 @@ fn remainder(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     let before = (0..=LAST).map(|k| (k as f64, g.powi(k as i32 + 1) / (1.0 - g) * m0)).collect();
     let after = m.terms.mean.iter().enumerate().map(|(k, m)| (k as f64, g / (1.0 - g) * m)).collect();
     let lines = [
-        ("bound from term 0: gᴷ⁺¹/(1 − g) ‖E‖₁".into(), before, solid(plot::GREEN)),
-        ("bound from term K: g/(1 − g) ‖TᴷE‖₁".into(), after, dashed(plot::PURPLE)),
+        ("bound from term 0: ρᴷ⁺¹/(1 − ρ) ‖E‖₁".into(), before, solid(plot::GREEN)),
+        ("bound from term K: ρ/(1 − ρ) ‖TᴷE‖₁".into(), after, dashed(plot::PURPLE)),
         ("1 % of all light".into(), flat(0.01 * (m0 + m.remainder[0].0)), dashed(plot::GREY)),
     ];
     let curves = [curve("measured, 95 % interval", &m.remainder, Look::PREFIX)];
@@ -103,7 +103,7 @@ fn remainder(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     draw(
         folder,
         "remainder",
-        ["What is missing after the term K, red channel; g is the largest albedo", "cornell"],
+        ["What is missing after the term K, red channel; ρ is the largest albedo", "cornell"],
         axes,
         &curves,
         &lines,
