@@ -5,7 +5,8 @@ use super::options::{Manner, OUTPUT, WHAT};
 use super::programs::CHAPTERS;
 use super::session::Session;
 use clap::Args;
-use fredholm::report::book::Folder;
+use fredholm::report::book::{Chapter, Folder};
+use fredholm::report::text::prose::wrapped_after;
 use fredholm::report::text::summary::Summary;
 use std::path::PathBuf;
 
@@ -41,8 +42,8 @@ pub struct Options {
 /// Runs a chapter or lists them all.
 pub fn run(args: &Options) -> Result<Ending, Failure> {
     let Some(word) = &args.number else {
-        let lines: Vec<String> =
-            CHAPTERS.iter().map(|c| format!("{:>2}  {}\n    {}", c.number, c.title, c.shows)).collect();
+        let line = |c: &Chapter| format!("{:>2}  {}\n    {}", c.number, c.title, wrapped_after(c.shows, "    "));
+        let lines: Vec<String> = CHAPTERS.iter().map(line).collect();
         print(&lines.join("\n"))?;
         return Ok(Ending::Ok);
     };

@@ -17,7 +17,10 @@ use super::image::{picture::Picture, typeset::Caption};
 use super::plot::Figure;
 pub use super::text::markdown::Claim;
 pub use super::text::measured::Number;
-use super::text::{markdown, prose::wrapped};
+use super::text::{
+    markdown,
+    prose::{wrapped, wrapped_after},
+};
 use super::{ReportError, write_atomically};
 use crate::progress::Progress;
 use std::cell::RefCell;
@@ -207,7 +210,9 @@ impl Chapter {
         });
         text.push('\n');
         for Claim { says, found, holds } in &claims {
-            let _ = writeln!(text, "\n{} {says}\n    {found}", if *holds { '✓' } else { '✗' });
+            let statement = format!("{} {says}", if *holds { '✓' } else { '✗' });
+            let _ = writeln!(text, "\n{}", wrapped_after(&statement, "  "));
+            let _ = writeln!(text, "{}", format_args!("    {}", wrapped_after(found, "    ")));
         }
         let _ = writeln!(text, "\nFigures and tables: {}", folder.path.display());
         if !self.next.is_empty() {
