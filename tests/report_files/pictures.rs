@@ -45,7 +45,7 @@ proptest! {
 
 #[test]
 fn sheets_show_every_pixel_of_every_image() {
-    let (w, h) = (130, 20);
+    let (w, h) = (260, 40);
     let images: Vec<_> = (0..7).map(|i| ramp(w, h, 1.0 + i as f32)).collect();
     let cells: Vec<_> =
         images.iter().enumerate().map(|(i, pixels)| Cell { label: format!("T{i}"), pixels, gain: Some(0.1) }).collect();
