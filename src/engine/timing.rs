@@ -32,7 +32,7 @@ const MOST: u32 = 1 << 24;
 const FULL: u32 = 32;
 
 /// b, the seconds that one sample of every pixel takes. NaN if the pilot was stopped. The pilot has half of `settings.spp` samples,
-/// or [`FULL`] if these are fewer, and more as long as its last pass is too short for the clock.
+/// or `FULL` if these are fewer, and more as long as its last pass is too short for the clock.
 pub fn seconds_per_sample(scene: &Scene, estimator: Estimator, settings: &Settings, progress: Progress<'_>) -> f64 {
     let t = SceneTransport { scene, sampling: settings.sampling };
     // with one replicate no variance is computed, so that only the sampling is timed

@@ -13,7 +13,7 @@
 //! |---|---|---|
 //! | s | transfer curve of sRGB | [`super::picture`] |
 //! | w | width of the image in pixels | argument of [`draw`] |
-//! | m | factor of enlarging or reducing | [`Size`] |
+//! | m | factor of enlarging or reducing | `Size` |
 //!
 //! Reference: IEC 61966-2-1 (1999), for the transfer curve.
 
