@@ -59,7 +59,18 @@ const COMMANDS: &[Recipes] = &[
                   by different factors, later by the same factor each time: the spectral radius of T. The bound from the largest \
                   albedo lies far above.",
         picture: "decay.png",
-        words: &["series", "cornell", "--size", "128x128", "--max-bounces", "12", "--estimator", "single"],
+        words: &[
+            "series",
+            "cornell",
+            "--size",
+            "128x128",
+            "--spp",
+            "128",
+            "--max-bounces",
+            "12",
+            "--estimator",
+            "single",
+        ],
         quick: SMALL_MESH,
     },
     Recipes {
