@@ -56,6 +56,7 @@ pub fn run(args: &Options) -> Result<Ending, Failure> {
     let folder = Folder::new(&session.folder, session.command())?.quick(args.quick).progress(session.progress());
     let found = chapter.run(&folder);
     if session.stopped() {
+        folder.clear();
         return Ok(session.nothing_to_save(": the claims of a chapter need all of its results"));
     }
     let found = found.map_err(|e| Failure::input(&e.to_string()))?;

@@ -168,6 +168,12 @@ impl<'a> Folder<'a> {
         self.text("numbers.md", &text)
     }
 
+    /// Removes the files written so far, because the program was stopped: half of a figure would look like a whole one.
+    pub fn clear(&self) {
+        // a file that cannot be removed does no harm: the next run of the same command replaces it
+        self.written.take().iter().for_each(|name| _ = std::fs::remove_file(self.path.join(name)));
+    }
+
     /// The names of the files written so far.
     pub fn written(&self) -> Vec<String> {
         self.written.borrow().clone()

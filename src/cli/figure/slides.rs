@@ -21,6 +21,7 @@ pub fn run(args: &Figure, slide: &Slide, mut session: Session) -> Result<Ending,
     let made = (slide.program)(&folder);
     let mut files = folder.written();
     if session.stopped() {
+        folder.clear();
         return Ok(session.nothing_to_save(""));
     }
     made.map_err(|e| Failure::input(&e.to_string()))?;
