@@ -83,7 +83,7 @@ impl Homework {
 /// // the furnace: T^k E = 0.5^k E up to noise, with and without roulette
 /// for side in [&done.terms, &done.roulette] {
 ///     let third = side.series.image().terms[3];
-///     assert!((third.mean.x - 0.125).abs() < 0.01 && third.std_error.x < 0.002, "{third:?}");
+///     assert!((third.mean.x - 0.125).abs() < 0.02 && third.std_error.x < 0.005, "{third:?}");
 /// }
 /// assert_eq!(done.grown.iter().map(|g| g.spp).collect::<Vec<_>>(), [1, 2, 4, 8, 16, 32]);
 /// # Ok::<(), fredholm::scene::SceneError>(())
