@@ -80,10 +80,10 @@ impl Homework {
 /// let options = load::Options { set: vec!["camera.size=[8,8]".into()], ..Default::default() };
 /// let scene = Scene::new(&load::scene("furnace", &options)?.description);
 /// let done = homework(&scene, 32, 0, Progress::NONE).unwrap();
-/// // the furnace: T^k E = 0.5^k E up to noise, with and without roulette
+/// // the furnace: T^k E = 0.5^k E, with and without roulette, within five standard errors
 /// for side in [&done.terms, &done.roulette] {
 ///     let third = side.series.image().terms[3];
-///     assert!((third.mean.x - 0.125).abs() < 0.02 && third.std_error.x < 0.005, "{third:?}");
+///     assert!((third.mean.x - 0.125).abs() < 5.0 * third.std_error.x && third.std_error.x < 0.01, "{third:?}");
 /// }
 /// assert_eq!(done.grown.iter().map(|g| g.spp).collect::<Vec<_>>(), [1, 2, 4, 8, 16, 32]);
 /// # Ok::<(), fredholm::scene::SceneError>(())
