@@ -3,32 +3,12 @@
 #![allow(clippy::unwrap_used)]
 
 use fredholm::report::book::{Chapter, Folder, Found};
+use programs::*;
 use std::{fs, path::Path};
 
-#[path = "../chapters/08_change_of_measure.rs"]
-#[allow(dead_code, unreachable_pub)] // a program, not a library
-mod change_of_measure;
-#[path = "../chapters/03_choosing_directions.rs"]
-#[allow(dead_code, unreachable_pub)] // a program, not a library
-mod choosing_directions;
-#[path = "../chapters/04_furnace.rs"]
-#[allow(dead_code, unreachable_pub)] // a program, not a library
-mod furnace;
-#[path = "../chapters/05_naive_recursion.rs"]
-#[allow(dead_code, unreachable_pub)] // a program, not a library
-mod naive_recursion;
-#[path = "../chapters/06_neumann_series.rs"]
-#[allow(dead_code, unreachable_pub)] // a program, not a library
-mod neumann_series;
-#[path = "../chapters/01_one_box_three_answers.rs"]
-#[allow(dead_code, unreachable_pub)] // a program, not a library
-mod one_box_three_answers;
-#[path = "../chapters/07_radiosity.rs"]
-#[allow(dead_code, unreachable_pub)] // a program, not a library
-mod radiosity;
-#[path = "../chapters/02_reflection_equation.rs"]
-#[allow(dead_code, unreachable_pub)] // a program, not a library
-mod reflection_equation;
+#[path = "../src/cli/programs.rs"]
+#[allow(unreachable_pub)] // part of a program, not of a library
+mod programs;
 
 // every claim of a chapter fails with a mistake that it is about
 #[path = "chapters/08_change_of_measure.rs"]
@@ -48,17 +28,6 @@ mod claims_of_radiosity;
 #[path = "chapters/02_reflection_equation.rs"]
 mod claims_of_reflection_equation;
 
-const CHAPTERS: [Chapter; 8] = [
-    one_box_three_answers::CHAPTER,
-    reflection_equation::CHAPTER,
-    choosing_directions::CHAPTER,
-    furnace::CHAPTER,
-    naive_recursion::CHAPTER,
-    neumann_series::CHAPTER,
-    radiosity::CHAPTER,
-    change_of_measure::CHAPTER,
-];
-
 /// Runs the short form of a chapter in a folder of its own.
 fn quick(chapter: &Chapter, out: &Path) -> Found {
     chapter.run(&Folder::new(out, "test").unwrap().quick(true)).unwrap()
@@ -76,7 +45,7 @@ fn anchors<'a>(text: &'a str, file: &str) -> Vec<&'a str> {
 }
 
 /// The files in `chapters` from which the text includes code, with the names of the anchors.
-fn programs(text: &str) -> Vec<(&str, &str)> {
+fn code(text: &str) -> Vec<(&str, &str)> {
     let included = text.split("{{#include ../../chapters/").skip(1).map(|rest| rest.split('}').next().unwrap());
     included.map(|place| place.split_once(':').unwrap()).collect()
 }
@@ -90,7 +59,7 @@ fn claims_hold_and_every_file_of_the_text_is_written() {
         let out = tempfile::tempdir().unwrap();
         let found = quick(&chapter, out.path());
         assert!(found.holds(), "{name}: a claim fails\n{}", found.text);
-        let (files, code) = (included(&text, name), programs(&text));
+        let (files, code) = (included(&text, name), code(&text));
         assert!(!files.is_empty() && !code.is_empty(), "{name}: the text includes nothing");
         for file in files {
             let bytes = fs::metadata(out.path().join(file)).unwrap_or_else(|e| panic!("{name}: {file}: {e}")).len();

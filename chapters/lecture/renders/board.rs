@@ -60,6 +60,11 @@ impl Tile {
         Self { fine: 2, ..self }
     }
 
+    /// The same picture with every pixel repeated: a small picture of a short run takes the room of a large one.
+    pub(crate) fn enlarged(self, factor: usize) -> Self {
+        Self { image: self.image.enlarged(factor), ..self }
+    }
+
     fn size(&self) -> [f64; 2] {
         [self.image.width, self.image.height].map(|n| n as f64 / self.fine as f64)
     }

@@ -15,11 +15,11 @@
 //! *Rendering Synthetic Objects into Real Scenes* (SIGGRAPH 1998).
 
 use super::board::{Board, GAP, MARGIN, Tile, WIDTH};
-use super::measure::{Measured, Shot, from_text};
+use super::measure::{Interval, Shot, from_text};
 use super::stage::{SKY, lat_long};
 use fredholm::estimator::{Plan, Prefix, Roulette, Technique};
 use fredholm::math::Rgb;
-use fredholm::report::book::{Folder, Result, Slide};
+use fredholm::report::book::{Folder, Number, Result, Slide};
 use fredholm::report::image::picture::{auto_gain, gain_label};
 use fredholm::report::text::csv::Csv;
 use fredholm::scene::Scene;
@@ -154,7 +154,7 @@ fn whole(scene: &Scene, spp: u32, stream: &str, folder: &Folder<'_>) -> TermImag
 }
 
 /// Mean over the pixels that show the object only, and over the channels.
-fn on_object(alone: &Scene, image: &TermImage) -> Measured {
+fn on_object(alone: &Scene, image: &TermImage) -> Number {
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
     let hit = |pixel: u32, u: [f32; 2]| {
         let (start, direction) = alone.camera.ray(pixel, u);
@@ -165,7 +165,7 @@ fn on_object(alone: &Scene, image: &TermImage) -> Measured {
     let grey = |v: [f32; 3]| v.iter().map(|&x| f64::from(x)).sum::<f64>() / 3.0;
     let value = inside.iter().map(|&p| grey(image.mean[p])).sum::<f64>() / n;
     let error = inside.iter().map(|&p| grey(image.std_error[p]).powi(2)).sum::<f64>().sqrt() / n;
-    Measured { value, error }
+    Number { value, error }
 }
 
 fn program(folder: &Folder<'_>) -> Result<()> {
@@ -195,7 +195,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
         ),
     );
     let top = board.y;
-    let grown = |tile: Tile| if folder.quick { Tile { image: tile.image.enlarged(2), ..tile } } else { tile };
+    let grown = |tile: Tile| tile.enlarged(folder.pick(1, 2));
     let first = grown(Tile::new(2 * size, &capture, gain, "The ball from far away", vec![]).fine());
     let second = grown(Tile::new(4 * size, &map, gain, "The same radiance by longitude and latitude", vec![]).fine());
     board.row(vec![first], [MARGIN, MARGIN + 180.0]);
@@ -244,7 +244,7 @@ const RADII: [f64; 3] = [0.1, 0.2, 0.4];
 
 /// The relative difference of the mean over a matt sphere, map against room, in percent, for each radius. It must be larger
 /// for the largest sphere than for the smallest.
-fn by_size(folder: &Folder<'_>, sky: &Sky) -> Result<Vec<(f64, Measured)>> {
+fn by_size(folder: &Folder<'_>, sky: &Sky) -> Result<Vec<(f64, Number)>> {
     let (size, spp) = (32, folder.pick(256, 64));
     let mut csv = Csv::new("radius,room,room_std_error,map,map_std_error");
     let mut all = vec![];
@@ -255,7 +255,7 @@ fn by_size(folder: &Folder<'_>, sky: &Sky) -> Result<Vec<(f64, Measured)>> {
         let map = on_object(&alone, &whole(&alone, spp, &format!("map, {radius}"), folder));
         csv.put(radius).numbers([right.value, right.error, map.value, map.error]).end();
         let r = map.over(right);
-        all.push((radius, Measured { value: 100.0 * (r.value - 1.0), error: 100.0 * r.error }));
+        all.push((radius, Number { value: 100.0 * (r.value - 1.0), error: 100.0 * r.error }));
     }
     folder.text("captured-environments.csv", &csv.text())?;
     let (small, large) = (all[0].1, all[2].1);

@@ -15,7 +15,7 @@
 //! Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 2.2 (importance sampling).
 
 use super::board::{Board, Tile};
-use super::measure::{Shot, in_equal_time, seconds, words};
+use super::measure::{Interval, Shot, in_equal_time, seconds, words};
 use super::stage::{HAZE, SKY, spheres, under_sky};
 use fredholm::estimator::{Plan, Prefix, Roulette, Technique};
 use fredholm::report::book::{Folder, Result, Slide};
@@ -90,11 +90,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
             efficiency,
             format!("mean {}", words(&shot.estimate(all.clone()))),
         ];
-        let mut tile = Tile::new(size[0], &shot.image(all.clone()).mean, gain, name(*sampling), notes);
-        if folder.quick {
-            tile.image = tile.image.enlarged(2);
-        }
-        tile
+        Tile::new(size[0], &shot.image(all.clone()).mean, gain, name(*sampling), notes).enlarged(folder.pick(1, 2))
     });
     let tiles = tiles.collect::<Vec<_>>();
     let mut board = Board::new(

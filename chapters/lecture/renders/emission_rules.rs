@@ -101,8 +101,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
             notes.push(format!("mean {}", super::measure::words(&shot.estimate(0..K + 1))));
             notes.push("rₖ = 1 for every k".into());
         }
-        let tile = Tile::new(size, &shot.image(0..K + 1).mean, gain, case.label, notes);
-        tiles.push(if folder.quick { Tile { image: tile.image.enlarged(2), ..tile } } else { tile });
+        tiles.push(Tile::new(size, &shot.image(0..K + 1).mean, gain, case.label, notes).enlarged(folder.pick(1, 2)));
     }
     check(&ratio, &shots)?;
     let mut board = Board::new(

@@ -15,7 +15,7 @@
 //! Reference: Pharr, Jakob and Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 9.5.
 
 use super::board::{Board, Tile};
-use super::measure::{Shot, words};
+use super::measure::{Interval, Shot, words};
 use super::stage::{SKY, SUN, spheres, under_sky};
 use fredholm::report::book::{Folder, Result, Slide};
 use fredholm::report::image::picture::{auto_gain, gain_label};
@@ -72,11 +72,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
             format!("mean {}", words(&shot.estimate(all.clone()))),
             format!("noise √V = {} with {spp} samples per pixel", shot.noise(all.clone()).words()),
         ];
-        let mut tile = Tile::new(size[0], &shot.image(all.clone()).mean, gain, label, numbers);
-        if folder.quick {
-            tile.image = tile.image.enlarged(2);
-        }
-        tile
+        Tile::new(size[0], &shot.image(all.clone()).mean, gain, label, numbers).enlarged(folder.pick(1, 2))
     };
     let mut board = Board::new(
         "Reflect or refract: the probability changes the noise, not the mean",

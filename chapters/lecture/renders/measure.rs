@@ -17,7 +17,7 @@ use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Plan, Prefix, Roulette, Technique, TermEstimator};
 use fredholm::math::Key;
 use fredholm::operator::SceneTransport;
-use fredholm::report::book::{Folder, Result};
+use fredholm::report::book::{Folder, Number, Result};
 use fredholm::report::text::number::{average, plus_minus, significant};
 use fredholm::scene::bsdf::Sampling;
 use fredholm::scene::{Description, Scene, load};
@@ -32,37 +32,20 @@ use std::time::Instant;
 /// Replicates of a film. With a multiple of it as number of samples, all replicates have the same size.
 pub(crate) const REPLICATES: u32 = 16;
 
-/// A value with its standard error from the replicates.
-#[derive(Clone, Copy)]
-pub(crate) struct Measured {
-    pub(crate) value: f64,
-    pub(crate) error: f64,
+/// The 95 % interval of a number from the replicates.
+pub(crate) trait Interval {
+    /// `value ± half width`.
+    fn words(self) -> String;
+    /// The largest absolute value inside the interval.
+    fn at_most(self) -> f64;
 }
 
-impl Measured {
-    /// `value ± half width of the 95 % interval`.
-    pub(crate) fn words(self) -> String {
+impl Interval for Number {
+    fn words(self) -> String {
         plus_minus(self.value, half_width_95(self.error, u64::from(REPLICATES)), 2)
     }
 
-    /// self/other, for independent values.
-    pub(crate) fn over(self, other: Self) -> Self {
-        let value = self.value / other.value;
-        Self { value, error: value.abs() * (self.error / self.value).hypot(other.error / other.value) }
-    }
-
-    /// The value times a known factor.
-    pub(crate) fn times(self, factor: f64) -> Self {
-        Self { value: factor * self.value, error: factor.abs() * self.error }
-    }
-
-    /// self − other, for independent values.
-    pub(crate) fn minus(self, other: Self) -> Self {
-        Self { value: self.value - other.value, error: self.error.hypot(other.error) }
-    }
-
-    /// The largest absolute value inside the 95 % interval.
-    pub(crate) fn at_most(self) -> f64 {
+    fn at_most(self) -> f64 {
         self.value.abs() + half_width_95(self.error, u64::from(REPLICATES))
     }
 }
@@ -112,28 +95,28 @@ impl Shot {
     }
 
     /// The same mean over the three channels.
-    pub(crate) fn mean(&self, slots: Range<usize>) -> Measured {
+    pub(crate) fn mean(&self, slots: Range<usize>) -> Number {
         let e = self.estimate(slots);
-        Measured { value: e.mean.element_sum() / 3.0, error: e.std_error.element_sum() / 3.0 }
+        Number { value: e.mean.element_sum() / 3.0, error: e.std_error.element_sum() / 3.0 }
     }
 
     /// V of the sum of some slots.
-    pub(crate) fn variance(&self, slots: Range<usize>) -> Measured {
+    pub(crate) fn variance(&self, slots: Range<usize>) -> Number {
         let scatter = Scatter::of(&self.film, slots, None);
-        Measured { value: scatter.variance(), error: scatter.variance_error() }
+        Number { value: scatter.variance(), error: scatter.variance_error() }
     }
 
     /// √V.
-    pub(crate) fn noise(&self, slots: Range<usize>) -> Measured {
+    pub(crate) fn noise(&self, slots: Range<usize>) -> Number {
         let v = self.variance(slots);
-        Measured { value: v.value.sqrt(), error: v.error / (2.0 * v.value.sqrt()) }
+        Number { value: v.value.sqrt(), error: v.error / (2.0 * v.value.sqrt()) }
     }
 
     /// 1/(V n t₁), without the error of t₁.
-    pub(crate) fn efficiency(&self, slots: Range<usize>) -> Measured {
+    pub(crate) fn efficiency(&self, slots: Range<usize>) -> Number {
         let v = self.variance(slots);
         let value = 1.0 / (v.value * self.cost * f64::from(self.spp));
-        Measured { value, error: value * v.error / v.value }
+        Number { value, error: value * v.error / v.value }
     }
 
     /// Rays per path.

@@ -15,11 +15,11 @@
 //! Guibas, *Optimally Combining Sampling Techniques* (1995).
 
 use super::board::{Board, GAP, MARGIN, Tile, WIDTH};
-use super::measure::{Measured, Shot};
+use super::measure::{Interval, Shot};
 use fredholm::estimator::{Job, Paths, Technique, TermEstimator, TermSink};
 use fredholm::math::{Columns, Purpose, Rgb, Rng};
 use fredholm::operator::{Kernel, Sensor};
-use fredholm::report::book::{Folder, Result, Slide};
+use fredholm::report::book::{Folder, Number, Result, Slide};
 use fredholm::report::image::picture::{Picture, auto_gain, gain_label, luminance};
 use fredholm::report::plot::{Align, GREY, Words};
 use fredholm::report::text::csv::Csv;
@@ -105,7 +105,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     let many = folder.pick(96, 32);
     let weights = Shot::new(&scene, Sampling::Bsdf, &Parts(Technique::Mis), many, "weights", folder);
     let gain = auto_gain(&weights.image(0..2).mean);
-    let enlarged = |tile: Tile| Tile { image: if folder.quick { tile.image.enlarged(2) } else { tile.image }, ..tile };
+    let enlarged = |tile: Tile| tile.enlarged(folder.pick(1, 2));
     let tiles = shots.iter().map(|(label, shot)| {
         let note = format!("noise √V = {}", shot.noise(0..2).words());
         enlarged(Tile::new(size[0], &shot.image(0..2).mean, gain, *label, vec![note]))
@@ -161,7 +161,7 @@ fn beside(
     (x, mut y): (f64, f64),
     [spp, many]: [u32; 2],
     gain: f64,
-    (v, apart): ([Measured; 3], Measured),
+    (v, apart): ([Number; 3], Number),
 ) {
     let room = WIDTH - MARGIN - x;
     let mut say = |board: &mut Board, text: &str, size: f64, space: f64| {
@@ -207,7 +207,7 @@ fn beside(
 }
 
 /// MIS must be proved less noisy than each of the two techniques.
-fn check([scatter, connect, mis]: [Measured; 3]) -> Result<()> {
+fn check([scatter, connect, mis]: [Number; 3]) -> Result<()> {
     for other in [scatter, connect] {
         let ratio = mis.over(other);
         if ratio.value + 3.0 * ratio.error > 1.0 {

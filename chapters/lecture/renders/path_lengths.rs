@@ -14,7 +14,7 @@
 //! Reference: Kajiya, *The Rendering Equation* (1986).
 
 use super::board::{Board, Tile};
-use super::measure::{Shot, built_in};
+use super::measure::{Interval, Shot, built_in};
 use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, Technique};
 use fredholm::report::book::{Folder, Result, Slide};
 use fredholm::report::image::picture::{auto_gain_beside_lamps, gain_label};

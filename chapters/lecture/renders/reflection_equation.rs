@@ -72,10 +72,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
         let shot = Shot::terms(&scene, 1, folder.pick(64, 16), name, folder);
         let (image, mean) = (shot.image(1..2).mean, shot.estimate(1..2));
         let gain = auto_gain(&image);
-        let mut tile = Tile::new(size[0], &image, gain, name, vec![]);
-        if folder.quick {
-            tile.image = tile.image.enlarged(2);
-        }
+        let tile = Tile::new(size[0], &image, gain, name, vec![]).enlarged(folder.pick(1, 2));
         let top = board.y;
         let right = MARGIN + 400.0 + 2.0 * GAP;
         board.row(vec![tile], [MARGIN, MARGIN + 400.0]);

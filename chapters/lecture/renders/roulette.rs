@@ -16,10 +16,10 @@
 //! Reference: Arvo and Kirk, *Particle Transport and Image Synthesis* (SIGGRAPH 1990).
 
 use super::board::{Board, Tile};
-use super::measure::{Measured, Shot, built_in, in_equal_time, seconds};
+use super::measure::{Interval, Shot, built_in, in_equal_time, seconds};
 use fredholm::engine::{Settings, by_rays};
 use fredholm::estimator::{Plan, Prefix, Roulette, Technique};
-use fredholm::report::book::{Folder, Result, Slide};
+use fredholm::report::book::{Folder, Number, Result, Slide};
 use fredholm::report::half_width_95;
 use fredholm::report::image::picture::{auto_gain, gain_label};
 use fredholm::report::text::csv::Csv;
@@ -83,11 +83,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
             format!("relative efficiency by time {efficiency}"),
             format!("relative efficiency by rays {by_rays}"),
         ];
-        let mut tile = Tile::new(size, &shot.image(INDIRECT).mean, gain, name, notes);
-        if folder.quick {
-            tile.image = tile.image.enlarged(3);
-        }
-        tile
+        Tile::new(size, &shot.image(INDIRECT).mean, gain, name, notes).enlarged(folder.pick(1, 3))
     });
     let tiles = tiles.collect::<Vec<_>>();
     let mut board = Board::new(
@@ -128,11 +124,11 @@ fn program(folder: &Folder<'_>) -> Result<()> {
 }
 
 /// Growth of the second moment of a path's weight per vertex with the lecture's roulette, as the engine measures it.
-fn growth(folder: &Folder<'_>) -> Result<Measured> {
+fn growth(folder: &Folder<'_>) -> Result<Number> {
     let scene = Scene::new(&built_in("cornell", [16, 16])?);
     let roulette = Roulette::LECTURE;
     let settings = Settings { spp: 16, max_bounces: 2, roulette, seed: folder.seed, ..Settings::default() };
     let found = by_rays::terms(&scene, by_rays::Estimator::Prefix, &settings, folder.progress);
     let growth = found.doubt.ok_or("no growth of the weights was measured")?;
-    Ok(Measured { value: growth.rate, error: growth.std_error })
+    Ok(Number { value: growth.rate, error: growth.std_error })
 }

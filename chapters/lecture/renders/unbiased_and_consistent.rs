@@ -14,10 +14,10 @@
 //! Reference: Veach, *Robust Monte Carlo Methods for Light Transport Simulation* (1997), ch. 2.
 
 use super::board::{Board, MARGIN, WIDTH};
-use super::measure::{Measured, REPLICATES, Shot, built_in};
+use super::measure::{REPLICATES, Shot, built_in};
 use fredholm::engine::{Settings, by_matrix};
 use fredholm::estimator::{Plan, Prefix, Roulette, Technique};
-use fredholm::report::book::{Folder, Result, Slide};
+use fredholm::report::book::{Folder, Number, Result, Slide};
 use fredholm::report::half_width_95;
 use fredholm::report::image::picture::{auto_gain, develop, gain_label};
 use fredholm::report::plot::{Axis, Canvas, Curve, Drawn, GREY, Look, Panel, Point, Words};
@@ -57,7 +57,7 @@ struct Stage {
     pixels: Vec<[f32; 3]>,
     amount: String,
     /// Mean of the image minus that of the reference, in percent of it.
-    error: Measured,
+    error: Number,
     replicates: u64,
 }
 
@@ -67,12 +67,7 @@ impl Stage {
         let right = grey(reference.mean);
         let value = 100.0 * (grey(mean.mean) / right - 1.0);
         let error = 100.0 * grey(mean.std_error).hypot(grey(reference.std_error)) / right;
-        Self {
-            pixels,
-            amount,
-            error: Measured { value, error },
-            replicates: mean.replicates.min(u64::from(REPLICATES)),
-        }
+        Self { pixels, amount, error: Number { value, error }, replicates: mean.replicates.min(u64::from(REPLICATES)) }
     }
 
     fn half(&self) -> f64 {

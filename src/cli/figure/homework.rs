@@ -61,19 +61,19 @@ fn fov([w, h]: [u32; 2]) -> f64 {
 
 /// Writes pictures, sheets, plot, CSV and page; returns the names of the files.
 fn write(session: &Session, done: &Homework, [w, h]: [usize; 2]) -> Result<Vec<String>, Failure> {
-    let mut files: Vec<String> = vec![];
-    let mut exhibits: Vec<Exhibit> = vec![];
-    for (name, picture) in report::sheets(done, [w, h], &session.caption())? {
-        picture.write(&session.folder.join(name))?;
-        let stem = name.trim_end_matches(".png");
-        exhibits.push(Exhibit {
-            id: stem.into(),
-            topic: topic(stem).0.into(),
-            caption: topic(stem).1.into(),
-            picture: name.into(),
-            command: session.command().into(),
-        });
-        files.push(name.into());
+    let (mut files, mut exhibits): (Vec<String>, Vec<Exhibit>) = (vec![], vec![]);
+    let exhibit = |id: &str, topic: &str, caption: &str, picture: &str| Exhibit {
+        id: id.into(),
+        topic: topic.into(),
+        caption: caption.into(),
+        picture: picture.into(),
+        command: session.command().into(),
+    };
+    for sheet in report::sheets(done, [w, h], &session.caption())? {
+        let name = format!("{}.png", sheet.name);
+        sheet.picture.write(&session.folder.join(&name))?;
+        exhibits.push(exhibit(sheet.name, sheet.heading, sheet.text, &name));
+        files.push(name);
     }
     for one in report::singles(done) {
         let (developed, _) = single(&one.name, w, h, &one.pixels, Some(one.gain))?;
@@ -91,52 +91,18 @@ fn write(session: &Session, done: &Homework, [w, h]: [usize; 2]) -> Result<Vec<S
         ..decay::Decay::default()
     };
     decay::draw(&figure, &session.caption())?.write(&session.folder, "decay")?;
-    exhibits.push(Exhibit {
-        id: "decay".into(),
-        topic: topic("decay").0.into(),
-        caption: topic("decay").1.into(),
-        picture: "decay.svg".into(),
-        command: session.command().into(),
-    });
+    exhibits.push(exhibit(
+        "decay",
+        "How the bounces decay",
+        "The mean of each bounce on a logarithmic axis. After the first bounces, each one is the same factor darker.",
+        "decay.svg",
+    ));
     write_atomically(&session.folder.join("homework.csv"), report::csv(done).as_bytes())?;
     let sentence =
         "Every picture in full size lies beside this page: bounce-m.png, accumulated-m.png, roulette-m.png, spp-n.png.";
     gallery::write(&session.folder.join("index.html"), "Global illumination, bounce by bounce", sentence, &exhibits)?;
     files.extend(["decay.svg", "decay.png", "homework.csv", "index.html", "summary.json"].map(String::from));
     Ok(files)
-}
-
-/// Heading and text of a sheet.
-fn topic(stem: &str) -> (&'static str, &'static str) {
-    match stem {
-        "bounces-own-exposure" => (
-            "Each bounce alone, each at its own exposure",
-            "Bounce 0 is the lamp seen directly, bounce 1 direct light, bounce 2 the first indirect light. Each picture has its \
-             own exposure; the gain is printed above it.",
-        ),
-        "bounces-one-exposure" => (
-            "Each bounce alone, all at one exposure",
-            "At one exposure the later bounces are darker and darker. The numbers say how much of all light each one holds.",
-        ),
-        "accumulated" => (
-            "The bounces added up",
-            "All bounces up to m. After a few bounces the picture hardly changes: what is left out is the rest of the series.",
-        ),
-        "direct-indirect" => ("Direct and indirect light", "The two parts and their sum, at one exposure."),
-        "roulette" => (
-            "Russian roulette",
-            "The same sums with roulette, which ends every path after a finite number of bounces. The means are those without \
-             roulette; only the noise differs.",
-        ),
-        "spp" => (
-            "More and more samples per pixel",
-            "With four times the samples the error is halved. RMSE: root-mean-square error of bounces 0 to 5.",
-        ),
-        _ => (
-            "How the bounces decay",
-            "The mean of each bounce on a logarithmic axis. After the first bounces, each one is the same factor darker.",
-        ),
-    }
 }
 
 fn terms(done: &Homework) -> Grid {

@@ -30,7 +30,7 @@ pub enum Kind {
 }
 
 /// A figure that another command makes.
-struct Recipes {
+struct OfCommand {
     id: &'static str,
     topic: &'static str,
     caption: &'static str,
@@ -42,8 +42,8 @@ struct Recipes {
 const SMALL: &[&str] = &["--size", "32x32", "--spp", "16"];
 const SMALL_MESH: &[&str] = &["--size", "32x32", "--spp", "16", "--patches", "120"];
 
-const COMMANDS: &[Recipes] = &[
-    Recipes {
+const COMMANDS: &[OfCommand] = &[
+    OfCommand {
         id: "equilibrium-cornell",
         topic: "The rendering equation: equilibrium at every point",
         caption: "At points chosen at random, the radiance is estimated twice: once as L, once as E + T L. Each mark is one point \
@@ -52,7 +52,7 @@ const COMMANDS: &[Recipes] = &[
         words: &["check", "equilibrium", "cornell", "--spp", "16384"],
         quick: &["--size", "32x32", "--spp", "256"],
     },
-    Recipes {
+    OfCommand {
         id: "decay-cornell",
         topic: "The Neumann series and its decay",
         caption: "The mean of each term over all surfaces, on a logarithmic axis. The terms fall, at first \
@@ -73,7 +73,7 @@ const COMMANDS: &[Recipes] = &[
         ],
         quick: SMALL_MESH,
     },
-    Recipes {
+    OfCommand {
         id: "three-answers",
         topic: "One equation, three solutions",
         caption: "The same room three times: the sum of the terms, the path tracer, and the radiosity matrix. They are different \
@@ -82,7 +82,7 @@ const COMMANDS: &[Recipes] = &[
         words: &["series", "cornell", "--size", "512x512", "--spp", "24", "--patches", "2400"],
         quick: SMALL_MESH,
     },
-    Recipes {
+    OfCommand {
         id: "modes-cornell",
         topic: "T as a matrix: eigenvalues and modes",
         caption: "The operator T cut into patches is a matrix. Its largest eigenvalue is the factor by which late terms fall, \
@@ -91,7 +91,7 @@ const COMMANDS: &[Recipes] = &[
         words: &["radiosity", "cornell", "--modes", "6", "--patches", "1200", "--size", "256x256", "--spp", "64"],
         quick: SMALL_MESH,
     },
-    Recipes {
+    OfCommand {
         id: "variance-cornell",
         topic: "Variance against samples per pixel",
         caption: "The variance of a pixel falls as 1/n for every estimator: with four times the samples, half the noise. The \
@@ -111,7 +111,7 @@ const COMMANDS: &[Recipes] = &[
         ],
         quick: SMALL,
     },
-    Recipes {
+    OfCommand {
         id: "sobol-cornell",
         topic: "Independent and Sobol points",
         caption: "Evenly spread points make the variance of the first terms fall faster than 1/n. Independent points never do.",
@@ -130,7 +130,7 @@ const COMMANDS: &[Recipes] = &[
         ],
         quick: SMALL,
     },
-    Recipes {
+    OfCommand {
         id: "drifting-eigenvalues",
         topic: "Eigenvalues on finer meshes: the scene's settle, the mesh's drift",
         caption: "Each line follows one eigenvalue of T from a coarse mesh to a fine one. Those of the scene settle; those \
@@ -154,7 +154,7 @@ const COMMANDS: &[Recipes] = &[
         ],
         quick: &["--values", "33,129,258"],
     },
-    Recipes {
+    OfCommand {
         id: "split-cornell",
         topic: "Where samples go: equal split, optimal split, one path for all terms",
         caption: "The same number of rays, divided among the terms in three ways. Bars show the variance of the whole image.",

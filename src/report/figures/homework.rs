@@ -31,6 +31,18 @@ pub struct Single {
     pub gain: f64,
 }
 
+/// A sheet: its file name without the ending, a heading, what to look at, and the picture.
+pub struct Sheet {
+    /// The file name.
+    pub name: &'static str,
+    /// Heading.
+    pub heading: &'static str,
+    /// What to look at.
+    pub text: &'static str,
+    /// The picture.
+    pub picture: Picture,
+}
+
 /// The exposure of all pictures that are compared with each other.
 pub fn gain(done: &Homework) -> f64 {
     let whole = &done.roulette.total.mean;
@@ -68,15 +80,11 @@ fn minus(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 3]> {
     a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c])).collect()
 }
 
-/// The sheets: file name and picture of each.
+/// The sheets, in the order in which they are shown.
 ///
 /// # Errors
 /// If the text cannot be drawn.
-pub fn sheets(
-    done: &Homework,
-    [w, h]: [usize; 2],
-    caption: &Caption,
-) -> Result<Vec<(&'static str, Picture)>, ReportError> {
+pub fn sheets(done: &Homework, [w, h]: [usize; 2], caption: &Caption) -> Result<Vec<Sheet>, ReportError> {
     let g = gain(done);
     let tile = |label: String, pixels: &[[f32; 3]], gain: f64, notes: Vec<String>| Tile {
         image: shown(w, h, pixels, gain, PANEL[0], PANEL[1]),
@@ -126,13 +134,46 @@ pub fn sheets(
     });
     let grown: Vec<Tile> = grown.collect();
     let shared = gain_label(g);
+    let named = |name, heading, text, picture| Sheet { name, heading, text, picture };
     Ok(vec![
-        ("bounces-own-exposure.png", sheet("Each bounce alone, each at its own exposure", &own)?),
-        ("bounces-one-exposure.png", sheet(&format!("Each bounce alone, all at the exposure {shared}"), &one)?),
-        ("accumulated.png", sheet(&format!("Bounces added up, no roulette ({shared})"), &sums)?),
-        ("direct-indirect.png", sheet(&format!("Direct and indirect light ({shared})"), &halves)?),
-        ("roulette.png", sheet(&format!("Russian roulette, {ROULETTE} ({shared})"), &ended)?),
-        ("spp.png", sheet(&format!("More and more samples per pixel ({shared})"), &grown)?),
+        named(
+            "bounces-own-exposure",
+            "Each bounce alone, each at its own exposure",
+            "Bounce 0 is the lamp seen directly, bounce 1 direct light, bounce 2 the first indirect light. Each picture has its \
+             own exposure; the gain is printed above it.",
+            sheet("Each bounce alone, each at its own exposure", &own)?,
+        ),
+        named(
+            "bounces-one-exposure",
+            "Each bounce alone, all at one exposure",
+            "At one exposure the later bounces are darker and darker. The numbers say how much of all light each one holds.",
+            sheet(&format!("Each bounce alone, all at the exposure {shared}"), &one)?,
+        ),
+        named(
+            "accumulated",
+            "The bounces added up",
+            "All bounces up to m. After a few bounces the picture hardly changes: what is left out is the rest of the series.",
+            sheet(&format!("Bounces added up, no roulette ({shared})"), &sums)?,
+        ),
+        named(
+            "direct-indirect",
+            "Direct and indirect light",
+            "The two parts and their sum, at one exposure.",
+            sheet(&format!("Direct and indirect light ({shared})"), &halves)?,
+        ),
+        named(
+            "roulette",
+            "Russian roulette",
+            "The same sums with roulette, which ends every path after a finite number of bounces. The means are those without \
+             roulette; only the noise differs.",
+            sheet(&format!("Russian roulette, {ROULETTE} ({shared})"), &ended)?,
+        ),
+        named(
+            "spp",
+            "More and more samples per pixel",
+            "With four times the samples the error is halved. RMSE: root-mean-square error of bounces 0 to 5.",
+            sheet(&format!("More and more samples per pixel ({shared})"), &grown)?,
+        ),
     ])
 }
 

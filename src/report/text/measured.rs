@@ -42,6 +42,11 @@ impl Number {
         Self { value, error: value.abs() * (self.error / self.value).hypot(other.error / other.value) }
     }
 
+    /// The difference of two independent numbers.
+    pub fn minus(self, other: Self) -> Self {
+        Self { value: self.value - other.value, error: self.error.hypot(other.error) }
+    }
+
     /// The number times an exact one.
     pub fn times(self, x: f64) -> Self {
         Self { value: self.value * x, error: self.error * x.abs() }
