@@ -19,22 +19,28 @@
 use fredholm::engine::{Settings, by_rays::Sampled};
 use fredholm::estimator::{Plan, Technique};
 use fredholm::report::book::{self, Chapter, Claim, Folder};
-use fredholm::report::text::number::significant;
 use fredholm::scene::Scene;
-use fredholm::stats::Outcome;
-use fredholm::study::equilibrium::{Balance, Judgement, Origin, at_points, judge, points};
-use fredholm::zoo::signature::{Ratio, measured};
+use fredholm::study::equilibrium::{Balance, Judgement};
+use fredholm::zoo::signature::Ratio;
 use fredholm::zoo::{self, Mistake, Right, Stage};
-use std::error::Error;
 use std::process::ExitCode;
 
+#[path = "furnace/balance.rs"]
+mod balance;
+#[path = "furnace/claims.rs"]
+mod claims;
+#[path = "furnace/compared.rs"]
+mod compared;
 #[path = "furnace/exact.rs"]
 mod exact;
 #[path = "furnace/figures.rs"]
 mod figures;
+pub use balance::balance;
+pub use compared::{Compared, compare};
 pub use exact::{glass, sphere};
-use exact::{largest, member, value};
-use figures::{percent, pm};
+use exact::{member, value};
+
+pub use claims::claims;
 
 /// This chapter.
 pub const CHAPTER: Chapter = Chapter {
@@ -74,15 +80,6 @@ pub struct Furnace {
     pub whole: Value,
 }
 
-/// Two wrong renderers next to the right one, in one scene.
-#[derive(Clone, Debug)]
-pub struct Compared {
-    /// The right image.
-    pub right: Pixels,
-    /// r_k and the image of `uniform-as-cosine`, then of `cosine-twice`.
-    pub wrong: [(Vec<Ratio>, Pixels); 2],
-}
-
 /// What the program measures.
 #[derive(Clone, Debug)]
 pub struct Measured {
@@ -117,32 +114,6 @@ pub fn furnaces(f: &Folder<'_>, step: &dyn Mistake) -> book::Result<Vec<Furnace>
 }
 // ANCHOR_END: render
 
-// ANCHOR: compare
-/// r_k = T_k of each wrong renderer / the right T_k.
-pub fn compare(f: &Folder<'_>, scene: Stage, by: Technique, steps: [&dyn Mistake; 2]) -> book::Result<Compared> {
-    let side = if by == Technique::Scatter { 32 } else { f.pick(96, 64) }; // the furnace has hardly any noise
-    let right = render(f, scene, side, by, &Right, "right")?;
-    let one = |step, name| {
-        let wrong = render(f, scene, side, by, step, name)?;
-        Ok::<_, Box<dyn Error>>((measured(wrong.series.image(), right.series.image()), wrong.total.mean))
-    };
-    let wrong = [one(steps[0], "wrong 1")?, one(steps[1], "wrong 2")?];
-    Ok(Compared { right: right.total.mean, wrong })
-}
-// ANCHOR_END: compare
-
-// ANCHOR: balance
-/// Estimates L and E + T L at 64 points of the cube, from independent paths. `factor` multiplies the weight of the step.
-pub fn balance(f: &Folder<'_>, factor: f32) -> book::Result<(Vec<Balance>, Judgement)> {
-    let scene = Scene::new(&Stage { label: "cube", scene: "cube", set: &[] }.load([16; 2])?);
-    let settings = Settings { spp: f.pick(8192, 2048), seed: f.seed, ..Settings::default() };
-    let at = points(&scene, Origin::Surface, 64, f.seed);
-    let sides = at_points(&scene, &at, &settings, factor, f.progress);
-    let judgement = judge(&[("surface", &sides)], 1e-3, 0.02); // chance of a false alarm; margin
-    Ok((sides, judgement))
-}
-// ANCHOR_END: balance
-
 /// Renders and compares.
 pub fn measure(f: &Folder<'_>) -> book::Result<Measured> {
     let steps = [member("uniform-as-cosine")?, member("cosine-twice")?];
@@ -156,57 +127,6 @@ pub fn measure(f: &Folder<'_>) -> book::Result<Measured> {
         ],
         balance: [balance(f, 1.0)?, balance(f, 1.02)?],
     })
-}
-
-// ANCHOR: claims
-/// The statements of the text.
-pub fn claims(m: &Measured) -> Vec<Claim> {
-    let off = |[mean, error]: Value, truth: f64| ((mean - truth) / error).abs();
-    // largest deviation in standard errors, and largest relative standard error
-    let test = |all: &[(Value, f64)]| {
-        let (z, noise) = (largest(all.iter().map(|&(v, x)| off(v, x))), largest(all.iter().map(|(v, x)| v[1] / x)));
-        let found =
-            format!("off by at most {} standard errors; these are at most {}", significant(z, 2), percent(noise));
-        (z < 5.0 && noise < 0.01, found)
-    };
-    let whole: Vec<_> = m.furnaces.iter().map(|f| (f.whole, 1.0 / (1.0 - f.rho))).collect();
-    let term = |f: &Furnace| (1..=8).map(|k| (f.terms[k as usize], f.rho.powi(k))).collect::<Vec<_>>();
-    let terms = test(&m.furnaces.iter().flat_map(term).collect::<Vec<_>>());
-    let sphere = test(&m.sphere.map(|v| (v, 0.06 / (1.0 - 0.6))));
-    let [furnace, cornell] = &m.compared;
-    let r = |r: &Ratio| [r.value, r.std_error];
-    let passes = largest(furnace.wrong[0].0[1..=4].iter().map(|r| (r.value - 1.0).abs()));
-    let r_2 = r(&cornell.wrong[0].0[2]);
-    let fails = off(r_2, 1.0) > 5.0 && (r_2[0] - 1.0).abs() > 0.03;
-    let seen = test(&(1..=4).map(|k| (r(&furnace.wrong[1].0[k]), (2.0f64 / 3.0).powi(k as i32))).collect::<Vec<_>>());
-    let spread = largest(m.glass[3].as_flattened().iter().map(|&l| f64::from(l - 1.0).abs()));
-    let [(_, right), (_, broken)] = &m.balance;
-    let holds = right.outcome == Outcome::Agrees && broken.outcome == Outcome::Differs;
-    let found = format!("{} of T L; with 1.02: {}", figures::gap(right), figures::gap(broken));
-    let claim = |holds, says, found| Claim { says, found, holds };
-    vec![
-        claim(test(&whole).0, "furnace: L = 1/(1 − ρ) for ρ = 0.5, 0.8, 0.9", list(m.furnaces.iter().map(|f| f.whole))),
-        claim(terms.0, "furnace: TᵏE = ρᵏ for k = 1 to 8", terms.1),
-        claim(
-            spread < 1e-5,
-            "a glass ball in a sky of radiance 1 has radiance 1",
-            format!("largest difference of a pixel: {}", significant(spread, 2)),
-        ),
-        claim(sphere.0, "integrating sphere: lit cap and wall reflect the same 0.15", list(m.sphere)),
-        claim(
-            passes < 1e-5,
-            "`uniform-as-cosine` passes the furnace: r_k = 1",
-            format!("largest difference: {}", significant(passes, 1)),
-        ),
-        claim(fails, "`uniform-as-cosine` fails in the Cornell box: r₂ is not 1", pm(r_2)),
-        claim(seen.0, "`cosine-twice` fails in the furnace: r_k = (2/3)ᵏ", seen.1),
-        claim(holds, "cube: L = E + T L to ± 2 % of T L; 1.02 T is found", found),
-    ]
-}
-// ANCHOR_END: claims
-
-fn list(values: impl IntoIterator<Item = Value>) -> String {
-    values.into_iter().map(pm).collect::<Vec<_>>().join(", ")
 }
 
 /// Measures, draws, writes and checks.

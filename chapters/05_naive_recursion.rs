@@ -19,21 +19,25 @@
 
 use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{Branching, Plan, Roulette, Technique};
-use fredholm::math::{Key, Purpose, Rgb, Rng};
-use fredholm::operator::{SceneTransport, Transport};
+use fredholm::math::Key;
+use fredholm::operator::SceneTransport;
 use fredholm::report::book::{self, Chapter, Claim, Folder};
-use fredholm::report::text::number::significant;
 use fredholm::scene::{Scene, load::Options};
 use fredholm::terms::{functional::image_replicates, scatter::Scatter};
-use glam::Vec3;
 use std::process::ExitCode;
 
+#[path = "naive_recursion/claims.rs"]
+mod claims;
 #[path = "naive_recursion/figures.rs"]
 mod figures;
 #[path = "naive_recursion/pixels.rs"]
 mod pixels;
-use figures::{percent, times};
+#[path = "naive_recursion/recursion.rs"]
+mod recursion;
 use pixels::SomePixels;
+pub use recursion::recursion;
+
+pub use claims::claims;
 
 /// This chapter.
 pub const CHAPTER: Chapter = Chapter {
@@ -73,38 +77,6 @@ pub struct Measured {
     pub trees: Vec<Tree>,
     /// The same for K = 1: for pixels of that image, and for pixels of an image of 16 × 16.
     pub direct: [Vec<Tree>; 2],
-}
-
-// ANCHOR: recursion
-/// L(x) up to K reflections, with n rays from every hit, each of weight `share`. Counts the rays of every depth.
-fn radiance<T: Transport>(t: &T, x: &T::State, k: usize, (n, share): (u32, f32), key: Key, rays: &mut [u64]) -> Rgb {
-    let mut reflected = Rgb::ZERO;
-    if k < K {
-        for child in 0..n {
-            let key = key.branch(child); // random numbers of its own
-            rays[k + 1] += 1;
-            if let Some(y) = t.scatter(x, &mut Rng::at(key, 0, 0, 0, Purpose::Scatter)) {
-                reflected += share * y.weight * radiance(t, &y.state, k + 1, (n, share), key, rays);
-            }
-        }
-    }
-    t.emission(x) + reflected
-}
-// ANCHOR_END: recursion
-
-/// Naive recursion from a point of the furnace or of the sphere: the rays of one recursion, and the mean of `paths`.
-pub fn recursion(scene: &str, paths: u32, seed: u64, n: u32, share: f32) -> book::Result<([u64; K + 1], Value)> {
-    let scene = load(scene, 16)?;
-    let (t, key) = (SceneTransport::new(&scene), Key::new(seed, "recursion").branch(n));
-    let x = scene.look(Vec3::ZERO, Vec3::NEG_Z).ok_or("the ray leaves the scene")?;
-    let (mut rays, mut sums) = ([0; K + 1], [0.0; 2]);
-    for path in 0..paths {
-        rays = [1, 0, 0, 0, 0];
-        let l = f64::from(radiance(&t, &x, 0, (n, share), key.branch(path), &mut rays).x);
-        sums = [sums[0] + l, sums[1] + l * l];
-    }
-    let [mean, square] = sums.map(|s| s / f64::from(paths));
-    Ok((rays, [mean, ((square - mean * mean).max(0.0) / f64::from(paths)).sqrt()]))
 }
 
 fn load(scene: &str, side: u32) -> book::Result<Scene> {
@@ -157,41 +129,6 @@ pub fn price(trees: &[Tree], i: usize, k: usize) -> Value {
     [ratio, ratio * (se / v).hypot(se_1 / v_1)]
 }
 // ANCHOR_END: price
-
-// ANCHOR: claims
-/// The statements of the text. Margins are four standard errors, five for the means.
-pub fn claims(m: &Measured) -> Vec<Claim> {
-    let powers = CHILDREN.map(|n| [0, 1, 2, 3, 4].map(|k| u64::from(n).pow(k)));
-    let exact = 0.06 * (1.0 + 0.6 + 0.36 + 0.216); // T^k E = 0.06 · 0.6^(k−1) on the sphere
-    let largest = |of: &dyn Fn(&Value) -> f64| m.sphere.iter().map(of).max_by(f64::total_cmp).unwrap_or(f64::NAN);
-    let (off, noise) = (largest(&|[l, se]| (l - exact).abs() / se), largest(&|[_, se]| se / exact));
-    let rays = m.trees[3].rays[K] / m.trees[3].rays.iter().sum::<f64>();
-    let light = m.trees[0].mean[K] / m.trees[0].mean[1..=K].iter().sum::<f64>();
-    let whole = [1, 2, 3].map(|i| price(&m.trees, i, K + 1));
-    let deep = [2, 3, 4].map(|k| price(&m.trees, 3, k));
-    let small = price(&m.direct[0], 2, 1);
-    let [[v_1, se_1], [v_8, se_8]] = [0, 3].map(|i| m.direct[1][i].variance[1]);
-    let left = [v_8 / v_1, v_8 / v_1 * (se_8 / v_8).hypot(se_1 / v_1)];
-    let above = |values: &[Value], limit: f64| values.iter().all(|[v, se]| v - 4.0 * se > limit);
-    let claim = |holds, says, found| Claim { says, found, holds };
-    let list = |values: [Value; 3]| values.map(times).join(", ");
-    let means = format!("off by at most {} standard errors; these are at most {}", significant(off, 2), percent(noise));
-    let shares = format!("{} of the rays, {} of the reflected light", percent(rays), percent(light));
-    vec![
-        claim(
-            m.counted == powers,
-            "in the furnace, depth k has exactly Nᵏ rays",
-            format!("{:?} for N = 8", m.counted[3]),
-        ),
-        claim(off < 5.0 && noise < 0.05, "naive recursion has the right mean for every N", means),
-        claim(rays > 0.8 && light < 0.15, "with N = 8, most rays go to k = 4, which holds little light", shares),
-        claim(above(&whole, 1.0), "all terms in one tree: N = 2, 4, 8 need more rays than N = 1", list(whole)),
-        claim(above(&deep, 1.5), "k = 2, 3, 4 alone: N = 8 needs over 1.5 times the rays of N = 1", list(deep)),
-        claim(small[0] + 4.0 * small[1] < 1.0, "k = 1 alone, small pixels: N = 4 needs fewer rays", times(small)),
-        claim(above(&[left], 1.0 / 3.0), "k = 1, large pixels: N = 8 leaves over ⅓ of the variance", times(left)),
-    ]
-}
-// ANCHOR_END: claims
 
 /// Measures, draws, writes and checks.
 fn program(folder: &Folder<'_>) -> book::Result<Vec<Claim>> {

@@ -22,18 +22,21 @@ use fredholm::engine::{Settings, by_matrix, by_rays::Estimator, radius::radius_l
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::progress::Progress;
 use fredholm::report::book::{self, Chapter, Claim, Folder};
-use fredholm::report::text::{number::plus_minus, table::significant};
 use fredholm::scene::{Scene, load};
 use fredholm::stats::{TermMeans, observed_rate, ratio};
 use fredholm::study::{bounces, surface};
 use fredholm::terms::functional::Replicates;
 use std::process::ExitCode;
 
+#[path = "neumann_series/claims.rs"]
+mod claims;
 #[path = "neumann_series/figures.rs"]
 mod figures;
 #[path = "neumann_series/scaled.rs"]
 mod scaled;
 use scaled::DARKER;
+
+pub use claims::claims;
 
 /// This chapter.
 pub const CHAPTER: Chapter = Chapter {
@@ -83,10 +86,10 @@ pub struct Measured {
 
 // ANCHOR: terms
 /// The means of T^k E over all surfaces for k = 0, …, K, and of everything longer.
-fn terms(scene: &Scene, paths: u32, seed: u64, technique: Technique) -> Replicates {
+fn terms(scene: &Scene, paths: u32, seed: u64, technique: Technique, progress: Progress<'_>) -> Replicates {
     let roulette = Roulette::Albedo { from: 2 }.after(LAST);
     let settings = Settings { seed, technique, max_bounces: LAST, roulette, ..Settings::default() };
-    surface::norms(scene, Estimator::Prefix, paths, &settings, Progress::NONE)
+    surface::norms(scene, Estimator::Prefix, paths, &settings, progress)
 }
 
 /// r_k = m_{k+1}/m_k. Both terms come from the same paths, so the error uses their covariance.
@@ -99,16 +102,17 @@ fn ratios(terms: &TermMeans) -> Vec<Value> {
 ///
 /// # Errors
 /// If a scene cannot be loaded, or has no matrix or no rate, which is a defect of the program.
-pub fn measure(quick: bool, seed: u64, closed: &str, weight: fn(f64, usize) -> f64) -> book::Result<Measured> {
+pub fn measure(folder: &Folder<'_>, closed: &str, weight: fn(f64, usize) -> f64) -> book::Result<Measured> {
+    let (seed, progress) = (folder.seed, folder.progress);
     let load = |name: &str| load::scene(name, &load::Options::default()).map(|s| s.description);
     let (furnace, room) = (Scene::new(&load(closed)?), load("cornell")?);
     let scene = Scene::new(&room);
-    let (paths, meshes) = if quick { (1 << 18, [75, 300]) } else { (1 << 20, [300, 1200]) };
-    let [coarse, fine] = meshes.map(|n| by_matrix::dense_matrix(&room, &scene, n, 1.0, LAST, Progress::NONE));
+    let (paths, meshes) = folder.pick((1 << 20, [300, 1200]), (1 << 18, [75, 300]));
+    let [coarse, fine] = meshes.map(|n| by_matrix::dense_matrix(&room, &scene, n, 1.0, LAST, progress));
     let (coarse, fine) = (coarse?, fine?);
     let radius = radius_limit(&[coarse.radii[0], fine.radii[0]]).ok_or("the meshes are too coarse")?[RED];
-    let all = terms(&scene, paths, seed, Technique::Mis);
-    let again = terms(&Scene::new(&scaled::darker(&room, DARKER)), paths, seed + 1, Technique::Mis);
+    let all = terms(&scene, paths, seed, Technique::Mis, progress);
+    let again = terms(&Scene::new(&scaled::darker(&room, DARKER)), paths, seed + 1, Technique::Mis, progress);
     let mut m = TermMeans::channel(&all, RED);
     m.mean[0] = fine.surface[0][RED]; // E is known, so m_0 needs no paths
     m.covariance.fill_row(0, 0.0);
@@ -122,7 +126,7 @@ pub fn measure(quick: bool, seed: u64, closed: &str, weight: fn(f64, usize) -> f
         remainder: (0..=LAST).map(|k| (rest(k).mean[RED], rest(k).std_error[RED])).collect(),
         matrix: fine.surface.iter().map(|m| m[RED]).collect(),
         radius: (radius.value, radius.half_width),
-        furnace: ratios(&TermMeans::channel(&terms(&furnace, 1 << 12, seed, Technique::Scatter), RED)),
+        furnace: ratios(&TermMeans::channel(&terms(&furnace, 1 << 12, seed, Technique::Scatter, progress), RED)),
         ratios: ratios(&m),
         rates: [observed_rate(&six)?, observed_rate(&m)?].map(|fit| (fit.rate, fit.std_error)),
         enough: [0, 2].into_iter().flat_map(|from| PARTS.map(|part| enough(from, part))).collect(),
@@ -132,63 +136,9 @@ pub fn measure(quick: bool, seed: u64, closed: &str, weight: fn(f64, usize) -> f
     })
 }
 
-/// The statements of the text.
-pub fn claims(m: &Measured) -> Vec<Claim> {
-    let claim = |says, found: String, holds: bool| Claim { says, found, holds };
-    let ((r, half), g, (rate, s)) = (m.radius, m.albedo, m.rates[1]);
-    let top =
-        |values: &[Value], centre: f64| values.iter().map(|(r, s)| (r - centre).abs() + 5.0 * s).fold(0.0, f64::max);
-    let furnace = top(&m.furnace, 0.5);
-    let early = top(&[m.ratios[0], m.ratios[2]], 0.0) / (r - half);
-    let late = ((rate - r).abs() + 5.0 * s + half) / r;
-    let over = |bound: &dyn Fn(usize) -> f64| {
-        m.remainder[..=12].iter().enumerate().map(|(k, (x, s))| (x + 5.0 * s) / bound(k)).fold(0.0, f64::max)
-    };
-    let after = over(&|k| g / (1.0 - g) * (m.terms.mean[k] - 5.0 * m.terms.covariance[(k, k)].sqrt()));
-    let before = over(&|k| g.powi(k as i32 + 1) / (1.0 - g) * m.terms.mean[0]);
-    let ks: Vec<String> = m.enough.iter().map(|k| k.map(or_dash).join(" of ")).collect();
-    let third = m.enough.iter().all(|k| matches!(k, [Some(k), Some(bound)] if 3 * k < *bound));
-    let [(sum, s1), (again, s2)] = m.scaled;
-    let apart = ((sum - again).abs() + 3.0 * s1.hypot(s2)) / again;
-    let brighter = m.towards_pole[10].1 / m.towards_pole[9].1;
-
-    let (ratios, rates) = (value(m.ratios[0]) + " and " + &value(m.ratios[2]), value((rate, s)));
-    let bounds = format!("at most {} of the bound from term K, {} of that from E", percent(after), percent(before));
-    let light = format!("{} from the terms, {} rendered", value((sum, s1)), value((again, s2)));
-    vec![
-        claim(
-            "in the furnace every ratio is 1/2, to 10⁻⁵",
-            format!("largest difference {}", significant(furnace, 1)),
-            furnace < 1e-5,
-        ),
-        claim("in the Cornell box r₀ and r₂ are at least 5 % below r(T)", ratios, early < 0.95),
-        claim("the rate of the late terms is r(T), to 5 %", rates, late < 0.05),
-        claim("no remainder after K = 0 to 12 exceeds its bounds", bounds, after < 1.0 && before < 1.0),
-        claim("less than a third of the guaranteed bounces are enough", ks.join(", "), third),
-        claim("the terms give the light of a room with albedos times 0.8, to 3 %", light, apart < 0.03),
-        claim(
-            "ten times closer to s = 1/r(T), reflected light is ten times brighter, to 10 %",
-            format!("{} times", significant(brighter, 3)),
-            (brighter / 10.0 - 1.0).abs() < 0.1,
-        ),
-    ]
-}
-
-fn value((x, s): Value) -> String {
-    plus_minus(x, s, 1)
-}
-
-fn percent(x: f64) -> String {
-    format!("{} %", significant(100.0 * x, 2))
-}
-
-fn or_dash(k: Option<usize>) -> String {
-    k.map_or("–".into(), |k| k.to_string())
-}
-
 /// Measures, draws, writes and checks.
 fn program(folder: &Folder<'_>) -> book::Result<Vec<Claim>> {
-    let m = measure(folder.quick, folder.seed, "furnace", |s, k| s.powi(k as i32))?;
+    let m = measure(folder, "furnace", |s, k| s.powi(k as i32))?;
     figures::write(folder, &m)?;
     Ok(claims(&m))
 }

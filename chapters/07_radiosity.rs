@@ -20,24 +20,28 @@
 
 use fredholm::engine::{Settings, by_matrix, by_rays::Estimator};
 use fredholm::math::direction::cosine_hemisphere;
-use fredholm::operator::matrix::{LinearOperator, PatchOperator};
-use fredholm::progress::Progress;
+use fredholm::operator::matrix::LinearOperator;
 use fredholm::report::book::{self, Chapter, Claim, Folder};
-use fredholm::report::text::number::{plus_minus, significant};
 use fredholm::scene::{Description, Scene, load};
 use fredholm::solver::comparison::{History, Limits, Solver, System};
-use fredholm::solver::{Iteration, Jacobi, Neumann, PartialSums};
+use fredholm::solver::{Jacobi, Neumann};
 use fredholm::stats::convergence_order;
 use fredholm::study::surface;
 use std::process::ExitCode;
 
+#[path = "radiosity/claims.rs"]
+mod claims;
 #[path = "radiosity/figures.rs"]
 mod figures;
 #[path = "radiosity/form_factor.rs"]
 pub mod form_factor;
 #[path = "radiosity/mesh.rs"]
 mod mesh;
+#[path = "radiosity/sweeps.rs"]
+pub mod sweeps;
+pub use claims::claims;
 use form_factor::{Direction, exchange};
+use sweeps::{Sweeps, apart};
 
 /// This chapter.
 pub const CHAPTER: Chapter = Chapter {
@@ -55,8 +59,6 @@ const RED: usize = 0;
 
 /// An estimate and its standard error.
 pub type Value = (f64, f64);
-/// Makes the iteration that is compared with the partial sums.
-pub type Sweeps = for<'a> fn(&'a PatchOperator<'a>, &[f64]) -> Box<dyn Iteration + 'a>;
 
 /// All that claims and figures need.
 #[derive(Clone)]
@@ -85,38 +87,25 @@ pub struct Measured {
     pub ratios: [Vec<f64>; 2],
 }
 
-// ANCHOR: sweeps
-/// The largest difference of an iteration and the partial sums of the series, over `n` sweeps and all patches.
-fn apart(t: &PatchOperator<'_>, e: &[f64], mut sweeps: Box<dyn Iteration + '_>, n: usize) -> f64 {
-    let mut series = PartialSums::new(t, e);
-    let mut largest = 0.0f64;
-    for _ in 0..n {
-        sweeps.advance();
-        series.advance();
-        largest = sweeps.iterate().iter().zip(series.iterate()).fold(largest, |d, (x, s)| d.max((x - s).abs()));
-    }
-    largest / series.iterate().iter().copied().fold(0.0, f64::max)
-}
-// ANCHOR_END: sweeps
-
 /// Measures everything. `direction` draws the rays of form factors, `sweeps` makes the iteration next to the partial sums.
 ///
 /// # Errors
 /// If a scene cannot be loaded or has no matrix, which is a defect of the program.
-pub fn measure(quick: bool, seed: u64, direction: Direction, sweeps: Sweeps) -> book::Result<Measured> {
+pub fn measure(folder: &Folder<'_>, direction: Direction, sweeps: Sweeps) -> book::Result<Measured> {
+    let (seed, progress) = (folder.seed, folder.progress);
     let load = |name: &str| load::scene(name, &load::Options::default()).map(|s| s.description);
-    let matrix = |room: &Description, n| by_matrix::dense_matrix(room, &Scene::new(room), n, 1.0, LAST, Progress::NONE);
+    let matrix = |room: &Description, n| by_matrix::dense_matrix(room, &Scene::new(room), n, 1.0, LAST, progress);
     let (room, cube) = (load("cornell")?, load("cube")?);
     let scene = Scene::new(&room);
-    let widths = if quick { [100, 400] } else { [300, 1200] };
-    let (rays, paths, n) = if quick { (1 << 18, 1 << 19, 2) } else { (1 << 20, 1 << 20, 3) };
+    let widths = folder.pick([300, 1200], [100, 400]);
+    let (rays, paths, n) = folder.pick((1 << 20, 1 << 20, 3), (1 << 18, 1 << 19, 2));
     let cubes = [n, 2 * n, 4 * n].map(|n| 6 * n * n); // n × n patches on each wall
     let [coarse, fine] = widths.map(|n| matrix(&room, n));
     let (coarse, fine) = (coarse?, fine?);
     let cubes = cubes.map(|n| matrix(&cube, n)).into_iter().collect::<Result<Vec<_>, _>>()?;
 
     let settings = Settings { seed, max_bounces: LAST, ..Settings::default() };
-    let paths = surface::norms(&scene, Estimator::Prefix, paths, &settings, Progress::NONE);
+    let paths = surface::norms(&scene, Estimator::Prefix, paths, &settings, progress);
     let estimate = |k: usize| (paths.mean[k][RED], paths.estimate(k..k + 1).std_error[RED]);
 
     let (t, e) = (fine.radiosity.operator(RED), fine.radiosity.emission(RED));
@@ -147,58 +136,9 @@ pub fn measure(quick: bool, seed: u64, direction: Direction, sweeps: Sweeps) -> 
     })
 }
 
-/// The statements of the text.
-pub fn claims(m: &Measured) -> Vec<Claim> {
-    let claim = |says, found: String, holds: bool| Claim { says, found, holds };
-    let value = |(x, s): Value| plus_minus(x, s, 1);
-    // two results agree if their difference and three of its standard errors are small
-    let apart = |(x, s): Value, (y, t): Value| ((x - y).abs() + 3.0 * s.hypot(t)) / y;
-    let rows = m.row_sums.map(|sum| (1.0 - sum).abs()).into_iter().fold(0.0, f64::max);
-    let [there, back] = m.exchange;
-    let powers = (1..=LAST).map(|k| apart((m.matrix[1][k], 0.0), m.paths[k])).fold(0.0, f64::max);
-    let products = |i: usize, error: f64| m.histories[i].reaches(error).map_or(f64::NAN, |p| p.applications);
-    let (sweeps, predicted) = (products(0, 1e-10) - products(0, 1e-4), 1e-6f64.ln() / m.radius.ln());
-    let [jacobi, seidel, cg] = [0, 1, 2].map(|i| products(i, 1e-6));
-    let (p, [weighted, _]) = (m.order, &m.ratios);
-    let rises = weighted.windows(2).all(|r| r[1] > r[0] * (1.0 - 1e-9));
-    let top = weighted.iter().copied().fold(0.0, f64::max) / m.radius;
-
-    let exchange = format!("{} and {} m²", value(there), value(back));
-    let faster = format!("{jacobi}, {seidel} and {cg} to an error of 10⁻⁶");
-    let powers_found = format!("to {}, with 3 standard errors", percent(powers));
-    let same = format!("to {:.0e} in 30 sweeps", m.sweeps_apart);
-    let order = format!("p = {p:.2}, error {:.1e} on the finest mesh", m.mesh[2].1);
-    vec![
-        claim("in a closed room the rows of F sum to 1, to 10⁻⁶", format!("to {rows:.0e}"), rows < 1e-6),
-        claim("rays from i and rays from j give the same A_i F_ij, to 5 %", exchange, apart(there, back) < 0.05),
-        claim("T_h^k E is the term k of the paths, to 5 %, for k = 1 to 6", powers_found, powers < 0.05),
-        claim("Jacobi's iterates are the partial sums, up to rounding", same, m.sweeps_apart < 1e-13),
-        claim(
-            "r(T_h) predicts the sweeps for six more digits, to 2 sweeps",
-            format!("{sweeps} sweeps, predicted {predicted:.1}"),
-            (sweeps - predicted).abs() < 2.0,
-        ),
-        claim(
-            "Gauss–Seidel and conjugate gradients need less than 0.6 times the products of Jacobi",
-            faster,
-            seidel < 0.6 * jacobi && cg < 0.6 * jacobi,
-        ),
-        claim("the error of the mesh falls like h^p with 1.2 < p < 2", order, 1.2 < p && p < 2.0),
-        claim(
-            "in the norm ‖·‖_w the ratio of the terms never falls, and stays below r(T_h)",
-            format!("it ends at {top:.6} r(T_h)"),
-            rises && top < 1.0 + 1e-9,
-        ),
-    ]
-}
-
-fn percent(x: f64) -> String {
-    format!("{} %", significant(100.0 * x, 2))
-}
-
 /// Measures, draws, writes and checks.
 fn program(folder: &Folder<'_>) -> book::Result<Vec<Claim>> {
-    let m = measure(folder.quick, folder.seed, cosine_hemisphere, |t, e| Box::new(Jacobi::new(t, e)))?;
+    let m = measure(folder, cosine_hemisphere, |t, e| Box::new(Jacobi::new(t, e)))?;
     figures::write(folder, &m)?;
     Ok(claims(&m))
 }

@@ -10,8 +10,9 @@
 //! | σ²/F² | relative variance of one sample, with its standard error | [`relative_variance`] |
 //! | A, h | area of the lamp, 1 m²; distance from it | [`Place`] |
 
+use super::claims::{mean, variance_ratio};
 use super::wall::Place;
-use super::{Measured, SCALES, mean, variance_ratio};
+use super::{Measured, SCALES};
 use fredholm::engine::by_rays::Sampled;
 use fredholm::report::book::{self, Folder};
 use fredholm::report::image::{picture, sheet, sheet::Tile};

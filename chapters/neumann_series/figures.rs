@@ -7,10 +7,10 @@
 //! | `scaled` | Σ s^k m_k against s: partial sums, and all terms by the matrix, up to the pole at s = 1/r(T) |
 //! | `enough.md`, `lit.md` | how many bounces are enough; which bounce lights which surface |
 
+use super::claims::{or_dash, value};
 use super::scaled::{DARKER, TOWARDS_THE_POLE};
-use super::{LAST, Measured, PARTS, Value, or_dash, value};
+use super::{LAST, Measured, PARTS, Value};
 use fredholm::engine::Settings;
-use fredholm::progress::Progress;
 use fredholm::report::book::{self, Folder};
 use fredholm::report::figures::lit as lit_table;
 use fredholm::report::plot::{self, Axis, Curve, Entry, Look, Mark, Panel, Point, Sample, Stroke, Words};
@@ -30,7 +30,7 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     folder.text("enough.md", &markdown::table(&head, &rows))?;
     let room = load::scene("cornell", &load::Options::default())?.description;
     let settings = Settings { seed: folder.seed, ..Settings::default() };
-    let surfaces = lit(&room, &Scene::new(&room), folder.pick(1 << 17, 1 << 12), &settings, Progress::NONE);
+    let surfaces = lit(&room, &Scene::new(&room), folder.pick(1 << 17, 1 << 12), &settings, folder.progress);
     let table = lit_table::grid(&surfaces);
     folder.text("lit.md", &markdown::table(&table.head, &table.rows))?;
     // m_1 + m_1 r_0 + m_1 r_0² + … over the reflected light

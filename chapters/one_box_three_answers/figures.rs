@@ -9,7 +9,8 @@
 //! | T^k E | the picture of a term, at its own exposure | [`terms`] |
 //! | ‖T^k E‖₁ | mean of a term over all surfaces, against k | [`norms`] |
 
-use super::{Answers, Measured, comparisons, of_bounds, percent};
+use super::claims::of_bounds;
+use super::{Answers, Measured, comparisons, percent};
 use fredholm::report::book::{self, Folder};
 use fredholm::report::figures::decay::{self, Decay, RateLine};
 use fredholm::report::image::{picture, sheet, sheet::Tile, typeset::superscript};

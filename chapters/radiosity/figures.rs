@@ -8,7 +8,8 @@
 //! | `modes` | the four leading modes, on the walls |
 //! | `terms.md` | the terms from paths and from two matrices |
 
-use super::{LAST, Measured, RED, percent};
+use super::claims::percent;
+use super::{LAST, Measured, RED};
 use fredholm::engine::{Settings, by_matrix, by_rays};
 use fredholm::operator::modes::{Mode, Modes};
 use fredholm::report::book::{self, Folder};

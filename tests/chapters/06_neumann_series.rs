@@ -1,6 +1,7 @@
 //! Every claim of chapter 6 holds, and each of them fails if one ingredient is made wrong.
 
 use crate::neumann_series::{Measured, claims, measure};
+use fredholm::report::book::Folder;
 use fredholm::study::bounces::guaranteed;
 
 /// s^k.
@@ -10,12 +11,14 @@ fn power(s: f64, k: usize) -> f64 {
 
 #[test]
 fn every_claim_of_chapter_6_can_fail() {
-    let right = measure(true, 0, "furnace", power).unwrap();
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path(), "test").unwrap().quick(true);
+    let right = measure(&folder, "furnace", power).unwrap();
     let refuted = |m: &Measured| claims(m).into_iter().filter(|c| !c.holds).map(|c| c.says).collect::<Vec<_>>();
     assert_eq!(refuted(&right), [""; 0]);
 
     // a closed room whose walls differ is no furnace
-    let uneven = Measured { furnace: measure(true, 0, "cube", power).unwrap().furnace, ..right.clone() };
+    let uneven = Measured { furnace: measure(&folder, "cube", power).unwrap().furnace, ..right.clone() };
     // the formula of the slide, taken literally: every ratio is the rate
     let mut literal = right.clone();
     literal.ratios.iter_mut().for_each(|r| r.0 = right.radius.0);
@@ -29,7 +32,7 @@ fn every_claim_of_chapter_6_can_fail() {
         *bound = guaranteed(right.radius.0, [0, 2][i / 3], [0.1, 0.01, 0.001][i % 3]);
     }
     // the term k has k + 1 reflections
-    let shifted = measure(true, 0, "furnace", |s, k| power(s, k + 1)).unwrap();
+    let shifted = measure(&folder, "furnace", |s, k| power(s, k + 1)).unwrap();
     let shifted = Measured { scaled: shifted.scaled, ..right.clone() };
     // a pole at 1/γ, far from the room of the last point
     let mut elsewhere = right.clone();

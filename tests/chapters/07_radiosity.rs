@@ -2,17 +2,20 @@
 
 use crate::radiosity::{Measured, claims, measure};
 use fredholm::math::direction::{cosine_hemisphere, uniform_hemisphere};
+use fredholm::report::book::Folder;
 use fredholm::solver::{Jacobi, Sor};
 use fredholm::stats::convergence_order;
 
 #[test]
 fn every_claim_of_chapter_7_can_fail() {
-    let right = measure(true, 0, cosine_hemisphere, |t, e| Box::new(Jacobi::new(t, e))).unwrap();
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path(), "test").unwrap().quick(true);
+    let right = measure(&folder, cosine_hemisphere, |t, e| Box::new(Jacobi::new(t, e))).unwrap();
     let refuted = |m: &Measured| claims(m).into_iter().filter(|c| !c.holds).map(|c| c.says).collect::<Vec<_>>();
     assert_eq!(refuted(&right), [""; 0]);
 
     // uniform directions in place of cosine-distributed ones; Gauss–Seidel in place of Jacobi
-    let uniform = measure(true, 0, uniform_hemisphere, |t, e| Box::new(Sor::gauss_seidel(t, e))).unwrap();
+    let uniform = measure(&folder, uniform_hemisphere, |t, e| Box::new(Sor::gauss_seidel(t, e))).unwrap();
     // a row that loses light through a gap between two walls
     let leak = Measured { row_sums: [0.999, right.row_sums[1]], ..right.clone() };
     let no_cosine = Measured { exchange: uniform.exchange, ..right.clone() };

@@ -79,7 +79,7 @@ const COMMANDS: &[OfCommand] = &[
         caption: "The same room three times: the sum of the terms, the path tracer, and the radiosity matrix. They are different \
                   programs for the same equation, and the verdicts say with error bars whether they agree.",
         picture: "three.png",
-        words: &["series", "cornell", "--size", "512x512", "--spp", "24", "--patches", "2400"],
+        words: &["series", "cornell", "--size", "600x600", "--spp", "16", "--patches", "2400"],
         quick: SMALL_MESH,
     },
     OfCommand {
@@ -88,7 +88,7 @@ const COMMANDS: &[OfCommand] = &[
         caption: "The operator T cut into patches is a matrix. Its largest eigenvalue is the factor by which late terms fall, \
                   and its mode, painted on the walls, is the form that they approach.",
         picture: "modes-painted.png",
-        words: &["radiosity", "cornell", "--modes", "6", "--patches", "1200", "--size", "256x256", "--spp", "64"],
+        words: &["radiosity", "cornell", "--modes", "8", "--patches", "1200", "--size", "444x444", "--spp", "32"],
         quick: SMALL_MESH,
     },
     OfCommand {

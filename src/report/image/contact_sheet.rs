@@ -1,7 +1,7 @@
 //! Pictures with labels: single terms with a strip of text below, and grids of labelled cells.
 //!
 //! Text never covers a pixel; it is written next to the images. Images narrower than 256 pixels are enlarged by repeating
-//! pixels. In grids, images wider than 512 pixels are averaged down in linear radiance; single pictures are not. Gain and
+//! pixels. In grids, images wider than 600 pixels are averaged down in linear radiance; single pictures are not. Gain and
 //! mean always come from the full image.
 
 use super::{
@@ -12,7 +12,7 @@ use super::{
 use crate::report::{ReportError, text::number::significant};
 
 const NARROWEST: usize = 256;
-const WIDEST: usize = 512;
+const WIDEST: usize = 600;
 const SHEET: f64 = SLIDE as f64;
 
 /// One image of a sheet.
