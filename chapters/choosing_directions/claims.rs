@@ -17,7 +17,7 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
     let ratios: Vec<Number> = ratios.collect();
     let weights = m.weights[0].iter().map(|w| w / RHO);
     let (n, above) = (weights.len() as f64, weights.clone().filter(|w| *w > 1.0).count() as f64);
-    let above = Number { value: above / n, error: (0.25 / n).sqrt() };
+    let above = Number { value: above / n, std_error: (0.25 / n).sqrt() };
     let (largest, mean) = (weights.clone().fold(0.0, f64::max), weights.sum::<f64>() / n);
     let gain = glossy.variance.over(lobe.variance);
     let (sin, cos) = ALPHA.to_radians().sin_cos();
@@ -46,7 +46,7 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
         ),
         claim(
             "glossy surface: directions by f need less than 1/100 of the rays of directions by the cosine",
-            gain.value - 5.0 * gain.error > 100.0,
+            gain.value - 5.0 * gain.std_error > 100.0,
             format!("1/{gain} of the rays"),
         ),
         claim(

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 const BATCHES: u32 = 64;
 
 /// Mean and relative variance of an estimator.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Spread {
     /// m, the mean.
     pub mean: Number,
@@ -39,8 +39,8 @@ pub fn spread(seed: u64, name: &str, each: u32, x: impl Fn(&mut Rng) -> f64 + Sy
     };
     let mut all = Moments::new(2);
     (0..BATCHES).into_par_iter().map(batch).collect::<Vec<_>>().iter().for_each(|of_batch| all.push(of_batch));
-    let mean = Number { value: all.mean()[0], error: all.std_error(0) };
+    let mean = Number { value: all.mean()[0], std_error: all.std_error(0) };
     let v = all.mean()[1] / (mean.value * mean.value);
-    let error = all.std_error(1) / (mean.value * mean.value) + 2.0 * v * mean.error / mean.value;
-    Spread { mean, variance: Number { value: v, error } }
+    let error = all.std_error(1) / (mean.value * mean.value) + 2.0 * v * mean.std_error / mean.value;
+    Spread { mean, variance: Number { value: v, std_error: error } }
 }

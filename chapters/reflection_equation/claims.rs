@@ -50,12 +50,12 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
         ),
         claim(
             "for an object of radius 30 cm the photograph is off by more than 10 %",
-            large.value.abs() - 5.0 * large.error > 0.1,
+            large.value.abs() - 5.0 * large.std_error > 0.1,
             format!("difference {large}"),
         ),
         claim(
             "a photograph that cuts radiance at 1 loses more than a fifth of the light",
-            clipped.value + 5.0 * clipped.error < -0.2,
+            clipped.value + 5.0 * clipped.std_error < -0.2,
             format!("difference {clipped}"),
         ),
     ]

@@ -109,7 +109,7 @@ fn captured(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
 
 /// Left: the point light as a limit. Right: radiance and irradiance against distance.
 fn limits(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
-    let point = |x: f64, n: Number| Point { x, value: n.value, std_error: n.error, replicates: 16 };
+    let point = |x: f64, n: Number| Point { x, value: n.value, std_error: n.std_error, replicates: 16 };
     let curve = |label: &str, points: Vec<Point>, look| Curve { label: label.into(), points, look };
     let disc = curve("measured", m.limit.iter().map(|&(r, e)| point(r, e)).collect(), Look::nth(0));
     let radiance = curve("radiance", m.distance.iter().map(|&(d, l, _)| point(d, l)).collect(), Look::nth(1));

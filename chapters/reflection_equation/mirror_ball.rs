@@ -103,5 +103,5 @@ fn brightness(image: &TermImage) -> Number {
         let [mean, error] = [image.mean[p], image.std_error[p]].map(|c| f64::from(c[0] + c[1] + c[2]) / 3.0);
         (n, sum, squares) = (n + 1.0, sum + mean, squares + error * error);
     }
-    Number { value: sum / n, error: squares.sqrt() / n }
+    Number { value: sum / n, std_error: squares.sqrt() / n }
 }

@@ -165,7 +165,7 @@ fn on_object(alone: &Scene, image: &TermImage) -> Number {
     let grey = |v: [f32; 3]| v.iter().map(|&x| f64::from(x)).sum::<f64>() / 3.0;
     let value = inside.iter().map(|&p| grey(image.mean[p])).sum::<f64>() / n;
     let error = inside.iter().map(|&p| grey(image.std_error[p]).powi(2)).sum::<f64>().sqrt() / n;
-    Number { value, error }
+    Number { value, std_error: error }
 }
 
 fn program(folder: &Folder<'_>) -> Result<()> {
@@ -253,13 +253,13 @@ fn by_size(folder: &Folder<'_>, sky: &Sky) -> Result<Vec<(f64, Number)>> {
         let alone = lit_by(MATT, radius, sky, size)?;
         let right = on_object(&alone, &whole(&room, spp, &format!("room, {radius}"), folder));
         let map = on_object(&alone, &whole(&alone, spp, &format!("map, {radius}"), folder));
-        csv.put(radius).numbers([right.value, right.error, map.value, map.error]).end();
+        csv.put(radius).numbers([right.value, right.std_error, map.value, map.std_error]).end();
         let r = map.over(right);
-        all.push((radius, Number { value: 100.0 * (r.value - 1.0), error: 100.0 * r.error }));
+        all.push((radius, Number { value: 100.0 * (r.value - 1.0), std_error: 100.0 * r.std_error }));
     }
     folder.text("captured-environments.csv", &csv.text())?;
     let (small, large) = (all[0].1, all[2].1);
-    if large.value.abs() - small.value.abs() < 3.0 * large.error.hypot(small.error) {
+    if large.value.abs() - small.value.abs() < 3.0 * large.std_error.hypot(small.std_error) {
         return Err(format!("the error does not grow with the object: {} %, {} %", small.words(), large.words()).into());
     }
     Ok(all)

@@ -82,7 +82,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
         let (mean, v) = (shot.mean(all.clone()), shot.variance(all.clone()));
         csv.put(sampling)
             .put(shot.spp)
-            .numbers([shot.seconds, mean.value, mean.error, v.value, v.error, relative.value])
+            .numbers([shot.seconds, mean.value, mean.std_error, v.value, v.std_error, relative.value])
             .end();
         let notes = vec![
             format!("{} samples per pixel in {}", shot.spp, seconds(shot)),
@@ -113,7 +113,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
         ),
         14.0,
     );
-    if best.value - 3.0 * best.error < 1.0 {
+    if best.value - 3.0 * best.std_error < 1.0 {
         return Err(format!("BSDF directions are not proved better: relative efficiency {}", best.words()).into());
     }
     folder.text("directions.csv", &csv.text())?;

@@ -97,13 +97,13 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     if apart.at_most() > margin * fresnel.mean(all.clone()).value {
         return Err(format!("the means are not proved equal to {margin}: difference {}", apart.words()).into());
     }
-    if ratio.value - 3.0 * ratio.error < 1.0 {
+    if ratio.value - 3.0 * ratio.std_error < 1.0 {
         return Err(format!("p = 1/2 is not proved noisier: ratio of the variances {}", ratio.words()).into());
     }
     let mut csv = Csv::new("choice,mean,std_error,variance,variance_std_error,spp");
     for (name, shot) in [("fresnel", &fresnel), ("0.5", &constant)] {
         let (mean, v) = (shot.mean(all.clone()), shot.variance(all.clone()));
-        let numbers = [mean.value, mean.error, v.value, v.error, f64::from(spp)];
+        let numbers = [mean.value, mean.std_error, v.value, v.std_error, f64::from(spp)];
         csv.put(name).numbers(numbers).end();
     }
     folder.text("fresnel-choice.csv", &csv.text())?;

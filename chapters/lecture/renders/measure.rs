@@ -42,11 +42,11 @@ pub(crate) trait Interval {
 
 impl Interval for Number {
     fn words(self) -> String {
-        plus_minus(self.value, half_width_95(self.error, u64::from(REPLICATES)), 2)
+        plus_minus(self.value, half_width_95(self.std_error, u64::from(REPLICATES)), 2)
     }
 
     fn at_most(self) -> f64 {
-        self.value.abs() + half_width_95(self.error, u64::from(REPLICATES))
+        self.value.abs() + half_width_95(self.std_error, u64::from(REPLICATES))
     }
 }
 
@@ -97,26 +97,26 @@ impl Shot {
     /// The same mean over the three channels.
     pub(crate) fn mean(&self, slots: Range<usize>) -> Number {
         let e = self.estimate(slots);
-        Number { value: e.mean.element_sum() / 3.0, error: e.std_error.element_sum() / 3.0 }
+        Number { value: e.mean.element_sum() / 3.0, std_error: e.std_error.element_sum() / 3.0 }
     }
 
     /// V of the sum of some slots.
     pub(crate) fn variance(&self, slots: Range<usize>) -> Number {
         let scatter = Scatter::of(&self.film, slots, None);
-        Number { value: scatter.variance(), error: scatter.variance_error() }
+        Number { value: scatter.variance(), std_error: scatter.variance_error() }
     }
 
     /// √V.
     pub(crate) fn noise(&self, slots: Range<usize>) -> Number {
         let v = self.variance(slots);
-        Number { value: v.value.sqrt(), error: v.error / (2.0 * v.value.sqrt()) }
+        Number { value: v.value.sqrt(), std_error: v.std_error / (2.0 * v.value.sqrt()) }
     }
 
     /// 1/(V n t₁), without the error of t₁.
     pub(crate) fn efficiency(&self, slots: Range<usize>) -> Number {
         let v = self.variance(slots);
         let value = 1.0 / (v.value * self.cost * f64::from(self.spp));
-        Number { value, error: value * v.error / v.value }
+        Number { value, std_error: value * v.std_error / v.value }
     }
 
     /// Rays per path.

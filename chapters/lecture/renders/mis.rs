@@ -149,7 +149,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     let mut csv = Csv::new("technique,spp,mean,std_error,variance,variance_std_error");
     for (label, shot) in &shots {
         let (mean, v) = (shot.mean(0..2), shot.variance(0..2));
-        csv.put(label).put(spp).numbers([mean.value, mean.error, v.value, v.error]).end();
+        csv.put(label).put(spp).numbers([mean.value, mean.std_error, v.value, v.std_error]).end();
     }
     folder.text("mis.csv", &csv.text())?;
     board.finish(folder, &SLIDE, |_| Ok(()))
@@ -210,7 +210,7 @@ fn beside(
 fn check([scatter, connect, mis]: [Number; 3]) -> Result<()> {
     for other in [scatter, connect] {
         let ratio = mis.over(other);
-        if ratio.value + 3.0 * ratio.error > 1.0 {
+        if ratio.value + 3.0 * ratio.std_error > 1.0 {
             return Err(format!("MIS is not proved less noisy: ratio of the variances {}", ratio.words()).into());
         }
     }

@@ -90,7 +90,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     for k in 0..K + 2 {
         let (term, sum) = (shot.mean(k..k + 1), shot.mean(0..k + 1));
         csv.put(if k > K { "tail".into() } else { k.to_string() });
-        csv.numbers([term.value, term.error, sum.value, sum.error]).end();
+        csv.numbers([term.value, term.std_error, sum.value, sum.std_error]).end();
     }
     folder.text("path-lengths.csv", &csv.text())?;
     board.finish(folder, &SLIDE, |_| Ok(()))

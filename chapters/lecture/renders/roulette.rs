@@ -74,7 +74,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
         let per_ray = none.variance(INDIRECT).over(v).times(rays);
         let [efficiency, by_rays] =
             [relative, per_ray].map(|r| if std::ptr::eq(shot, none) { "1".into() } else { r.words() });
-        let numbers = [shot.seconds, mean.value, mean.error, v.value, v.error, relative.value, per_ray.value];
+        let numbers = [shot.seconds, mean.value, mean.std_error, v.value, v.std_error, relative.value, per_ray.value];
         csv.put(name).numbers([shot.rays_per_path()]).put(shot.spp).numbers(numbers).end();
         let notes = vec![
             format!("{} rays per path", significant(shot.rays_per_path(), 3)),
@@ -106,14 +106,14 @@ fn program(folder: &Folder<'_>) -> Result<()> {
             apart.words(),
             albedo.mean(INDIRECT).minus(none.mean(INDIRECT)).words(),
             percent(tail.value),
-            plus_minus(grows.value, half_width_95(grows.error, POPULATIONS), 2),
+            plus_minus(grows.value, half_width_95(grows.std_error, POPULATIONS), 2),
         ),
         14.0,
     );
     if apart.at_most() > 0.05 * albedo.mean(INDIRECT).value {
         return Err(format!("the means are not proved equal to 5 %: difference {}", apart.words()).into());
     }
-    if grows.value - 4.0 * grows.error < 1.0 {
+    if grows.value - 4.0 * grows.std_error < 1.0 {
         return Err(format!("the variance is not proved infinite for q = 0.5: growth {}", grows.words()).into());
     }
     if albedo.rays_per_path() >= none.rays_per_path() {
@@ -130,5 +130,5 @@ fn growth(folder: &Folder<'_>) -> Result<Number> {
     let settings = Settings { spp: 16, max_bounces: 2, roulette, seed: folder.seed, ..Settings::default() };
     let found = by_rays::terms(&scene, by_rays::Estimator::Prefix, &settings, folder.progress);
     let growth = found.doubt.ok_or("no growth of the weights was measured")?;
-    Ok(Number { value: growth.rate, error: growth.std_error })
+    Ok(Number { value: growth.rate, std_error: growth.std_error })
 }

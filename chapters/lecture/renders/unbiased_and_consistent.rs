@@ -67,11 +67,16 @@ impl Stage {
         let right = grey(reference.mean);
         let value = 100.0 * (grey(mean.mean) / right - 1.0);
         let error = 100.0 * grey(mean.std_error).hypot(grey(reference.std_error)) / right;
-        Self { pixels, amount, error: Number { value, error }, replicates: mean.replicates.min(u64::from(REPLICATES)) }
+        Self {
+            pixels,
+            amount,
+            error: Number { value, std_error: error },
+            replicates: mean.replicates.min(u64::from(REPLICATES)),
+        }
     }
 
     fn half(&self) -> f64 {
-        half_width_95(self.error.error, self.replicates)
+        half_width_95(self.error.std_error, self.replicates)
     }
 }
 
@@ -121,7 +126,7 @@ fn program(folder: &Folder<'_>) -> Result<()> {
     let mut csv = Csv::new("method,effort,amount,error_percent,std_error");
     for ((name, _), row) in ROWS.iter().zip(&rows) {
         for (n, s) in effort.iter().zip(row) {
-            csv.put(name).put(n).put(&s.amount).numbers([s.error.value, s.error.error]).end();
+            csv.put(name).put(n).put(&s.amount).numbers([s.error.value, s.error.std_error]).end();
         }
     }
     folder.text("unbiased-and-consistent.csv", &csv.text())?;
@@ -132,8 +137,8 @@ fn program(folder: &Folder<'_>) -> Result<()> {
 /// What the slide says about the errors must hold.
 fn check(rows: &[Vec<Stage>; 3]) -> Result<()> {
     let [unbiased, patches, clamped] = rows;
-    let certain = |s: &Stage| s.error.value.abs() > 3.0 * s.error.error;
-    if unbiased.iter().any(|s| s.error.value.abs() > 4.0 * s.error.error) {
+    let certain = |s: &Stage| s.error.value.abs() > 3.0 * s.error.std_error;
+    if unbiased.iter().any(|s| s.error.value.abs() > 4.0 * s.error.std_error) {
         return Err("path tracing has a bias".into());
     }
     if patches.windows(2).any(|s| s[1].error.value.abs() >= s[0].error.value.abs()) {
@@ -141,7 +146,7 @@ fn check(rows: &[Vec<Stage>; 3]) -> Result<()> {
     }
     let [.., before, last] = clamped.as_slice() else { return Err("four stages are expected".into()) };
     let change = last.error.minus(before.error);
-    if !certain(last) || change.value.abs() > 0.1 * last.error.value.abs() + 3.0 * change.error {
+    if !certain(last) || change.value.abs() > 0.1 * last.error.value.abs() + 3.0 * change.std_error {
         return Err("the error of clamped samples is not constant".into());
     }
     Ok(())
@@ -208,7 +213,7 @@ fn plot(canvas: &Canvas<'_>, frame: [f64; 4], effort: [u32; 4], rows: &[Vec<Stag
         let point = |(n, s): (&u32, &Stage)| Point {
             x: f64::from(*n),
             value: s.error.value.abs(),
-            std_error: s.error.error,
+            std_error: s.error.std_error,
             replicates: s.replicates,
         };
         let points = effort.iter().zip(row).map(point).collect();
