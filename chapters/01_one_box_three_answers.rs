@@ -29,6 +29,8 @@ use std::process::ExitCode;
 
 #[path = "one_box_three_answers/claims.rs"]
 mod claims;
+#[path = "one_box_three_answers/exercises.rs"]
+mod exercises;
 #[path = "one_box_three_answers/figures.rs"]
 mod figures;
 
@@ -42,6 +44,7 @@ pub const CHAPTER: Chapter = Chapter {
     shows: "Σ TᵏE, a path tracer and a matrix agree on a Cornell box; ‖TᵏE‖₁ stays below its bound",
     next: &["fredholm", "fredholm series --max-bounces 2", "fredholm chapter 2"],
     program,
+    exercises: exercises::EXERCISES,
 };
 
 // ANCHOR: setup

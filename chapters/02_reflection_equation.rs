@@ -25,6 +25,8 @@ use std::{f64::consts::PI, process::ExitCode};
 
 #[path = "reflection_equation/claims.rs"]
 mod claims;
+#[path = "reflection_equation/exercises.rs"]
+mod exercises;
 #[path = "reflection_equation/figures.rs"]
 mod figures;
 #[path = "reflection_equation/mirror_ball.rs"]
@@ -44,6 +46,7 @@ pub const CHAPTER: Chapter = Chapter {
     shows: "light from the sky, an area and a point, reflected once; a mirror ball as a light",
     next: &["fredholm series cornell --max-bounces 1", "fredholm chapter 3"],
     program,
+    exercises: exercises::EXERCISES,
 };
 
 /// What the program measures.

@@ -27,6 +27,8 @@ use std::process::ExitCode;
 
 #[path = "choosing_directions/claims.rs"]
 mod claims;
+#[path = "choosing_directions/exercises.rs"]
+mod exercises;
 #[path = "choosing_directions/figures.rs"]
 mod figures;
 #[path = "choosing_directions/mistakes.rs"]
@@ -49,6 +51,7 @@ pub const CHAPTER: Chapter = Chapter {
     shows: "E[f cos θ L/p] is the same for every density p; its variance is not",
     next: &["fredholm sweep cornell --over sampling", "fredholm zoo cosine-as-uniform", "fredholm chapter 4"],
     program,
+    exercises: exercises::EXERCISES,
 };
 
 /// The weight of a direction from f, cos θ and p.

@@ -33,6 +33,8 @@ mod claims;
 mod compared;
 #[path = "furnace/exact.rs"]
 mod exact;
+#[path = "furnace/exercises.rs"]
+mod exercises;
 #[path = "furnace/figures.rs"]
 mod figures;
 pub use balance::balance;
@@ -50,6 +52,7 @@ pub const CHAPTER: Chapter = Chapter {
     shows: "L = E + T L at points; TᵏE = ρᵏ in a furnace; two wrong renderers, one of which the furnace cannot see",
     next: &["fredholm zoo uniform-as-cosine", "fredholm check equilibrium cube --spp 16384", "fredholm chapter 5"],
     program,
+    exercises: exercises::EXERCISES,
 };
 /// A value and its standard error.
 pub type Value = [f64; 2];

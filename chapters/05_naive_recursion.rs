@@ -28,6 +28,8 @@ use std::process::ExitCode;
 
 #[path = "naive_recursion/claims.rs"]
 mod claims;
+#[path = "naive_recursion/exercises.rs"]
+mod exercises;
 #[path = "naive_recursion/figures.rs"]
 mod figures;
 #[path = "naive_recursion/pixels.rs"]
@@ -47,6 +49,7 @@ pub const CHAPTER: Chapter = Chapter {
     shows: "N rays at every hit make Nᵏ rays for the term k; which N has the least variance × rays?",
     next: &["fredholm sweep cornell --over branching --equal-rays --spp 16 --size 32x32", "fredholm chapter 6"],
     program,
+    exercises: exercises::EXERCISES,
 };
 /// The values of N that are compared.
 pub const CHILDREN: [u32; 4] = [1, 2, 4, 8];

@@ -30,6 +30,8 @@ use std::process::ExitCode;
 
 #[path = "neumann_series/claims.rs"]
 mod claims;
+#[path = "neumann_series/exercises.rs"]
+mod exercises;
 #[path = "neumann_series/figures.rs"]
 mod figures;
 #[path = "neumann_series/scaled.rs"]
@@ -46,6 +48,7 @@ pub const CHAPTER: Chapter = Chapter {
     shows: "ratios of the terms, bounds of the remainder, enough bounces, the series for other albedos",
     next: &["fredholm", "fredholm series cornell --max-bounces 16", "fredholm chapter 7"],
     program,
+    exercises: exercises::EXERCISES,
 };
 
 /// K: longer paths are counted together.

@@ -31,6 +31,8 @@ use std::process::ExitCode;
 
 #[path = "radiosity/claims.rs"]
 mod claims;
+#[path = "radiosity/exercises.rs"]
+mod exercises;
 #[path = "radiosity/figures.rs"]
 mod figures;
 #[path = "radiosity/form_factor.rs"]
@@ -51,6 +53,7 @@ pub const CHAPTER: Chapter = Chapter {
     shows: "B = E + ρFB: form factors, powers of the matrix as terms, sweeps, mesh error, modes",
     next: &["fredholm radiosity cornell --modes 8", "fredholm radiosity cornell --solver all", "fredholm chapter 8"],
     program,
+    exercises: exercises::EXERCISES,
 };
 
 /// K of the terms that are compared with paths.

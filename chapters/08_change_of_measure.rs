@@ -28,6 +28,8 @@ use std::process::ExitCode;
 
 #[path = "change_of_measure/claims.rs"]
 mod claims;
+#[path = "change_of_measure/exercises.rs"]
+mod exercises;
 #[path = "change_of_measure/figures.rs"]
 mod figures;
 #[path = "change_of_measure/wall.rs"]
@@ -44,6 +46,7 @@ pub const CHAPTER: Chapter = Chapter {
     shows: "∫ f E cos θ dω = ∫ f E V G dA: the same light with less noise, at every scale; a wrong density fails this test",
     next: &["fredholm sweep cornell --over technique --max-bounces 1", "fredholm zoo area-density"],
     program,
+    exercises: exercises::EXERCISES,
 };
 
 // ANCHOR: connect

@@ -18,10 +18,11 @@ use common::random::{cases, furnished, items, matrix, schedule};
 use common::sampling::{Kind, TECHNIQUES, collect, film, plan};
 use common::scenes::{description, quad, room, sphere};
 use fredholm::estimator::{PathTracer, Prefix, Roulette, Technique};
-use fredholm::math::{Key, Purpose, Rgb, Rng};
+use fredholm::math::{Key, Purpose, Rng};
 use fredholm::operator::matrix_walk::Rows;
 use fredholm::operator::{Kernel, SceneTransport, Sensor, Transport};
 use fredholm::scene::Scene;
+use fredholm::study::enumeration::{ends, follow, mean};
 use fredholm::terms::Estimate;
 use fredholm::terms::functional::image_replicates;
 use glam::DVec3;
@@ -31,76 +32,6 @@ use proptest::prelude::*;
 const K: usize = 4;
 /// Where paths without roulette are cut; with roulette they are cut there too.
 const LONG: usize = 40;
-
-/// What one vertex of the path without roulette holds.
-struct Stop {
-    /// What the vertex scores per unit of throughput: term v by being there, term v + 1 by connecting.
-    hit: Rgb,
-    connect: Rgb,
-    albedo: Rgb,
-    /// Weight of the step to the next vertex; none where the path ends by itself.
-    weight: Option<Rgb>,
-    /// The number that roulette draws here.
-    number: f32,
-}
-
-/// The path of one stream, without roulette.
-fn follow<T: Transport>(t: &T, start: T::State, technique: Technique, key: Key, pixel: u32, sample: u32) -> Vec<Stop> {
-    let mut path: Vec<Stop> = vec![];
-    let (mut x, mut hit) = (start, t.emission(&start));
-    for v in 0..LONG {
-        let rng = |purpose| Rng::at(key, pixel, sample, v, purpose);
-        let mut stop =
-            Stop { hit, connect: Rgb::ZERO, albedo: t.albedo(&x), weight: None, number: rng(Purpose::Roulette).one() };
-        if technique.connects()
-            && let Some(c) = t.connect(&x, &mut rng(Purpose::Connect))
-        {
-            stop.connect = c.weight * t.emission(&c.state) * technique.connection(c.pdf, c.other_pdf);
-        }
-        let step = t.scatter(&x, &mut rng(Purpose::Scatter));
-        stop.weight = step.map(|s| s.weight);
-        path.push(stop);
-        let Some(step) = step else { break };
-        x = step.state;
-        hit = if technique.hits(t) { t.emission(&x) * technique.hit(step.pdf, step.other_pdf) } else { Rgb::ZERO };
-    }
-    path
-}
-
-/// Terms and tail.
-type Slots = [DVec3; K + 2];
-
-fn add(slots: &mut Slots, k: usize, value: DVec3) {
-    slots[k.min(K + 1)] += value;
-}
-
-/// Every way the roulette can fall on a path: the probability of each, with what it has scored; `chosen` is the one that
-/// the stream takes.
-fn enumerate(path: &[Stop], schedule: &Roulette) -> (Vec<(f64, Slots)>, usize) {
-    let (mut ways, mut chosen) = (vec![], None);
-    let (mut reach, mut alpha, mut scored) = (1.0, Rgb::ONE, Slots::default());
-    for (v, stop) in path.iter().enumerate() {
-        add(&mut scored, v, (alpha * stop.hit).as_dvec3());
-        add(&mut scored, v + 1, (alpha * stop.connect).as_dvec3());
-        let q = schedule.termination(v, alpha, stop.albedo);
-        let Some(weight) = stop.weight.filter(|_| v + 1 < path.len()) else {
-            ways.push((reach, scored));
-            break;
-        };
-        ways.push((reach * f64::from(q), scored));
-        if stop.number < q && chosen.is_none() {
-            chosen = Some(v);
-        }
-        if q == 1.0 {
-            break;
-        }
-        reach *= 1.0 - f64::from(q);
-        alpha *= 1.0 / (1.0 - q);
-        alpha *= weight;
-    }
-    let last = ways.len() - 1;
-    (ways, chosen.unwrap_or(last))
-}
 
 fn near(a: DVec3, b: DVec3) -> bool {
     (a - b).abs().cmple(1e-5 * b.abs() + 1e-12).all()
@@ -118,21 +49,21 @@ fn check<T: Kernel>(t: &T, sensor: &impl Sensor<T>, schedule: &Roulette, samples
             let Some(start) = sensor.start(t, pixel, &mut Rng::at(key, pixel, sample, 0, Purpose::Start)) else {
                 continue;
             };
-            let path = follow(t, start, technique, key, pixel, sample);
-            let (without, _) = enumerate(&path, &Roulette::Never);
-            let (ways, chosen) = enumerate(&path, schedule);
+            let path = follow(t, start, technique, (key, pixel, sample), LONG);
+            let (without, _) = ends(&path, &Roulette::Never, K);
+            let (ways, chosen) = ends(&path, schedule, K);
 
-            let probability: f64 = ways.iter().map(|w| w.0).sum();
+            let probability: f64 = ways.iter().map(|w| w.probability).sum();
             prop_assert!((probability - 1.0).abs() < 1e-6, "{technique}: probabilities sum to {probability}");
             for k in 0..K + 2 {
-                let mean: DVec3 = ways.iter().map(|(p, s)| *p * s[k]).sum();
-                let x = without.last().unwrap().1[k];
+                let mean = mean(&ways)[k];
+                let x = without.last().unwrap().scored[k];
                 prop_assert!(near(mean, x), "{technique}, slot {k}: {mean} with roulette, {x} without");
             }
 
             // paths that would go on beyond LONG are not followed to their end
             if chosen + 1 < LONG {
-                let expected = ways[chosen].1;
+                let expected = &ways[chosen].scored;
                 let got = terms.path(pixel, sample);
                 for k in 0..K + 2 {
                     prop_assert!(near(got[k], expected[k]), "{technique}, slot {k}: {} for {}", got[k], expected[k]);

@@ -47,9 +47,7 @@ pub fn run(args: &Options) -> Result<Ending, Failure> {
         print(&lines.join("\n"))?;
         return Ok(Ending::Ok);
     };
-    let Some(chapter) = word.parse().ok().and_then(|n: u32| CHAPTERS.iter().find(|c| c.number == n)) else {
-        return Err(unknown(word));
-    };
+    let chapter = find(word)?;
     let manner = Manner { out: args.out.clone(), force: args.force, quiet: args.quiet, ..Manner::default() };
     let mut session = Session::new(manner, 0)?;
     session.make_folder(&format!("chapter-{:02}", chapter.number))?;
@@ -67,9 +65,18 @@ pub fn run(args: &Options) -> Result<Ending, Failure> {
     Ok(session.ending(!found.holds()))
 }
 
+/// The chapter with this number.
+pub fn find(word: &str) -> Result<Chapter, Failure> {
+    let number: Option<u32> = word.parse().ok();
+    CHAPTERS.into_iter().find(|c| Some(c.number) == number).ok_or_else(|| unknown(word))
+}
+
 /// There is no such chapter: suggests the number for a number in words, or for a word of a title.
 fn unknown(word: &str) -> Failure {
-    const WORDS: [&str; 10] = ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"];
+    const WORDS: [&str; 16] = [
+        "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen",
+        "fourteen", "fifteen", "sixteen",
+    ];
     const ORDINALS: [&str; 8] = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"];
     let lower = word.to_lowercase();
     let digits = lower.trim_matches(|c: char| !c.is_ascii_digit()).trim_start_matches('0');

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! base ← choices, options, suggest, open, output, progress, preflight, notes, answer, write ← session ← commands ← here
-//! here → help (layout of the help), mistyped (errors of the command line), pages (completions, man pages)
+//! here → help (layout of the help), mistyped (errors of the command line), pages, markdown (completions, man pages, the page of the book)
 //! ```
 //!
 //! Results go to stdout, progress and errors to stderr. Exit codes: 0 ok, 1 a comparison failed, 2 usage, 3 scene or file,
@@ -12,14 +12,17 @@
 
 mod answer;
 mod base;
+mod book;
 mod chapter;
 mod check;
 mod choices;
 mod compare;
 mod diagnose;
+mod exercise;
 mod figure;
 mod help;
 mod info;
+mod markdown;
 mod mistyped;
 mod notes;
 mod open;
@@ -101,6 +104,12 @@ enum Command {
     /// Runs a chapter of the book
     #[command(after_long_help = chapter::HELP)]
     Chapter(chapter::Options),
+    /// Asks an exercise with your own numbers, and judges the answer
+    #[command(after_long_help = exercise::HELP)]
+    Exercise(exercise::Options),
+    /// Opens the book in the browser
+    #[command(after_long_help = book::HELP)]
+    Book(book::Options),
     /// Prints a script that completes commands in a shell
     #[command(after_long_help = pages::COMPLETIONS)]
     Completions(pages::Completions),
@@ -156,6 +165,8 @@ fn run(command: &Command, all: &clap::Command) -> Result<Ending, Failure> {
         Command::Zoo(args) => zoo::run(args),
         Command::Info(args) => info::run(args),
         Command::Chapter(args) => chapter::run(args),
+        Command::Exercise(args) => exercise::run(args),
+        Command::Book(args) => book::run(args),
         Command::Completions(args) => pages::completions(args, all),
         Command::Man(args) => pages::man(args, all),
     }

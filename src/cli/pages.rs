@@ -18,7 +18,8 @@ For zsh, ~/.zfunc must be in fpath before compinit runs.";
 /// Below `man --help`.
 pub const MAN: &str = "Examples:
   fredholm man | man -l -
-  fredholm man ~/.local/share/man/man1";
+  fredholm man ~/.local/share/man/man1
+  fredholm man --markdown > commands.md";
 
 /// Arguments of `completions`.
 #[derive(Clone, Debug, Args)]
@@ -36,6 +37,11 @@ pub struct Man {
     /// Writes fredholm.1 and one page for every command. Without DIR, fredholm.1 is printed.
     #[arg(value_name = "DIR", help_heading = OUTPUT, value_hint = ValueHint::DirPath)]
     pub folder: Option<PathBuf>,
+    /// Print all commands and options as Markdown
+    ///
+    /// The book includes this page.
+    #[arg(long, conflicts_with = "folder", help_heading = OUTPUT)]
+    pub markdown: bool,
 }
 
 /// Prints the script for a shell.
@@ -47,6 +53,9 @@ pub fn completions(args: &Completions, all: &Command) -> Result<Ending, Failure>
 
 /// Prints the page of the program, or writes all pages.
 pub fn man(args: &Man, all: &Command) -> Result<Ending, Failure> {
+    if args.markdown {
+        return print(&super::markdown::page(all)).map(|()| Ending::Ok);
+    }
     let Some(folder) = &args.folder else {
         print(&String::from_utf8_lossy(&page(all.clone())?))?;
         return Ok(Ending::Ok);

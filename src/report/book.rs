@@ -10,9 +10,11 @@
 //! | a figure of the lecture: its topic and a caption to read aloud | [`Slide`] |
 //! | the folder into which a program writes; the seed; short or full length | [`Folder`] |
 //! | a statement of the text, with what the program found | [`Claim`] |
+//! | exercises that the program judges | [`Exercise`] |
 //!
 //! No measured number of the book is typed by hand: the text includes tables, and single numbers from `numbers.md`.
 
+use super::exercise::Exercise;
 use super::image::{picture::Picture, typeset::Caption};
 use super::plot::Figure;
 pub use super::text::markdown::Claim;
@@ -47,6 +49,8 @@ pub struct Chapter {
     pub next: &'static [&'static str],
     /// Computes, draws, writes, and returns the claims of the text with what was found.
     pub program: fn(&Folder<'_>) -> Result<Vec<Claim>>,
+    /// Exercises that the program judges.
+    pub exercises: &'static [Exercise],
 }
 
 /// A figure for one topic of the lecture.

@@ -5,7 +5,7 @@
 //! fonts and no hash order.
 //!
 //! ```text
-//! text → image → plot → figures → page;  book: what the chapters write
+//! text → image → plot → figures → page;  book: what the chapters write;  exercise: questions and their truth
 //! ```
 //!
 //! | folder | contents |
@@ -16,6 +16,7 @@
 //! | [`figures`] | for each study its figure, its table and its CSV |
 //! | [`page`] | `index.html` |
 //! | [`book`] | chapters and figures of the lecture: their folder, their claims |
+//! | [`exercise`] | exercises that are judged: the student's numbers, the truth, the verdict |
 //!
 //! | file | module |
 //! |---|---|
@@ -42,6 +43,7 @@
 
 pub mod book;
 mod error;
+pub mod exercise;
 pub mod figures;
 mod files;
 pub mod image;

@@ -233,6 +233,22 @@ pub struct Expect {
     pub terms: Vec<f64>,
     /// The exact ratio of consecutive terms, if it is constant.
     pub gamma: Option<f64>,
+    /// Mean over the image of the whole series L, if it is known and not given by `gamma`.
+    pub total: Option<f64>,
+    /// δ, the margin within which a value counts as confirmed, as a fraction of the value.
+    pub tolerance: f64,
     /// Reference for the numbers.
     pub source: String,
+}
+
+impl Expect {
+    /// The usual margin.
+    pub const TOLERANCE: f64 = 0.01;
+
+    /// Mean over the image of the whole series: given, or the geometric series after the last term.
+    pub fn total(&self) -> Option<f64> {
+        let sum: f64 = self.terms.iter().sum();
+        let geometric = |g: f64| sum + self.terms.last().copied().unwrap_or(0.0) * g / (1.0 - g);
+        self.total.or(self.gamma.filter(|g| *g < 1.0).map(geometric))
+    }
 }

@@ -31,7 +31,7 @@ mod stand_in;
 mod textures;
 pub mod vertex;
 
-pub use description::Description;
+pub use description::{Description, Expect};
 pub use error::SceneError;
 pub use lighting::LightSample;
 pub use primitive::Primitive;

@@ -5,6 +5,7 @@
 //! |---|---|---|
 //! | run | what do the series, the path tracer and the matrix give for one scene, and do they agree? | [`run::Run`] |
 //! | convergence | how fast do variance and squared error fall within one render? | [`convergence::Recorder`] |
+//! | enumeration | is roulette unbiased, path by path? | [`enumeration::ends`] |
 //! | split | how many samples should each term get? | [`split::study`] |
 //! | roulette | how noisy and how expensive is each roulette schedule, and which is the best? | [`roulette::pilot`], [`roulette::optimal`] |
 //! | strategies | which bidirectional strategy contributes how much to which term? | [`strategies::strategies`] |
@@ -20,6 +21,7 @@
 
 pub mod bounces;
 pub mod convergence;
+pub mod enumeration;
 pub mod equilibrium;
 pub mod homework;
 pub mod lit;

@@ -4,6 +4,7 @@ mod bias;
 mod bias_args;
 mod common;
 mod equilibrium;
+mod scene;
 mod sides;
 
 use super::base::{Ending, Failure};
@@ -13,8 +14,9 @@ use clap::{Args, Subcommand};
 pub const HELP: &str = "Examples:
   fredholm check bias --estimator prefix --against path
   fredholm check equilibrium cornell
+  fredholm check scene scenes/furnace.toml
 
-Exit code 1: a bias was found, or the equation was rejected.";
+Exit code 1: a bias was found, the equation was rejected, or a value of a scene was not confirmed.";
 
 /// Arguments of `check`.
 #[derive(Debug, Args)]
@@ -33,6 +35,9 @@ pub enum What {
     /// Tests if L = E + T L holds, point by point
     #[command(after_long_help = equilibrium::HELP)]
     Equilibrium(equilibrium::Equilibrium),
+    /// Tests the values that a scene file promises in [expect]
+    #[command(after_long_help = scene::HELP)]
+    Scene(scene::OfScene),
 }
 
 /// Runs a check.
@@ -40,5 +45,6 @@ pub fn run(args: &Check) -> Result<Ending, Failure> {
     match &args.what {
         What::Bias(args) => bias::run(args),
         What::Equilibrium(args) => equilibrium::run(args),
+        What::Scene(args) => scene::run(args),
     }
 }

@@ -14,6 +14,7 @@ pub const HELP: &str = "Examples:
   fredholm roulette cornell --optimise
   fredholm roulette cornell --optimise --for indirect
   fredholm roulette furnace --schedules none,constant:0.1@0,table:0,0.2,0.4
+  fredholm roulette cornell --enumerate
 
 --optimise maximises the efficiency 1/(variance × rays) of one sample. The variance is averaged over pixels and channels. --for says \
 of which quantity: `whole` means the whole image, all terms T^k E (the schedule `optimal`); `indirect` means indirect light, the \
@@ -28,7 +29,7 @@ measured.
 
 The command writes roulette.csv, roulette.svg, roulette.png and summary.json (with the cross moments). --verify and --optimise \
 also write pictures.png: the image of every schedule that was rendered, with its noise, at one exposure. Exit code 1: a measured \
-variance contradicts its prediction.";
+variance contradicts its prediction, or --enumerate finds a term that roulette changes.";
 
 /// Arguments of `roulette`.
 #[derive(Clone, Debug, clap::Args)]
@@ -50,6 +51,12 @@ pub struct Args {
     /// The gain is measured over the lecture's roulette and over albedo roulette. --optimize is the same option.
     #[arg(long, alias = "optimize", help_heading = WHAT)]
     pub optimise: bool,
+    /// Prove that roulette is unbiased, path by path
+    ///
+    /// For 4096 paths, all the ways the roulette can fall are summed with their probabilities. The sum of each term must be the
+    /// term without roulette, to rounding. This is an equality, not a statistic. Writes enumeration.csv.
+    #[arg(long, conflicts_with_all = ["verify", "optimise", "aim"], help_heading = WHAT)]
+    pub enumerate: bool,
     /// Optimise: whole or indirect [default: both]
     ///
     /// The quantity whose variance × rays is minimised.

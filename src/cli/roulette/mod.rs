@@ -2,6 +2,7 @@
 //! finds the best one for the whole image and for indirect light.
 
 mod args;
+mod enumerate;
 mod measure;
 
 use super::base::{Ending, Failure, names, usage};
@@ -53,6 +54,9 @@ pub fn run(args: &Args) -> Result<Ending, Failure> {
     preflight::light_is_seen(&scene, &[Estimator::Prefix], &settings, &[])?;
     preflight::light_is_lost(&scene, &settings, &[World::Terms])?;
     session.make_folder(&format!("{}-roulette", description.name))?;
+    if args.enumerate {
+        return enumerate::run(args, &asked, &scene, &mut session);
+    }
 
     // the recording, and what follows from it
     let Some(recorded) = roulette::pilot(&scene, &settings, args.spp, session.progress()) else {

@@ -7,7 +7,7 @@ use glam::DVec3;
 use std::path::Path;
 
 pub(super) const ROOT_KEYS: [&str; 6] = ["name", "camera", "materials", "shapes", "lights", "expect"];
-pub(super) const EXPECT_KEYS: [&str; 3] = ["terms", "gamma", "source"];
+pub(super) const EXPECT_KEYS: [&str; 5] = ["terms", "gamma", "total", "tolerance", "source"];
 
 /// Reads a whole scene. With `framed`, the file may omit the camera's position, and the camera is placed so that the shapes
 /// fill the frame.
@@ -75,10 +75,39 @@ fn expect(c: &Cursor) -> Result<Expect, SceneError> {
         let x = c.number()?;
         if x < 0.0 { Err(c.error(format!("{x} is negative")).help("light is at least 0")) } else { Ok(x) }
     };
-    let terms = items.iter().map(nonnegative).collect::<Result<_, _>>()?;
+    let terms = items.iter().map(nonnegative).collect::<Result<Vec<f64>, _>>()?;
     let gamma = c.get("gamma").map(|c| nonnegative(&c)).transpose()?;
+    let total = c.get("total").map(|c| nonnegative(&c)).transpose()?;
+    let (sum, last) = (terms.iter().sum::<f64>(), terms.last().copied().unwrap_or(0.0));
+    if let Some(at) = c.get("gamma") {
+        match (gamma, total) {
+            (_, Some(_)) => {
+                let e = at.error("gamma and total both give the terms beyond the last one");
+                return Err(e.help("leave one of them out"));
+            }
+            (Some(g), None) if g >= 1.0 && last > 0.0 => {
+                return Err(at
+                    .error(format!("with gamma = {g} the series diverges"))
+                    .help("a ratio of terms is below 1"));
+            }
+            _ => {}
+        }
+    }
+    if let (Some(at), Some(total)) = (c.get("total"), total)
+        && total < sum * (1.0 - 1e-9)
+    {
+        let e = at.error(format!("the whole series, {total}, is smaller than the sum of the given terms, {sum}"));
+        return Err(e.help("no term is negative; correct terms or total"));
+    }
+    let tolerance = match c.get("tolerance") {
+        None => Expect::TOLERANCE,
+        Some(at) => match at.number()? {
+            x if x > 0.0 && x < 1.0 => x,
+            x => return Err(at.error(format!("a tolerance of {x}")).help("a fraction between 0 and 1, such as 0.01")),
+        },
+    };
     let source = c.require("source", "the reference for the numbers: source = \"…\"")?.text()?.to_owned();
-    Ok(Expect { terms, gamma, source })
+    Ok(Expect { terms, gamma, total, tolerance, source })
 }
 
 fn bounds(shapes: &[crate::scene::description::Shape]) -> [DVec3; 2] {

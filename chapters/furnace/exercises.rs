@@ -1,0 +1,6 @@
+//! Exercises of chapter 4 that the program judges.
+
+use fredholm::report::exercise::Exercise;
+
+/// All of them.
+pub(super) const EXERCISES: &[Exercise] = &[];
