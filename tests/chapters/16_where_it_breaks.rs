@@ -1,0 +1,109 @@
+//! Every claim of chapter 16 holds, and each of them fails if one ingredient is made wrong.
+
+use crate::where_it_breaks::{CHAPTER, Ingredients, Measured, claims, measure};
+use crate::where_it_breaks::{caustic, corner, dimension, mirrors, own_equation, polarisation, rare};
+use fredholm::math::Points;
+use fredholm::report::book::{Folder, Number};
+use fredholm::report::exercise::{Student, Task};
+use fredholm::report::text::number::significant;
+
+/// The mean over both polarisations of a reflection, without the difference that makes light polarised.
+fn unpolarised(r: [f64; 2]) -> polarisation::Mueller {
+    let mut m = polarisation::reflection(r);
+    (m[0][1], m[1][0]) = (0.0, 0.0);
+    m
+}
+
+#[test]
+fn every_claim_of_chapter_16_can_fail() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path(), "test").unwrap().quick(true);
+    let right = measure(&folder, &Ingredients::RIGHT).unwrap();
+    let refuted = |m: &Measured| claims(m).into_iter().filter(|c| !c.holds).map(|c| c.says).collect::<Vec<_>>();
+    assert_eq!(refuted(&right), [""; 0]);
+
+    // the replicates share their numbers: one more sample per replicate adds noise that no longer averages out
+    let mut flat = right.clone();
+    for curve in &mut flat.dimension.independent {
+        let noise = curve.points.last().unwrap().1.clone();
+        curve.points.iter_mut().for_each(|(_, s)| *s = noise.clone());
+    }
+    // independent numbers under the name of Sobol points
+    let points = dimension::noise(&folder, Points::Independent).unwrap();
+    let mut same_points = right.clone();
+    same_points.dimension.even = points;
+    // an interval of one standard error, called 95 %
+    let narrow = Measured { rare: rare::runs(&folder, 1.0).unwrap(), ..right.clone() };
+    // connections only, also where MIS is meant
+    let techniques = [corner::connect as corner::Technique; 2];
+    let no_mis = Measured { corner: corner::corner(&folder, techniques).unwrap(), ..right.clone() };
+    // directions have no tail
+    let mut bounded = right.clone();
+    bounded.corner.tail = corner::corner(&folder, [corner::both; 2]).unwrap().tail;
+    // a lamp with an area is found
+    let disk = Measured { caustic: caustic::caustic(&folder, caustic::Lamp::Disk).unwrap(), ..right.clone() };
+    // real mirrors keep 99 %
+    let real = Measured { mirrors: mirrors::mirrors(&folder, 0.99).unwrap(), ..right.clone() };
+    // no polarisation
+    let theta = polarisation::brewster(1.5);
+    let scalar = Measured { brewster: polarisation::twice(1.5, theta, unpolarised), ..right.clone() };
+    // the right room
+    let no_mistake = Measured { own: own_equation::own_equation(&folder, 1.0).unwrap(), ..right.clone() };
+
+    let mutants = [
+        ("with independent samples", flat),
+        ("Sobol points", same_points),
+        ("samples miss an event", narrow),
+        ("connections to a lamp", no_mis),
+        ("tail index", bounded),
+        ("paths from the eye", disk),
+        ("between mirrors", real),
+        ("two reflections", scalar),
+        ("its own equation", no_mistake),
+    ];
+    assert_eq!(mutants.len(), claims(&right).len(), "a claim without a mutation");
+    for (words, wrong) in mutants {
+        let found = refuted(&wrong);
+        assert!(found.len() == 1 && found[0].contains(words), "{words}: {found:?}");
+    }
+}
+
+#[test]
+fn more_samples_than_expected_events_are_counted_right() {
+    // a lamp that is hit with another probability than the prediction says
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path(), "test").unwrap().quick(true);
+    let right = measure(&folder, &Ingredients::RIGHT).unwrap();
+    let mut wrong = right.clone();
+    // the expected number pN, taken for the probability of at least one event
+    wrong.rare.iter_mut().for_each(|row| row.predicted = (1.0 - f64::from(row.expected)).max(0.0));
+    let failed: Vec<_> = claims(&wrong).into_iter().filter(|c| !c.holds).collect();
+    assert!(failed.len() == 1 && failed[0].says.contains("miss an event"), "{failed:?}");
+}
+
+#[test]
+fn the_exercises_of_chapter_16_have_right_answers() {
+    for exercise in CHAPTER.exercises {
+        for i in 0..20 {
+            let student = Student::new(&format!("student {i}")).unwrap();
+            let name = format!("16.{}, {}", exercise.number, student.name());
+            let (question, solution) = ((exercise.question)(&student), (exercise.solution)(&student));
+            assert!(!question.contains("NaN") && !solution.contains("NaN"), "{name}: {question} {solution}");
+            let Task::Number { truth, mistakes, .. } = exercise.task else { panic!("{name} has no number") };
+            let Number { value, .. } = truth(&student).unwrap();
+            let judge = |x: f64| exercise.judge(&student, &significant(x, 4)).unwrap();
+            assert!(judge(value).right, "{name}: {value} is the truth");
+            let all = mistakes(&student);
+            assert!(!all.is_empty(), "{name} knows no mistake");
+            for mistake in all {
+                let judged = judge(mistake.value);
+                assert!(
+                    !judged.right && judged.says.contains(mistake.says),
+                    "{name}: {}: {}",
+                    mistake.value,
+                    judged.says
+                );
+            }
+        }
+    }
+}
