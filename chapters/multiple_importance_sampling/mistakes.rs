@@ -1,0 +1,108 @@
+//! Mistakes of the zoo that concern weights and densities: by which factor each changes the direct light.
+//!
+//! ```text
+//! factor = mean of T E with the mistake / mean of T E        with the same random numbers for each pixel and sample
+//! ```
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | s | scale: all lengths of the Cornell box are multiplied by it | [`cornell`] |
+//! | factor | with its standard error, from the replicates of both renders | [`Factor`] |
+
+use fredholm::engine::{Settings, by_rays::Sampled};
+use fredholm::estimator::{Plan, Roulette, Technique};
+use fredholm::report::book::{self, Folder, Number};
+use fredholm::scene::description::Geometry;
+use fredholm::scene::{Description, Scene, load};
+use fredholm::zoo::{self, Mistake, Right};
+
+/// The members of the zoo.
+pub const NAMES: [&str; 4] = ["double-emission", "mixed-heuristics", "mixed-measures", "wrong-light-choice"];
+/// Scales of the Cornell box.
+pub const SCALES: [f64; 3] = [0.1, 1.0, 10.0];
+
+/// The factors of one mistake.
+#[derive(Clone, Debug)]
+pub struct Factor {
+    /// Name of the mistake.
+    pub name: &'static str,
+    /// In the Cornell box, at each of the [`SCALES`].
+    pub cornell: [Number; 3],
+    /// In the scene `many-lights`.
+    pub many: Number,
+}
+
+/// The member of the zoo of this name; `right` has no mistake.
+///
+/// # Errors
+/// If there is none.
+pub fn member(name: &str) -> book::Result<&'static dyn Mistake> {
+    match name {
+        "right" => Ok(&Right),
+        _ => Ok(zoo::find(name).ok_or("the zoo has no such member")?.mistake),
+    }
+}
+
+/// A scene with square pictures.
+fn square(name: &str, pixels: u32) -> book::Result<Description> {
+    let set = vec![format!("camera.size=[{pixels}, {pixels}]")];
+    Ok(load::scene(name, &load::Options { set, ..load::Options::default() })?.description)
+}
+
+/// The Cornell box with all lengths multiplied by s.
+///
+/// # Errors
+/// If it cannot be loaded.
+pub fn cornell(pixels: u32, s: f64) -> book::Result<Scene> {
+    let mut scene = square("cornell", pixels)?;
+    [&mut scene.camera.origin, &mut scene.camera.target].into_iter().for_each(|v| *v *= s);
+    for shape in &mut scene.shapes {
+        match &mut shape.geometry {
+            Geometry::Quad { origin, edge_u, edge_v } => [origin, edge_u, edge_v].into_iter().for_each(|v| *v *= s),
+            Geometry::Box { min, max, .. } => [min, max].into_iter().for_each(|v| *v *= s),
+            _ => return Err("a shape of the Cornell box cannot be scaled".into()),
+        }
+    }
+    Ok(Scene::new(&scene))
+}
+
+// ANCHOR: render
+/// T E by both strategies with the balance heuristic; `mistake` may replace a step.
+pub fn direct(folder: &Folder<'_>, scene: &Scene, mistake: &dyn Mistake, spp: u32) -> Sampled {
+    let plan = Plan { max_bounces: 1, technique: Technique::Mis, roulette: Roulette::Never };
+    let settings = Settings { spp, seed: folder.seed, max_bounces: 1, ..Settings::default() };
+    zoo::of(&plan, mistake, "direct", scene, &settings, folder.progress)
+}
+// ANCHOR_END: render
+
+/// a/b for the means of T E of two renders with the same paths, and its standard error.
+pub fn over(a: &Sampled, b: &Sampled) -> Number {
+    let mean = |s: &Sampled| s.replicates.mean[1].element_sum() / 3.0;
+    let deviations =
+        |s: &Sampled| -> Vec<f64> { s.replicates.deviation.iter().map(|d| d[1].element_sum() / 3.0).collect() };
+    let value = mean(a) / mean(b);
+    let (a, each) = (deviations(a), deviations(b));
+    let n = each.len() as f64;
+    let variance = a.iter().zip(&each).map(|(a, b)| (a - value * b).powi(2)).sum::<f64>() * n / (n - 1.0);
+    Number { value, std_error: variance.sqrt() / mean(b) }
+}
+
+/// The factors of these mistakes.
+///
+/// # Errors
+/// If a scene or a mistake does not exist.
+pub fn factors(folder: &Folder<'_>, names: &[&'static str]) -> book::Result<Vec<Factor>> {
+    let (pixels, spp) = folder.pick((96, 64), (48, 32));
+    let rooms = [cornell(pixels, SCALES[0])?, cornell(pixels, SCALES[1])?, cornell(pixels, SCALES[2])?];
+    let many = Scene::new(&square("many-lights", pixels)?);
+    let right = rooms.each_ref().map(|room| direct(folder, room, &Right, spp));
+    let right_many = direct(folder, &many, &Right, spp);
+    let factor = |&name: &&'static str| {
+        let wrong = member(name)?;
+        // here hits count in full, and they are rare: four times the samples
+        let spp = if name == "double-emission" { 4 * spp } else { spp };
+        let cornell = [0, 1, 2].map(|s| over(&direct(folder, &rooms[s], wrong, spp), &right[s]));
+        Ok(Factor { name, cornell, many: over(&direct(folder, &many, wrong, spp), &right_many) })
+    };
+    names.iter().map(factor).collect()
+}
