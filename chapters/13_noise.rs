@@ -22,7 +22,7 @@ use fredholm::report::book::{self, Chapter, Claim, Folder, Number};
 use fredholm::report::image::picture::shown_mean;
 use fredholm::scene::{Scene, load};
 use fredholm::stats::half_width_95;
-use fredholm::zoo::{Mistake, Right, bookkeeping::Clamped};
+use fredholm::zoo::{Mistake, Right, bookkeeping::Clamped, find};
 use std::process::ExitCode;
 
 #[path = "noise/claims.rs"]
@@ -41,7 +41,7 @@ mod intervals;
 mod merging;
 
 pub use claims::claims;
-use convergence::{Curve, Repeat};
+use convergence::Curve;
 use display::Display;
 use intervals::{Covered, TINY};
 use merging::Merged;
@@ -78,7 +78,7 @@ impl Default for With {
         Self {
             shown: shown_mean,
             points: Points::Sobol,
-            mistakes: [&Repeat, &Clamped(convergence::CLAMP)],
+            mistakes: [find("same-numbers").map_or(&Right, |bug| bug.mistake), &Clamped(convergence::CLAMP)],
             seed: |j| j,
             half_width: half_width_95,
             lamp: TINY,

@@ -23,7 +23,6 @@ use fredholm::study::convergence::{NoiseCurve, Recorder, Reference};
 use fredholm::terms::functional::image_replicates;
 use fredholm::terms::scatter::Scatter;
 use fredholm::terms::{TermFilm, TermImage, Variance};
-use fredholm::zoo::bookkeeping::DIFFERENT;
 use fredholm::zoo::{Mistake, Right, Walk, walk::Whole};
 
 /// The largest value of a clamped path.
@@ -74,14 +73,6 @@ pub(super) fn mean(film: &TermFilm) -> Number {
     let of = |d: &Vec<glam::DVec3>| grey(&|c| slots.clone().map(|s| d[s][c]).sum()).powi(2);
     let r = all.deviation.len() as f64;
     Number { value, std_error: (all.deviation.iter().map(of).sum::<f64>() * r / (r - 1.0)).sqrt() }
-}
-
-/// Random numbers that repeat after 16 paths, as those of the member `same-numbers` of the zoo.
-pub(super) struct Repeat;
-impl Mistake for Repeat {
-    fn address(&self, pixel: u32, sample: u32) -> (u32, u32) {
-        (pixel, sample % DIFFERENT)
-    }
 }
 
 // ANCHOR: curve
