@@ -55,7 +55,7 @@ pub fn member(name: &str) -> book::Result<&'static Bug> {
 // ANCHOR: signatures
 /// The ratios of some members in the Cornell box. The right terms come from another estimator and other random numbers.
 pub fn signatures(f: &Folder<'_>, names: &[&str]) -> book::Result<Vec<Signature>> {
-    let side = f.pick(48, 24);
+    let side = f.pick(32, 24);
     let scene = Scene::new(&Stage::CORNELL.load([side; 2])?);
     let roulette = Roulette::Albedo { from: 2 }.after(LAST);
     let few = Settings { spp: f.pick(256, 64), seed: f.seed, max_bounces: LAST, roulette, ..Settings::default() };
