@@ -45,7 +45,9 @@ mod weights;
 #[path = "russian_roulette/wrong.rs"]
 mod wrong;
 
-pub use claims::{claims, variance_in_furnace};
+use claims::exact;
+
+pub use claims::claims;
 pub use enumeration::enumerate;
 pub use moments::moments;
 pub use one_pixel::{Paths, paths};
@@ -79,6 +81,8 @@ pub struct Measured {
     pub furnace: Vec<Number>,
     /// Variance of indirect light with q = 0.2 at every vertex: predicted, and measured.
     pub indirect: [Number; 2],
+    /// Share of emission seen directly in the variance of the whole image, without roulette.
+    pub emission: Number,
     /// E[W_k²] without roulette, and its factor per bounce.
     pub weights: Weights,
     /// That factor from the matrix: r(ρ²F) on two meshes.
@@ -139,6 +143,7 @@ pub fn measure(folder: &Folder<'_>) -> book::Result<Measured> {
         weights: weights(folder, 2)?,
         wrong: wrong(folder)?,
         indirect: found.indirect,
+        emission: found.emission,
         schedules: found.schedules,
         crossed: found.crossed,
     })

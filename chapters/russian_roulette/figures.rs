@@ -40,6 +40,7 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         ("paths", student.running.last().map_or(String::new(), |(n, _)| significant(n / 1e6, 1))),
         ("crossed_whole", m.crossed[0].to_string()),
         ("crossed_indirect", m.crossed[1].to_string()),
+        ("emission", format!("{} %", significant(100.0 * m.emission.value, 2))),
         ("enumerated", m.enumerated.paths.to_string()),
         ("ends", significant(m.enumerated.ends as f64, 3)),
     ])?;
@@ -103,7 +104,7 @@ fn variance(folder: &Folder<'_>, m: &Measured) -> book::Result<Figure> {
             let stroke = Stroke::solid(style(paths).1.color, 2.4);
             paths.running.windows(2).try_for_each(|ends| left.line(ends[0], ends[1], stroke))?;
         }
-        let y = Axis::log("E[α_k²] of the paths that are alive", [1e-5, 1e3].into_iter());
+        let y = Axis::log("E[α_k²], with α_k = 0 after the end", [1e-5, 1e3].into_iter());
         let title = "Squared weight of a path at vertex k";
         let right = Panel::draw(page, title, [566.0, 78.0, 370.0, 330.0], Axis::counts("k", LAST, 8), y)?;
         for (q, look) in QS.into_iter().zip(looks) {

@@ -17,7 +17,7 @@ use super::schedules::{self, Row};
 use fredholm::engine::Settings;
 use fredholm::estimator::Roulette;
 use fredholm::report::book::{self, Folder, Number};
-use fredholm::stats::schedule::Noise;
+use fredholm::stats::schedule::{Noise, Part, share};
 use fredholm::study::roulette;
 
 /// No roulette before this vertex.
@@ -27,6 +27,8 @@ const K: usize = 16;
 pub struct Found {
     /// Variance of indirect light with q = 0.2: predicted and measured.
     pub indirect: [Number; 2],
+    /// Share of emission seen directly in the variance of the whole image, without roulette.
+    pub emission: Number,
     /// The price of some schedules.
     pub schedules: Vec<Row>,
     /// How much each of the two best schedules loses for the quantity of the other.
@@ -50,5 +52,10 @@ pub fn moments(folder: &Folder<'_>, ends: fn(f64) -> f64) -> book::Result<Found>
     let measured = Noise::measured(&again);
     // ANCHOR_END: predict
     let (schedules, crossed) = schedules::compare(folder, &scene, &settings, &recorded)?;
-    Ok(Found { indirect: [predicted.indirect, measured.indirect], schedules, crossed })
+    Ok(Found {
+        emission: share(&recorded, Part::Term(0)),
+        indirect: [predicted.indirect, measured.indirect],
+        schedules,
+        crossed,
+    })
 }

@@ -41,7 +41,7 @@ pub struct Wrong {
 /// If the scene cannot be loaded.
 pub fn wrong(folder: &Folder<'_>) -> book::Result<Vec<Wrong>> {
     let (scene, _) = load("cornell", 32)?;
-    let settings = Settings { seed: folder.seed, max_bounces: K, spp: folder.pick(1024, 512), ..Settings::default() };
+    let settings = Settings { seed: folder.seed, max_bounces: K, spp: folder.pick(1024, 320), ..Settings::default() };
     // ANCHOR: wrong
     let plan = Plan { max_bounces: K, technique: Technique::Connect, roulette: Roulette::Never };
     let right = zoo::of(&plan, &Right, "right", &scene, &settings, folder.progress);

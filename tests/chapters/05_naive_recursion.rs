@@ -1,7 +1,9 @@
 //! Chapter 5: its claims hold, and each of them fails if the result is wrong in the way that it is about.
 
-use crate::naive_recursion::{CHILDREN, K, Measured, claims, measure, recursion};
+use crate::naive_recursion::{CHAPTER, CHILDREN, K, Measured, claims, measure, recursion};
 use fredholm::report::book::{Claim, Folder};
+use fredholm::report::exercise::{Student, Task, Unit};
+use fredholm::report::text::number::significant;
 
 /// A change to the result, with words of the one claim that it must refute.
 type Mistake = (&'static str, fn(&mut Measured));
@@ -61,5 +63,25 @@ fn every_claim_holds_and_can_fail() {
     for claim in claims(&right) {
         let named = MISTAKES.iter().filter(|(words, _)| claim.says.contains(words)).count();
         assert_eq!(named, 1, "mistakes for the claim `{}`", claim.says);
+    }
+}
+
+#[test]
+fn the_exercises_of_chapter_5_have_right_answers() {
+    for student in (0..20).map(|i| Student::new(&format!("student {i}")).unwrap()) {
+        for e in CHAPTER.exercises {
+            let what = format!("5.{} {}", e.number, student.name());
+            let words = (e.question)(&student) + &(e.solution)(&student);
+            assert!(!words.contains("NaN") && !words.contains('–'), "{what}: {words}");
+            let Task::Number { unit, truth, mistakes, .. } = e.task else { panic!("{what}") };
+            let value = truth(&student).unwrap().value;
+            let answer = if unit == Unit::Count { value.to_string() } else { significant(value, 4) };
+            let judged = e.judge(&student, &answer).unwrap();
+            assert!(judged.right, "{what}: {}", judged.says);
+            for wrong in mistakes(&student) {
+                let judged = e.judge(&student, &wrong.value.to_string()).unwrap();
+                assert!(!judged.right && judged.says.ends_with(wrong.says), "{what}: {}", judged.says);
+            }
+        }
     }
 }
