@@ -135,7 +135,7 @@ pub(super) const EXERCISES: &[Exercise] = &[
         question: |s| {
             let (k, delta, a, b) = need(s);
             format!(
-                "Run `fredholm series furnace --technique scatter --sampling uniform --max-bounces 4 --size 32x32 --spp 1024` \
+                "Run `fredholm series furnace --technique scatter --sampling uniform --max-bounces 4 --size 64x64 --spp 64` \
                  and read from its summary.json, for the term k = {k}: `mean`, and `variance`, which is the variance of one \
                  sample. A two-sided test at the level α = {a} shall find a bias of {} % of this term with probability {}. How \
                  many samples does it need? Give three digits.",
@@ -145,7 +145,7 @@ pub(super) const EXERCISES: &[Exercise] = &[
         },
         task: Task::Number {
             unit: Unit::Plain,
-            margin: 0.03,
+            margin: 0.02,
             truth: |s| Ok(exact(samples_truth(s))),
             mistakes: |s| {
                 let (k, delta, a, b) = need(s);
