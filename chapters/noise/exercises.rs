@@ -31,8 +31,8 @@ const MORE_PATHS: Exercise = Exercise {
         format!(
             "The command\n  {}\nprints the mean of the term k = 1 with its ± 95 %. With {few} paths per pixel this half \
              width is {} W/(m² sr) on average. Which half width do you expect with {many} paths per pixel? Give three \
-             digits, in W/(m² sr). Then check with --spp {many}: what it prints comes from 16 replicates, so it has an \
-             error of about 20 % of its own.",
+             digits, in W/(m² sr). Then check with --spp {many} and several seeds, --seed 1, 2, 3: what is printed comes \
+             from 16 replicates, so it has an error of about 20 % of its own.",
             command(few),
             significant(half_width(few), 3)
         )
