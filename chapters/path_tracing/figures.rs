@@ -113,7 +113,7 @@ const CELL: f64 = 58.0;
 
 fn correlation(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     let (left, top) = (150.0, 112.0);
-    let drawing = figure("correlation", 660, 620, &folder.caption("cornell"), |page| {
+    let drawing = figure("correlation", 660, 600, &folder.caption("cornell"), |page| {
         page.text("Correlation of the terms of one path", (24.0, 28.0), words(20.0))?;
         page.text(
             "Blue: positive. Orange: negative. Full colour from 0.25 on.",
