@@ -70,7 +70,7 @@ pub(super) fn seen(folder: &Folder<'_>) -> book::Result<[Seen; 3]> {
     let (up, aside) = (room(UP, pixels(folder))?, room(ASIDE, pixels(folder))?);
     let settings = Settings {
         seed: folder.seed,
-        spp: folder.pick(512, 2048),
+        spp: folder.pick(512, 1536),
         max_bounces: LAST,
         roulette: Roulette::Never,
         ..Settings::default()

@@ -1,8 +1,10 @@
 //! Every claim of chapter 7 holds, and each of them fails if one ingredient is made wrong.
 
-use crate::radiosity::{Measured, claims, measure};
+use crate::radiosity::{CHAPTER, Measured, claims, measure};
 use fredholm::math::direction::{cosine_hemisphere, uniform_hemisphere};
 use fredholm::report::book::Folder;
+use fredholm::report::exercise::{Student, Task};
+use fredholm::report::text::number::significant;
 use fredholm::solver::{Jacobi, Sor};
 use fredholm::stats::convergence_order;
 
@@ -51,5 +53,28 @@ fn every_claim_of_chapter_7_can_fail() {
     for (words, wrong) in mutants {
         let found = refuted(&wrong);
         assert!(found.len() == 1 && found[0].contains(words), "{words}: {found:?}");
+    }
+}
+
+#[test]
+fn the_exercises_of_chapter_7_have_right_answers() {
+    assert_eq!(CHAPTER.exercises.iter().map(|e| e.number).collect::<Vec<_>>(), [1, 2, 4, 5]);
+    for i in 0..20 {
+        let student = Student::new(&format!("student {i}")).unwrap();
+        for exercise in CHAPTER.exercises {
+            let Task::Number { truth, mistakes, .. } = exercise.task else { panic!("{} is no number", exercise.title) };
+            let says = |answer: &str| exercise.judge(&student, answer).unwrap();
+            let value = truth(&student).unwrap().value;
+            let answer = if value.fract() == 0.0 { value.to_string() } else { significant(value, 4) };
+            assert!(says(&answer).right, "{}: {answer}", exercise.title);
+            assert!(!mistakes(&student).is_empty());
+            for mistake in mistakes(&student) {
+                let judged = says(&mistake.value.to_string());
+                assert!(!judged.right && judged.says.contains(mistake.says), "{}: {}", exercise.title, judged.says);
+            }
+            for text in [(exercise.question)(&student), (exercise.solution)(&student)] {
+                assert!(!text.contains("NaN") && !text.is_empty(), "{text}");
+            }
+        }
     }
 }
