@@ -153,8 +153,8 @@ const LAST_DEPTH: Exercise = Exercise {
         let (n, k) = measured(s);
         let share = share(s).map_or(f64::NAN, |x| x.value);
         format!(
-            "The row k = {k} has {} of the rays. In a closed room with one ray per child it would be N^K/(1 + … + N^K) = {}. In \
-             both, most rays belong to the last term, which holds little light.",
+            "The row k = {k} has {} of the rays. In a closed room with one ray per child it would be N^K/(1 + … + N^K) = {}. The \
+             last term holds little light, and yet it takes the largest part of the rays.",
             percent(share),
             percent(n.pow(k) as f64 / all((n, k)) as f64)
         )

@@ -171,7 +171,7 @@ fn two_terms(s: &Student) -> (f64, f64, f64) {
 }
 
 /// q in the command of exercise 10.4. So large that the radius is above 1 for all walls, because only then it is printed.
-const COMMAND_Q: f64 = 0.9;
+pub(super) const COMMAND_Q: f64 = 0.9;
 
 const RADIUS: Exercise = Exercise {
     number: 4,
@@ -221,10 +221,14 @@ fn white(s: &Student) -> f64 {
     s.pick("10.4 white walls", &[0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.9, 0.95])
 }
 
-/// r(ρ²F) with the student's white walls, from the mesh that the command uses.
+/// r(ρ²F) with the student's white walls.
 fn radius(s: &Student) -> Result<f64> {
-    let w = white(s);
-    let set = vec![format!("materials.white.reflectance=[{w}, {w}, {w}]"), "camera.size=[16, 16]".into()];
+    radius_of(white(s))
+}
+
+/// r(ρ²F) with white walls of this albedo, from the mesh that the command uses.
+pub(super) fn radius_of(white: f64) -> Result<f64> {
+    let set = vec![format!("materials.white.reflectance=[{white}, {white}, {white}]"), "camera.size=[16, 16]".into()];
     let room = load::scene("cornell", &load::Options { set, ..load::Options::default() })?.description;
     let scene = Scene::new(&room);
     let matrix = by_matrix::coarse(&room, &scene).ok_or("this scene has no matrix")?;

@@ -8,6 +8,7 @@
 //! | `wrong.md` | r_k of four mistakes |
 
 use super::claims::exact;
+use super::exercises::{COMMAND_Q, radius_of};
 use super::one_pixel::PATHS;
 use super::weights::{LAST, QS, with_roulette};
 use super::{Measured, Paths};
@@ -20,13 +21,16 @@ use fredholm::report::text::{markdown, number::plus_minus, number::significant};
 pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     tables(folder, m)?;
     let [albedo, lecture, student] = &m.seen;
-    let largest = m.radius[1];
+    let (largest, example) = (m.radius[1], radius_of(0.85)?);
     let ratio = |i: usize| significant(student.medians[i].value / albedo.mean.value, 2);
     folder.numbers(&[
         ("critical", significant(1.0 - largest, 2)),
         ("radius", significant(largest, 3)),
         ("radius_half", significant(2.0 * largest, 3)),
         ("radius_student", significant(largest / 0.35, 3)),
+        ("example_command", significant(example / (1.0 - COMMAND_Q), 4)),
+        ("example_radius", significant(example, 4)),
+        ("example_limit", significant(1.0 - example, 4)),
         ("growth", m.weights.growth.to_string()),
         ("exponent_albedo", m.seen[0].exponent.to_string()),
         ("exponent_lecture", lecture.exponent.to_string()),
