@@ -22,8 +22,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
             let rho = dim(s);
             format!(
                 "All walls of a furnace emit 1 and have the albedo {rho}. What is the least K so that the sum of the terms k \
-                 = 0, …, K lacks less than 1 % of all light? Predict K, then check it with\n  \
-                 fredholm series furnace --set 'materials.wall.reflectance=[{rho},{rho},{rho}]' --max-bounces K\n\
+                 = 0, …, K lacks less than 1 % of all light? Predict K, then check it with\n\
+                 `fredholm series furnace --set 'materials.wall.reflectance=[{rho},{rho},{rho}]' --max-bounces K`\n\
                  The share of the row `k > K` must be below 1 %."
             )
         },
@@ -138,8 +138,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
             format!(
                 "A tenth of the area of an integrating sphere emits the radiance 1. The whole sphere has the same albedo, \
                  which is not known. The reflected radiance is measured: it is {} at every point. What is the albedo? Give \
-                 three digits. Check your answer A with\n  \
-                 fredholm series sphere --set 'materials.wall.reflectance=[A,A,A]'\n\
+                 three digits. Check your answer A with\n\
+                 `fredholm series sphere --set 'materials.wall.reflectance=[A,A,A]'`\n\
                  The row `all` minus the row `0` must be the measured value.",
                 reading(s)
             )

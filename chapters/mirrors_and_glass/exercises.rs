@@ -102,21 +102,13 @@ pub(super) const EXERCISES: &[Exercise] = &[
             truth: |s| missing(renderer(s).1).ok_or_else(|| "no kind of path is missing".into()),
             mistakes: &[
                 ("LDE", "A single diffuse reflection is found from both ends."),
-                (
-                    "LDSE",
-                    "The last vertex that is connected here stands next to the other end. Read the word from the end \
-                  at which the walk begins.",
-                ),
-                (
-                    "LSDE",
-                    "The last vertex that is connected here stands next to the other end. Read the word from the end \
-                  at which the walk begins.",
-                ),
+                ("LDSE", FOUND),
+                ("LSDE", FOUND),
                 ("LDSDE", "Both ends of this path are next to a D, so it can be connected from either end."),
             ],
         },
-        hint: "A walk needs a D in front of the point to which it connects, because a mirror reflects nothing towards a \
-               given point.",
+        hint: "A connection needs a D next to the point to which it leads, because a mirror does not reflect light \
+               towards a given point.",
         solution: |s| {
             let (words, from_eye) = renderer(s);
             let (end, letter) = if from_eye { ("the lamp", "L") } else { ("the eye", "E") };
@@ -136,8 +128,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
                 "A plate has two parallel surfaces and the index n = {n}. Light arrives along the normal and is reflected \
                  inside again and again. Which part of it leaves on the other side? Give three digits. In a sky of \
                  radiance 1, a path leaves a plate on the other side after 2, 4, 6, … reflections and refractions. So you \
-                 can check your answer with the sum of T²E, T⁴E, T⁶E and T⁸E in the output of\n  \
-                 {}",
+                 can check your answer with the sum of T²E, T⁴E, T⁶E and T⁸E in the output of\n\
+                 `{}`",
                 command(n)
             )
         },
@@ -168,6 +160,9 @@ pub(super) const EXERCISES: &[Exercise] = &[
         },
     },
 ];
+
+/// Why a kind of path with one S is not the missing one.
+const FOUND: &str = "This kind is found: the letter next to the end that needs a connection is D.";
 
 /// The kinds of path of exercise 3.
 const KINDS: [&str; 4] = ["LDE", "LDSE", "LSDE", "LDSDE"];

@@ -72,7 +72,7 @@ fn curves(folder: &Folder<'_>, m: &Measured) -> book::Result<Figure> {
             x: a.degrees,
             value: a.reflected.value,
             std_error: a.reflected.std_error,
-            replicates: 1 << 17,
+            replicates: u64::from(a.samples),
         };
         let points = m.angles.iter().filter(|a| a.inside == inside).map(point).collect();
         Curve { label: format!("{label}, counted"), points, look: Look::nth(i) }

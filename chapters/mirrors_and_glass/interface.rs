@@ -24,8 +24,6 @@ use glam::Vec3;
 /// Angles in degrees: for a ray outside the glass, for a ray inside.
 const DEGREES: [&[f64]; 2] =
     [&[0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 85.0], &[0.0, 10.0, 20.0, 30.0, 36.0, 40.0, 50.0, 70.0]];
-/// Samples at each angle.
-const SAMPLES: u32 = 1 << 17;
 /// The largest random number below 1.
 const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
 
@@ -36,6 +34,8 @@ pub struct Angle {
     pub inside: bool,
     /// θ in degrees.
     pub degrees: f64,
+    /// Number of samples.
+    pub samples: u32,
     /// The part of the samples that is reflected.
     pub reflected: Number,
     /// F by the formula.
@@ -63,14 +63,14 @@ fn sample(glass: &Bsdf, theta: f64, u: [f32; 3]) -> Option<BsdfSample> {
     glass.sample(out, Sampling::Bsdf, TransportMode::Radiance, u)
 }
 
-/// The part of the samples that is reflected. z is the direction of the normal.
-fn reflected(glass: &Bsdf, theta: f64, key: Key) -> Number {
+/// The part of N samples that is reflected. z is the direction of the normal.
+fn reflected(glass: &Bsdf, theta: f64, samples: u32, key: Key) -> Number {
     let up = |i: u32| {
         let [u, v, w, _] = Rng::at(key, 0, i, 0, Purpose::Scatter).four();
         sample(glass, theta, [u, v, w]).is_some_and(|s| s.wi.z > 0.0)
     };
-    let n = f64::from(SAMPLES);
-    let part = (0..SAMPLES).filter(|&i| up(i)).count() as f64 / n;
+    let n = f64::from(samples);
+    let part = (0..samples).filter(|&i| up(i)).count() as f64 / n;
     Number { value: part, std_error: (part * (1.0 - part) / n).sqrt() }
 }
 // ANCHOR_END: count
@@ -86,12 +86,14 @@ fn glass(inside: bool) -> book::Result<Bsdf> {
 /// # Errors
 /// If the scene cannot be loaded.
 pub fn angles(folder: &Folder<'_>, formula: fn(f64, f64, f64) -> f64) -> book::Result<Vec<Angle>> {
+    let samples = folder.pick(1 << 20, 1 << 17);
     let mut all = vec![];
     for (inside, list) in [false, true].into_iter().zip(DEGREES) {
         let (glass, [n, beyond]) = (glass(inside)?, if inside { [GLASS, 1.0] } else { [1.0, GLASS] });
         all.extend(list.iter().map(|&degrees| {
             let (theta, key) = (degrees.to_radians(), Key::new(folder.seed, &format!("glass {inside} {degrees}")));
-            Angle { inside, degrees, reflected: reflected(&glass, theta, key), formula: formula(n, beyond, theta) }
+            let (reflected, formula) = (reflected(&glass, theta, samples, key), formula(n, beyond, theta));
+            Angle { inside, degrees, samples, reflected, formula }
         }));
     }
     Ok(all)
