@@ -50,7 +50,7 @@ pub(super) const EXERCISES: &[Exercise] = &[
             format!(
                 "One test raises no alarm with probability 1 − α = {}. All {m} raise none with probability (1 − α)^{m} = {}. \
                  So at least one does with probability {}.",
-                significant(1.0 - a, 3),
+                1.0 - a,
                 significant(1.0 - some_alarm(s), 4),
                 significant(some_alarm(s), 4)
             )
@@ -65,7 +65,7 @@ pub(super) const EXERCISES: &[Exercise] = &[
                 "One sample of a renderer has the standard deviation σ = {cv} times the right value μ. A two-sided test at the \
                  level α = {a} uses n = {n} samples; μ is known. How large must a bias be, as a part of μ, so that the test \
                  finds it with probability {}? The quantiles are in the table of chapter 14. Give three digits.",
-                significant(1.0 - b, 3)
+                1.0 - b
             )
         },
         task: Task::Number {
@@ -139,8 +139,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
                  and read from its summary.json, for the term k = {k}: `mean`, and `variance`, which is the variance of one \
                  sample. A two-sided test at the level α = {a} shall find a bias of {} % of this term with probability {}. How \
                  many samples does it need? Give three digits.",
-                significant(100.0 * delta, 2),
-                significant(1.0 - b, 3)
+                100.0 * delta,
+                1.0 - b
             )
         },
         task: Task::Number {
@@ -164,13 +164,13 @@ pub(super) const EXERCISES: &[Exercise] = &[
         solution: |s| {
             let (k, delta, a, b) = need(s);
             format!(
-                "Without noise, the file would give the mean 0.5^{k} and cv² = variance/mean² = (4/3)^{k} − 1 = {}: a sample is \
-                 the product of {k} factors 2 ρ cos θ, each with a mean square of 4/3 of its squared mean. The quantiles are \
-                 z_α = {} and z_β = {}. So n = ((z_α + z_β) cv/{delta})² = {}.",
+                "Each reflection brings a factor 2 ρ cos θ, whose mean square is 4/3 of its squared mean. Without noise the file \
+                 would thus give cv² = variance/mean² = (4/3)^{k} − 1 = {}. The quantiles are z_α = {} and z_β = {}. So \
+                 n = ((z_α + z_β) cv/{delta})² = {:.0}.",
                 significant(spread(k).powi(2), 4),
                 significant(normal(a), 4),
                 significant(normal(2.0 * b), 4),
-                significant(samples_truth(s), 4)
+                samples_truth(s)
             )
         },
     },

@@ -14,7 +14,7 @@ use super::signatures::{LAST, Signature};
 use fredholm::report::book::{self, Folder, Number};
 use fredholm::report::image::{picture::Picture, zmap};
 use fredholm::report::plot::{self, Axis, Canvas, Curve, Drawn, Entry, Look, Panel, Point, Sample, Stroke, Words};
-use fredholm::report::text::{markdown, number::significant};
+use fredholm::report::text::markdown;
 use fredholm::stats::two_sided_p;
 use fredholm::zoo::signature::Ratio;
 
@@ -25,7 +25,6 @@ const BINS: usize = 20;
 pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     let last = |rates: &[Number]| share(rates[BATCHES - 1]);
     let below = |t: &[f64]| percent(alarms(t).iter().filter(|&&p| p <= ALPHA).count() as f64 / t.len() as f64);
-    let mean = |t: &[f64]| significant(t.iter().sum::<f64>() / t.len() as f64, 2);
     let found = |n: usize| m.power.iter().find(|p| p.0 == n).map_or("–".into(), |p| share(p.1));
     folder.numbers(&[
         ("experiments", format!("{}", m.p.len())),
@@ -38,14 +37,11 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         ("anytime", last(&m.watched[1])),
         ("power", found(BATCHES)),
         ("short", found(SHORT)),
-        ("predicted_short", percent(power((SHORT * BATCH) as f64))),
         ("equal_right", share(m.equal[0])),
         ("predicted_equal", percent(power_of_equality())),
         ("equal_darker", share(m.equal[1])),
         ("map_right", below(&m.maps[0])),
         ("map_darker", below(&m.maps[1])),
-        ("mean_right", mean(&m.maps[0])),
-        ("mean_darker", mean(&m.maps[1])),
     ])?;
     folder.text("signatures.md", &table(&m.zoo))?;
     maps(folder, m)?;

@@ -104,7 +104,7 @@ pub fn signature_of(name: &str, seed: u64) -> book::Result<Vec<(f64, f64)>> {
     let roulette = Roulette::Albedo { from: 2 }.after(LAST);
     let spp = if bug.technique == Technique::Mis { 256 } else { 64 };
     let settings = Settings { spp, seed, max_bounces: LAST, roulette, ..Settings::default() };
-    let right = by_rays::terms(&scene, Estimator::Prefix, &Settings { spp: 256, ..settings.clone() }, Progress::NONE);
+    let right = by_rays::terms(&scene, Estimator::Prefix, &Settings { spp: 128, ..settings.clone() }, Progress::NONE);
     let wrong = zoo::render(bug, &scene, &settings, Progress::NONE);
     let (wrong, right) = (wrong.series.image(), right.series.image());
     let all = measured(wrong, right).into_iter().take(5).chain([Ratio::of(&wrong.total, &right.total)]);
