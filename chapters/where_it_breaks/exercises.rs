@@ -225,7 +225,7 @@ fn samples(p: f64) -> f64 {
 }
 
 fn index(s: &Student) -> f64 {
-    s.pick("16.4 index", &[1.33, 1.4, 1.6, 1.7, 1.8, 2.0, 2.42])
+    s.pick("16.4 index", &[1.33, 1.4, 1.6, 1.7, 1.8, 1.9, 2.0])
 }
 
 /// R_s at Brewster's angle.
