@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! T E = ∫ f E V cos θ dω = E[ Σᵢ wᵢ f E V cos θ/pᵢ ]       wᵢ: weight of strategy i, Σᵢ wᵢ = 1 wherever f E V cos θ > 0
-//! balance: wᵢ = pᵢ/(p₁ + p₂)       power: wᵢ = pᵢ²/(p₁² + p₂²)
+//! balance: wᵢ = pᵢ/(p₀ + p₁)       power: wᵢ = pᵢ²/(p₀² + p₁²)
 //! ```
 //!
 //! | symbol | meaning | place |
@@ -43,7 +43,7 @@ pub mod plates;
 #[path = "multiple_importance_sampling/sums.rs"]
 pub mod sums;
 use line::Variances;
-use mistakes::Factor;
+use mistakes::{Factor, Run};
 use pairs::Pair;
 
 pub use claims::claims;
@@ -113,7 +113,7 @@ pub fn measure(folder: &Folder<'_>, weight: Weight) -> book::Result<Measured> {
     Ok(Measured {
         sums: sums::sums(folder, sums::per_area)?,
         pairs: pairs::pairs(folder, weight)?,
-        mistakes: mistakes::factors(folder, &mistakes::NAMES)?,
+        mistakes: mistakes::factors(&Run::of(folder), &mistakes::NAMES)?,
         line: line::variances(folder, line::weight),
     })
 }

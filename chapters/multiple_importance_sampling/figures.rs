@@ -8,7 +8,7 @@
 //! | `rays.md`, `mistakes.md`, `line.md` | the same numbers, factors of mistakes, variances in one dimension |
 
 use super::claims::{largest, opposite, value};
-use super::mistakes::{SCALES, cornell, direct, member};
+use super::mistakes::{Run, SCALES, cornell, direct, from_the_lamp, member, point_light};
 use super::pairs::Pair;
 use super::plates::{ALPHA, PLATES, RADIUS};
 use super::{Measured, line, pictures};
@@ -73,6 +73,7 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         ("worst_balance", value(&largest(&all, 2))),
         ("worst_power", value(&largest(&all, 3))),
         ("excess", value(&excess)),
+        ("lamp_share", value(&from_the_lamp(point_light(&Run::of(folder))?, 0.5))),
         ("sum", significant(m.sums.0, 1)),
         ("points", m.sums.1.to_string()),
         ("mixed_one", percent(measures.cornell[1])),
@@ -125,7 +126,7 @@ fn rays(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
 fn scales(folder: &Folder<'_>) -> book::Result<()> {
     let pixels = folder.pick(128, 64);
     let render = |name: &str, s: f64| -> book::Result<Sampled> {
-        Ok(direct(folder, &cornell(pixels, s)?, member(name)?, folder.pick(32, 8)))
+        Ok(direct(&Run::of(folder), &cornell(pixels, s)?, member(name)?, folder.pick(32, 8)))
     };
     let unit = render("right", 1.0)?;
     let gain = picture::auto_gain(&unit.terms[1].mean);
