@@ -9,7 +9,7 @@
 //! | q, s = 1 − q | probability of **termination** after a vertex is scored; of survival | [`Roulette`] |
 //! | P, S | probability of one way the roulette can fall; what the path has then scored | [`enumeration`] |
 //! | M_jk, Q_v | mean products of terms without roulette; probability of reaching vertex v | [`moments`] |
-//! | r(ρ²F) | factor per bounce of the squared weight of a path: from a matrix, and from paths | [`weights`] |
+//! | r(ρ²F) | factor per bounce of the squared weight of a path: from a matrix, and from paths | [`radius`], [`weights`] |
 //! | V · rays | variance of one path times its rays: the price of a schedule | [`schedules`] |
 //!
 //! Reference: Arvo and Kirk, *Particle transport and image synthesis* (SIGGRAPH 1990).
@@ -17,13 +17,11 @@
 //! `fredholm chapter 10`, or `cargo run --release --example 10_russian_roulette -- [--out DIR] [--quick]`.
 #![allow(clippy::print_stdout)] // a program, not the library
 
-use fredholm::engine::{Settings, by_matrix};
-use fredholm::estimator::{Roulette, Technique};
+use fredholm::estimator::Roulette;
 use fredholm::report::book::{self, Chapter, Claim, Folder, Number};
+use fredholm::scene::description::Description;
 use fredholm::scene::{Scene, load};
-use fredholm::stats::schedule::Noise;
 use fredholm::study::enumeration::{Errors, mean};
-use fredholm::study::roulette::{self, Radii};
 use std::process::ExitCode;
 
 #[path = "russian_roulette/claims.rs"]
@@ -34,10 +32,14 @@ mod enumeration;
 mod exercises;
 #[path = "russian_roulette/figures.rs"]
 mod figures;
+#[path = "russian_roulette/furnace.rs"]
+mod furnace;
 #[path = "russian_roulette/moments.rs"]
 mod moments;
 #[path = "russian_roulette/one_pixel.rs"]
 mod one_pixel;
+#[path = "russian_roulette/radius.rs"]
+mod radius;
 #[path = "russian_roulette/schedules.rs"]
 mod schedules;
 #[path = "russian_roulette/weights.rs"]
@@ -46,11 +48,14 @@ mod weights;
 mod wrong;
 
 use claims::exact;
+use radius::radius;
 
 pub use claims::claims;
 pub use enumeration::enumerate;
-pub use moments::moments;
+pub use furnace::{IN_FURNACE, in_furnace};
+pub use moments::{Prices, moments};
 pub use one_pixel::{Paths, paths};
+pub use radius::Radius;
 pub use schedules::Row;
 pub use weights::{Weights, weights};
 pub use wrong::{Wrong, wrong};
@@ -65,11 +70,7 @@ pub const CHAPTER: Chapter = Chapter {
     program,
     exercises: exercises::EXERCISES,
 };
-/// Albedo of the furnace.
-pub const RHO: f64 = 0.5;
-/// The probabilities of termination that are measured in the furnace.
-pub const IN_FURNACE: [f64; 3] = [0.1, 0.3, 0.5];
-/// The student's story: q after who took 0.35, the probability of survival, for q.
+/// The schedule of the student's story: paths survive with probability 0.35.
 pub const STUDENT: Roulette = Roulette::Constant { from: 2, q: 0.65 };
 
 /// What the program measures.
@@ -79,60 +80,34 @@ pub struct Measured {
     pub enumerated: Errors,
     /// Variance of one path in the furnace, for each of [`IN_FURNACE`].
     pub furnace: Vec<Number>,
-    /// Variance of indirect light with q = 0.2 at every vertex: predicted, and measured.
-    pub indirect: [Number; 2],
-    /// Share of emission seen directly in the variance of the whole image, without roulette.
-    pub emission: Number,
+    /// What follows from moments without roulette: the variance of schedules, and their price.
+    pub prices: Prices,
     /// E[W_k²] without roulette, and its factor per bounce.
     pub weights: Weights,
-    /// That factor from the matrix: r(ρ²F) on two meshes.
-    pub radius: [f64; 2],
+    /// That factor from the matrix, on two meshes; the last one is finer.
+    pub radius: [Radius; 2],
     /// Paths through one pixel with roulette by albedo, with the lecture's, and with that of [`STUDENT`].
     pub seen: [Paths; 3],
-    /// Schedules: rays, and the price relative to the lecture's.
-    pub schedules: Vec<Row>,
-    /// How many times the rays of the best schedule for one quantity the best one for the other needs: whole, indirect.
-    pub crossed: [Number; 2],
     /// r_k of wrong roulette.
     pub wrong: Vec<Wrong>,
 }
 
 /// A scene with a square image.
-pub(crate) fn load(name: &str, side: u32) -> book::Result<(Scene, fredholm::scene::description::Description)> {
+pub(crate) fn load(name: &str, side: u32) -> book::Result<(Scene, Description)> {
     let options = load::Options { set: vec![format!("camera.size=[{side}, {side}]")], ..load::Options::default() };
     let description = load::scene(name, &options)?.description;
     Ok((Scene::new(&description), description))
 }
-
-// ANCHOR: furnace
-/// The variance of one path in the furnace, if it ends with probability `q` at every vertex.
-pub fn in_furnace(folder: &Folder<'_>, q: f64) -> book::Result<Number> {
-    let (scene, _) = load("furnace", 32)?;
-    let settings = Settings { seed: folder.seed, technique: Technique::Scatter, ..Settings::default() };
-    let schedule = Roulette::Constant { from: 0, q };
-    let recorded = roulette::measure(&scene, &settings, &schedule, folder.pick(1024, 128), folder.progress);
-    Ok(Noise::measured(&recorded.ok_or("stopped")?).all)
-}
-// ANCHOR_END: furnace
-
-// ANCHOR: radius
-/// r(ρ²F) of the Cornell box: the radius of ρ²F/(1 − q) for q = 0.
-fn radius(patches: usize, folder: &Folder<'_>) -> book::Result<f64> {
-    let (scene, room) = load("cornell", 64)?;
-    let matrix = by_matrix::dense_matrix(&room, &scene, patches, 1.0, 1, folder.progress)?;
-    Ok(Radii::new(Some(&matrix.radiosity), &scene, 0.0).second)
-}
-// ANCHOR_END: radius
 
 /// Measures everything.
 ///
 /// # Errors
 /// If a scene cannot be loaded, or if the program is stopped.
 pub fn measure(folder: &Folder<'_>) -> book::Result<Measured> {
-    let found = moments(folder, |q| q)?;
     let meshes = folder.pick([300, 1200], [75, 300]);
     Ok(Measured {
         enumerated: enumerate(folder, mean)?,
+        prices: moments(folder, |q| q)?,
         furnace: IN_FURNACE.into_iter().map(|q| in_furnace(folder, q)).collect::<book::Result<_>>()?,
         radius: [radius(meshes[0], folder)?, radius(meshes[1], folder)?],
         seen: [
@@ -142,10 +117,6 @@ pub fn measure(folder: &Folder<'_>) -> book::Result<Measured> {
         ],
         weights: weights(folder, 2)?,
         wrong: wrong(folder)?,
-        indirect: found.indirect,
-        emission: found.emission,
-        schedules: found.schedules,
-        crossed: found.crossed,
     })
 }
 

@@ -4,26 +4,20 @@
 //! the value is c to ± δ:   |x − c| + 5 s ≤ δ        x is above c:   x − 5 s > c        x ± s: measured, standard error
 //! ```
 
+use super::Measured;
+use super::furnace::{IN_FURNACE, variance_in_furnace};
 use super::one_pixel::PATHS;
-use super::{IN_FURNACE, Measured, RHO};
 use fredholm::report::book::{Claim, Number};
 use fredholm::report::text::number::significant;
 use fredholm::zoo::signature::Ratio;
-
-// ANCHOR: furnace
-/// Variance of one path in a furnace with E = 1.
-fn variance_in_furnace(rho: f64, q: f64) -> f64 {
-    rho * rho * q / ((1.0 - rho).powi(2) * (1.0 - q - rho * rho))
-}
-// ANCHOR_END: furnace
 
 /// The statements of the text.
 pub fn claims(m: &Measured) -> Vec<Claim> {
     let claim = |says, found: String, holds: bool| Claim { says, found, holds };
     let e = &m.enumerated;
     let relative: Vec<Number> =
-        m.furnace.iter().zip(IN_FURNACE).map(|(v, q)| v.times(1.0 / variance_in_furnace(RHO, q))).collect();
-    let predicted = m.indirect[0].over(m.indirect[1]);
+        m.furnace.iter().zip(IN_FURNACE).map(|(v, q)| v.times(1.0 / variance_in_furnace(q))).collect();
+    let predicted = m.prices.indirect[0].over(m.prices.indirect[1]);
     let grows = m.weights.growth.times(2.0);
     let [albedo, _, student] = &m.seen;
     let at = |n: usize| PATHS.iter().position(|&p| p == n).unwrap_or(0);
@@ -56,8 +50,8 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
         ),
         claim(
             "with q = 0.5 the mean squared weight grows at late vertices, by the factor of the matrix to 5 %",
-            format!("{grows} per bounce; matrix: {}", significant(2.0 * m.radius[1], 4)),
-            grows.value - 5.0 * grows.std_error > 1.0 && m.weights.growth.over(exact(m.radius[1])).is(1.0, 0.05),
+            format!("{grows} per bounce; matrix: {}", significant(2.0 * m.radius[1].second, 4)),
+            grows.value - 5.0 * grows.std_error > 1.0 && m.weights.growth.over(exact(m.radius[1].second)).is(1.0, 0.05),
         ),
         claim(
             "survival with 0.35: the values have a tail with exponent below 2; by albedo above 3",
@@ -71,8 +65,11 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
         ),
         claim(
             "the best schedule for one quantity needs over 1.5 times the rays for the other",
-            format!("{} times for the whole image, {} times for indirect light", m.crossed[0], m.crossed[1]),
-            m.crossed.iter().all(|&x| above(x, 1.5)),
+            format!(
+                "{} times for the whole image, {} times for indirect light",
+                m.prices.crossed[0], m.prices.crossed[1]
+            ),
+            m.prices.crossed.iter().all(|&x| above(x, 1.5)),
         ),
         claim(
             "four wrong weights of survivors leave the predicted factors in the terms, to ± 0.12",

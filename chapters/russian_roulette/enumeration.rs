@@ -27,7 +27,6 @@ const K: usize = 6;
 /// Paths are cut after this many vertices, with and without roulette.
 const LONG: usize = 24;
 
-// ANCHOR: enumerate
 /// The largest errors over one path of every pixel. `mean` sums over the ways the roulette can fall.
 pub fn enumerate(folder: &Folder<'_>, mean: fn(&[End]) -> Vec<DVec3>) -> book::Result<Errors> {
     let (scene, _) = load("cornell", folder.pick(64, 32))?;
@@ -50,4 +49,3 @@ pub fn enumerate(folder: &Folder<'_>, mean: fn(&[End]) -> Vec<DVec3>) -> book::R
     }
     Ok(errors)
 }
-// ANCHOR_END: enumerate

@@ -21,7 +21,7 @@ use fredholm::report::text::{markdown, number::plus_minus, number::significant};
 pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     tables(folder, m)?;
     let [albedo, lecture, student] = &m.seen;
-    let (largest, example) = (m.radius[1], radius_of(0.85)?);
+    let (largest, example) = (m.radius[1].second, radius_of(0.85)?);
     let ratio = |i: usize| significant(student.medians[i].value / albedo.mean.value, 2);
     folder.numbers(&[
         ("critical", significant(1.0 - largest, 2)),
@@ -35,18 +35,19 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         ("exponent_albedo", m.seen[0].exponent.to_string()),
         ("exponent_lecture", lecture.exponent.to_string()),
         ("exponent_student", student.exponent.to_string()),
+        ("matrix_lecture", significant(m.radius[1].exponents[0], 3)),
+        ("matrix_student", significant(m.radius[1].exponents[1], 3)),
         ("jump_lecture", significant(jump(lecture), 2)),
         ("jump_student", significant(jump(student), 2)),
         ("jump_albedo", significant(jump(albedo), 2)),
         ("median_1", ratio(0)),
         ("median_16", ratio(2)),
         ("median_256", ratio(4)),
-        ("paths", student.running.last().map_or(String::new(), |(n, _)| significant(n / 1e6, 1))),
-        ("crossed_whole", m.crossed[0].to_string()),
-        ("crossed_indirect", m.crossed[1].to_string()),
-        ("emission", format!("{} %", significant(100.0 * m.emission.value, 2))),
+        ("crossed_whole", m.prices.crossed[0].to_string()),
+        ("crossed_indirect", m.prices.crossed[1].to_string()),
+        ("emission", format!("{} %", significant(100.0 * m.prices.emission.value, 2))),
+        ("best_indirect", m.prices.schedules[4].indirect.to_string()),
         ("enumerated", m.enumerated.paths.to_string()),
-        ("ends", significant(m.enumerated.ends as f64, 3)),
     ])?;
     folder.figure("variance", &variance(folder, m)?)?;
     folder.figure("median", &median(folder, m)?)?;
@@ -62,6 +63,7 @@ fn jump(paths: &Paths) -> f64 {
 fn tables(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     let head = ["schedule", "q at v = 0, 1, 2, 3, 4", "rays per path", "whole image", "indirect light"];
     let rows: Vec<Vec<String>> = m
+        .prices
         .schedules
         .iter()
         .map(|r| {

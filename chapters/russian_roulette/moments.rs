@@ -24,7 +24,8 @@ use fredholm::study::roulette;
 const K: usize = 16;
 
 /// What follows from the moments.
-pub struct Found {
+#[derive(Clone, Debug)]
+pub struct Prices {
     /// Variance of indirect light with q = 0.2: predicted and measured.
     pub indirect: [Number; 2],
     /// Share of emission seen directly in the variance of the whole image, without roulette.
@@ -40,7 +41,7 @@ pub struct Found {
 ///
 /// # Errors
 /// If the program is stopped.
-pub fn moments(folder: &Folder<'_>, ends: fn(f64) -> f64) -> book::Result<Found> {
+pub fn moments(folder: &Folder<'_>, ends: fn(f64) -> f64) -> book::Result<Prices> {
     let (scene, _) = load("cornell", folder.pick(64, 32))?;
     let settings = Settings { seed: folder.seed, max_bounces: K, ..Settings::default() };
     let (spp, stopped) = (256, "stopped");
@@ -52,7 +53,7 @@ pub fn moments(folder: &Folder<'_>, ends: fn(f64) -> f64) -> book::Result<Found>
     let measured = Noise::measured(&again);
     // ANCHOR_END: predict
     let (schedules, crossed) = schedules::compare(folder, &scene, &settings, &recorded)?;
-    Ok(Found {
+    Ok(Prices {
         emission: share(&recorded, Part::Term(0)),
         indirect: [predicted.indirect, measured.indirect],
         schedules,

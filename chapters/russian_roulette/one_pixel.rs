@@ -57,7 +57,6 @@ pub struct Paths {
     pub medians: Vec<Number>,
 }
 
-// ANCHOR: indirect
 /// Σ_{k≥2} T^k E, red channel, one value for each path: the tail behind K = 1.
 fn indirect(scene: &Scene, schedule: &Roulette, many: u32, folder: &Folder<'_>) -> Vec<f64> {
     let plan = Plan { max_bounces: 1, technique: Technique::Mis, roulette: schedule.clone() };
@@ -71,7 +70,6 @@ fn indirect(scene: &Scene, schedule: &Roulette, many: u32, folder: &Folder<'_>) 
     };
     (0..many).flat_map(one_part).collect()
 }
-// ANCHOR_END: indirect
 
 /// N and V_N, for about eight values of N in each octave, from 64 on.
 fn running(values: &[f64]) -> Vec<(f64, f64)> {
@@ -88,7 +86,6 @@ fn running(values: &[f64]) -> Vec<(f64, f64)> {
     found
 }
 
-// ANCHOR: exponent
 /// α from the m largest values: 1/α is the mean of ln(x/x_m) over them.
 fn exponent(sorted: &[f64]) -> Number {
     let m = sorted.len() / LARGEST;
@@ -96,7 +93,6 @@ fn exponent(sorted: &[f64]) -> Number {
     let alpha = m as f64 / top.iter().map(|x| (x / top[0]).ln()).sum::<f64>();
     Number { value: alpha, std_error: alpha / (m as f64).sqrt() }
 }
-// ANCHOR_END: exponent
 
 fn sorted(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);

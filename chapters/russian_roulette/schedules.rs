@@ -73,9 +73,7 @@ pub(super) fn compare(
             q: None,
         });
     }
-    // ANCHOR: crossed
     let for_whole = gain(recorded, &whole, &indirect, Part::All).ok_or(stopped)?;
     let for_indirect = gain(recorded, &indirect, &whole, Part::INDIRECT).ok_or(stopped)?;
-    // ANCHOR_END: crossed
     Ok((rows, [for_whole, for_indirect]))
 }

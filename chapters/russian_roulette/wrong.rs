@@ -42,7 +42,6 @@ pub struct Wrong {
 pub fn wrong(folder: &Folder<'_>) -> book::Result<Vec<Wrong>> {
     let (scene, _) = load("cornell", 32)?;
     let settings = Settings { seed: folder.seed, max_bounces: K, spp: folder.pick(1024, 320), ..Settings::default() };
-    // ANCHOR: wrong
     let plan = Plan { max_bounces: K, technique: Technique::Connect, roulette: Roulette::Never };
     let right = zoo::of(&plan, &Right, "right", &scene, &settings, folder.progress);
     let compare = |bug: &'static Bug| {
@@ -50,6 +49,5 @@ pub fn wrong(folder: &Folder<'_>) -> book::Result<Vec<Wrong>> {
         let expected = (0..=K).filter_map(bug.ratio).collect();
         Wrong { name: bug.name, expected, ratios: measured(wrong.series.image(), right.series.image()) }
     };
-    // ANCHOR_END: wrong
     NAMES.iter().map(|name| Ok(compare(zoo::find(name).ok_or("no such mistake")?))).collect()
 }

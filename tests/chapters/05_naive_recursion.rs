@@ -68,9 +68,13 @@ fn every_claim_holds_and_can_fail() {
 
 #[test]
 fn the_exercises_of_chapter_5_have_right_answers() {
+    let mut seen = std::collections::HashSet::new(); // students with the same numbers have the same truth
     for student in (0..20).map(|i| Student::new(&format!("student {i}")).unwrap()) {
         for e in CHAPTER.exercises {
             let what = format!("5.{} {}", e.number, student.name());
+            if !seen.insert((e.question)(&student)) {
+                continue;
+            }
             let words = (e.question)(&student) + &(e.solution)(&student);
             assert!(!words.contains("NaN") && !words.contains('–'), "{what}: {words}");
             let Task::Number { unit, truth, mistakes, .. } = e.task else { panic!("{what}") };

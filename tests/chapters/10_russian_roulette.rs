@@ -34,7 +34,7 @@ fn every_claim_of_chapter_10_can_fail() {
     let survival = IN_FURNACE.map(|q| in_furnace(&folder, 1.0 - q).unwrap()).to_vec();
     let survival = Measured { furnace: survival, ..right.clone() };
     let found = moments(&folder, |q| 1.0 - q).unwrap();
-    let other_q = Measured { indirect: found.indirect, ..right.clone() };
+    let other_q = Measured { prices: found, ..right.clone() };
     // the weight in place of its square
     let not_squared = Measured { weights: weights(&folder, 1).unwrap(), ..right.clone() };
     // the exponent of a schedule with finite variance
@@ -45,7 +45,7 @@ fn every_claim_of_chapter_10_can_fail() {
     typical.seen[2].medians.fill(right.seen[0].mean);
     // one schedule is believed to be best for everything
     let mut one_for_all = right.clone();
-    one_for_all.crossed.iter_mut().for_each(|x| x.value = 1.0);
+    one_for_all.prices.crossed.iter_mut().for_each(|x| x.value = 1.0);
     // term k is believed to have passed k tests
     let mut one_more = right.clone();
     one_more.wrong.iter_mut().for_each(|w| w.expected.rotate_left(1));
@@ -69,9 +69,13 @@ fn every_claim_of_chapter_10_can_fail() {
 
 #[test]
 fn the_exercises_of_chapter_10_have_right_answers() {
+    let mut seen = std::collections::HashSet::new(); // students with the same numbers have the same truth
     for student in (0..20).map(|i| Student::new(&format!("student {i}")).unwrap()) {
         for e in CHAPTER.exercises {
             let what = format!("10.{} {}", e.number, student.name());
+            if !seen.insert((e.question)(&student)) {
+                continue;
+            }
             let words = (e.question)(&student) + &(e.solution)(&student);
             assert!(!words.contains("NaN") && !words.contains('–'), "{what}: {words}");
             let Task::Number { truth, mistakes, .. } = e.task else { panic!("{what}") };
