@@ -81,7 +81,6 @@ pub struct Measured {
     pub corridor: Number,
 }
 
-// ANCHOR: measure
 /// Measures everything. `formula(n, n', θ)` is Fresnel's reflectance.
 ///
 /// # Errors
@@ -98,7 +97,6 @@ pub fn measure(folder: &Folder<'_>, formula: fn(f64, f64, f64) -> f64) -> book::
         corridor: glass::corridor(folder)?,
     })
 }
-// ANCHOR_END: measure
 
 /// Measures, draws, writes and checks.
 fn program(folder: &Folder<'_>) -> book::Result<Vec<Claim>> {
