@@ -92,7 +92,7 @@ fn walks(m: &Measured) -> [Claim; 3] {
             off < 0.04,
         ),
         claim(
-            "the second moments of the matrix predict the variance of eight maps, to 20 %",
+            "the second moments of the matrix predict the variance of nine maps, to 20 %",
             format!("to {}; flat map {flat:.2}, reversed map {reversed:.2}", percent(apart)),
             apart < 0.2,
         ),

@@ -27,11 +27,9 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     folder.numbers(&[
         ("first", significant(m.spectrum.values[0], 4)),
         ("second", significant(m.spectrum.values[1], 4)),
-        ("ratio", significant(m.spectrum.values[1] / m.spectrum.values[0], 3)),
         ("smallest", significant(a, 4).replace('-', "−")),
         ("q", significant(rate([a, b]), 3)),
         ("cg", format!("{} and {}", cg[0], cg[cg.len() - 1])),
-        ("none", variance(Map::None)),
         ("reversed", variance(Map::Reversed)),
         ("infinite", m.walks.infinite.to_string()),
         ("orders", ORDERS.to_string()),
