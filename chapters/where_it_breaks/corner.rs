@@ -55,8 +55,8 @@ pub fn connect(t: &SceneTransport<'_>, x: &Vertex, [at, _]: &mut [Rng; 2]) -> f6
 
 /// X by a point on the lamp and by a direction, with the balance heuristic.
 pub fn both(t: &SceneTransport<'_>, x: &Vertex, [at, towards]: &mut [Rng; 2]) -> f64 {
-    let weighted = |s: Step<Vertex>| s.pdf / (s.pdf + s.other_pdf);
-    let part = |step: Option<Step<Vertex>>| step.map_or(0.0, |s| f64::from(weighted(s)) * light(t, &s));
+    let weight = |s: Step<Vertex>| s.pdf / (s.pdf + s.other_pdf);
+    let part = |step: Option<Step<Vertex>>| step.map_or(0.0, |s| f64::from(weight(s)) * light(t, &s));
     part(t.connect(x, at)) + part(t.scatter(x, towards))
 }
 // ANCHOR_END: techniques

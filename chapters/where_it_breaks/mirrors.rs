@@ -25,7 +25,7 @@ use fredholm::study::surface;
 
 /// The last term.
 pub const LAST: usize = 16;
-/// Paths, and the albedo of the diffuse room.
+/// The albedo of the diffuse room.
 const DIFFUSE: f64 = 0.9;
 
 /// ‖T^k E‖₁ and u_k for k = 0, …, 16.
