@@ -7,7 +7,7 @@
 //! | `noise.md`, `ways.md` | variance and rays of every term; three ways to compute the sum |
 
 use super::broken::{BROKEN, TERMS};
-use super::reuse::{Noise, value};
+use super::reuse::{Noise, mean, value};
 use super::{LAST, Measured};
 use fredholm::report::book::{self, Folder, Number};
 use fredholm::report::image::typeset::superscript;
@@ -40,8 +40,8 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
 
 /// Variance, rays and best number of samples, term by term.
 fn noise(m: &Measured) -> String {
-    let all = m.noise.first().map(|x| x.rays.iter().sum::<f64>()).unwrap_or_default();
-    let counts = m.noise.first().map(|x| x.counts(100.0 * all)).unwrap_or_default();
+    let all = mean(m.noise.iter());
+    let counts = all.counts(100.0 * all.rays.iter().sum::<f64>());
     let row = |k: usize| {
         let of = |f: &dyn Fn(&Noise) -> f64| value(&m.noise, f);
         let scaled = |x: Number| x.times(1000.0).to_string();

@@ -111,7 +111,7 @@ pub fn repetitions(folder: &Folder<'_>) -> book::Result<Vec<Noise>> {
 }
 
 /// The mean of some repetitions.
-fn mean<'a>(all: impl Iterator<Item = &'a Noise> + Clone) -> Noise {
+pub(super) fn mean<'a>(all: impl Iterator<Item = &'a Noise> + Clone) -> Noise {
     let n = all.clone().count() as f64;
     let of = |f: &dyn Fn(&Noise) -> f64| all.clone().map(f).sum::<f64>() / n;
     let terms = 0..LAST;
