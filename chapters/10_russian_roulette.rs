@@ -111,9 +111,9 @@ pub fn measure(folder: &Folder<'_>) -> book::Result<Measured> {
         furnace: IN_FURNACE.into_iter().map(|q| in_furnace(folder, q)).collect::<book::Result<_>>()?,
         radius: [radius(meshes[0], folder)?, radius(meshes[1], folder)?],
         seen: [
-            paths(folder, &Roulette::Albedo { from: 2 })?,
-            paths(folder, &Roulette::LECTURE)?,
-            paths(folder, &STUDENT)?,
+            paths(folder, &Roulette::Albedo { from: 2 }, folder.pick(32, 4))?,
+            paths(folder, &Roulette::LECTURE, folder.pick(32, 2))?,
+            paths(folder, &STUDENT, folder.pick(32, 8))?,
         ],
         weights: weights(folder, 2)?,
         wrong: wrong(folder)?,

@@ -106,13 +106,13 @@ fn median(values: &[f64], n: usize) -> Number {
     Number { value: means[middle], std_error: 0.5 * (means[middle + away] - means[middle - away]) }
 }
 
-/// Renders and evaluates the paths under one schedule.
+/// Renders and evaluates the paths under one schedule, `parts` times 2¹⁶ of them.
 ///
 /// # Errors
 /// If the scene cannot be loaded, or if the program is stopped.
-pub fn paths(folder: &Folder<'_>, schedule: &Roulette) -> book::Result<Paths> {
+pub fn paths(folder: &Folder<'_>, schedule: &Roulette, parts: u32) -> book::Result<Paths> {
     let (scene, _) = load("cornell", 64)?;
-    let values = indirect(&scene, schedule, folder.pick(32, 4), folder);
+    let values = indirect(&scene, schedule, parts, folder);
     if folder.progress.stopped() {
         return Err("stopped".into());
     }

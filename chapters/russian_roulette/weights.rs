@@ -79,7 +79,7 @@ fn growth(m: &[f64]) -> f64 {
 pub fn weights(folder: &Folder<'_>, power: i32) -> book::Result<Weights> {
     let (scene, _) = load("cornell", 64)?;
     let (t, key) = (SceneTransport::new(&scene), Key::new(folder.seed, "weights"));
-    let (pixels, samples) = (scene.camera.size[0] * scene.camera.size[1], folder.pick(64, 16));
+    let (pixels, samples) = (scene.camera.size[0] * scene.camera.size[1], folder.pick(64, 32));
     let mut groups = vec![vec![0.0; LAST + 1]; GROUPS];
     for (pixel, sample) in (0..pixels).flat_map(|p| (0..samples).map(move |s| (p, s))) {
         let start = scene.camera.start(&t, pixel, &mut Rng::at(key, pixel, sample, 0, Purpose::Start));
