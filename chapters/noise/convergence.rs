@@ -57,7 +57,7 @@ fn plan() -> Plan {
 
 /// An image of many paths, by another estimator and from other random numbers.
 pub(super) fn reference(room: &Scene, folder: &Folder<'_>) -> (Reference, Number) {
-    let amount = Amount::new(folder.pick(8192, 2048), Key::new(folder.seed, "reference"));
+    let amount = Amount::new(folder.pick(8192, 1024), Key::new(folder.seed, "reference"));
     let film = render(&SceneTransport::new(room), &room.camera, &Prefix(plan()), amount, folder.progress);
     let total = TermImage::of(&film, 0..film.shape.slots);
     (Reference { total, ..Reference::default() }, mean(&film))
@@ -121,7 +121,7 @@ impl Mistake for SameInAllPixels {
 /// The same numbers in all pixels, over different ones: noise of a pixel, error of the mean of the image.
 pub(super) fn same_in_all_pixels(room: &Scene, folder: &Folder<'_>) -> [Number; 2] {
     let found = |mistake: &dyn Mistake, stream: &str| {
-        let amount = Amount { spp: 256, replicates: MANY, key: Key::new(folder.seed, stream) };
+        let amount = Amount { spp: folder.pick(256, 128), replicates: MANY, key: Key::new(folder.seed, stream) };
         let estimator = Whole(Walk { plan: plan(), mistake });
         let film = render(&SceneTransport::new(room), &room.camera, &estimator, amount, folder.progress);
         let scatter = Scatter::of(&film, 0..1, None);

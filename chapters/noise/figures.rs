@@ -47,22 +47,19 @@ fn numbers(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     let (d, [free, sobol, repeated, clamped]) = (&m.display, &m.curves);
     let slope = |c: &Curve| c.slope.map_or("none".into(), |s| s.to_string());
     let ends = |c: &Curve| [c.rmse[0].1, c.rmse[c.rmse.len() - 1].1].map(|x| x.to_string());
-    let ([free_0, free_1], [repeated_0, _], [_, clamped_1]) = (ends(free), ends(repeated), ends(clamped));
-    let [large, tiny] = &m.covered;
+    let ([_, free_1], [repeated_0, _], [_, clamped_1]) = (ends(free), ends(repeated), ends(clamped));
+    let tiny = &m.covered[1];
     let one = Number { value: 1.0, std_error: 0.0 };
     Ok(folder.numbers(&[
         ("rmse4", d.images[0].rmse.to_string()),
         ("rmse128", d.images[5].rmse.to_string()),
         ("predicted128", d.images[0].rmse.times(expected()).to_string()),
-        ("ratio", d.ratio.to_string()),
         ("darker", percent(one.minus(d.darker))),
-        ("mean", d.images[0].mean.to_string()),
         ("reference", d.reference.to_string()),
         ("most", free.rmse[free.rmse.len() - 1].0.to_string()),
         ("slope", slope(free)),
         ("slope_sobol", slope(sobol)),
         ("slope_clamped", slope(clamped)),
-        ("rmse_first", free_0),
         ("rmse_last", free_1),
         ("rmse_repeated", repeated_0),
         ("rmse_clamped", clamped_1),
@@ -70,7 +67,6 @@ fn numbers(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         ("pixel_same", m.same[0].to_string()),
         ("image_same", m.same[1].to_string()),
         ("merged", m.merged.variance.to_string()),
-        ("large", percent(large.covered)),
         ("tiny", percent(tiny.covered)),
         ("any", format!("{} %", significant(100.0 * any(tiny.lamp), 3))),
     ])?)
