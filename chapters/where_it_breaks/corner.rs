@@ -79,7 +79,7 @@ pub fn corner(folder: &Folder<'_>, techniques: [Technique; 2]) -> book::Result<C
     let rho = f64::from(wall(&scene, 0.5, 0.5).map_or(0.0, |x| scene.albedo(x.side).y));
     let numbers =
         |key: Key, pixel: u32, i: u32| [Purpose::Connect, Purpose::Scatter].map(|p| Rng::at(key, pixel, i, 0, p));
-    let (batches, each) = (64u32, folder.pick(1 << 14, 1 << 12));
+    let (batches, each) = (64u32, folder.pick(1 << 14, 1 << 13));
     let square = |d: f64, technique: Technique| {
         let x = wall(&scene, 0.5, d).ok_or("there is no wall")?;
         let key = Key::new(folder.seed, &format!("corner {d}"));
