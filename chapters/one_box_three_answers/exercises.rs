@@ -68,8 +68,8 @@ const SCALED: Exercise = Exercise {
         format!(
             "The radiance of all lamps is multiplied by {a}, and all reflectances are multiplied by {b}. By which factor does the term \
              T^k E with k = {k} change? Predict it. Then check it in a furnace with the reflectance 0.5 and the emission 1, and in \
-             one with the new values:\n\n  fredholm series furnace --max-bounces 4\n  fredholm series furnace --max-bounces 4 \
-             --set 'materials.wall.reflectance=[{r}, {r}, {r}]' --set 'shapes.0.emission=[{a}, {a}, {a}]'\n\nGive three digits.",
+             one with the new values:\n\nfredholm series furnace\nfredholm series furnace --set shapes.0.emission=[{a},{a},{a}] \\\n--set \
+             materials.wall.reflectance=[{r},{r},{r}]\n\nGive three digits.",
             r = 0.5 * b
         )
     },

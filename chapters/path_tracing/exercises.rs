@@ -197,9 +197,9 @@ const TWICE: Exercise = Exercise {
         let [rho, e] = furnace(s);
         format!(
             "A renderer counts emission on every hit with weight 1 and through every connection with weight 1. It renders this \
-             furnace:\n\n  fredholm series furnace --max-bounces 4 --set 'materials.wall.reflectance=[{rho}, {rho}, {rho}]' --set \
-             'shapes.0.emission=[{e}, {e}, {e}]'\n\nThe command prints the right terms and their sum `all`, which is noisy. Which \
-             radiance has the picture of the wrong renderer, with all reflections? Give three digits."
+             furnace:\n\n{}\n\nThe command prints the right terms, and the sum `all`, which is noisy. Which radiance has the \
+             picture of the wrong renderer, with all reflections? Give three digits.",
+            command(rho, e)
         )
     },
     task: Task::Number {
@@ -239,6 +239,13 @@ const TWICE: Exercise = Exercise {
         )
     },
 };
+
+/// Solves a furnace with these values. Two lines, so that no line is broken in the wrong place.
+fn command(rho: f64, e: f64) -> String {
+    format!(
+        "fredholm series furnace --set shapes.0.emission=[{e},{e},{e}] \\\n--set materials.wall.reflectance=[{rho},{rho},{rho}]"
+    )
+}
 
 fn furnace(s: &Student) -> [f64; 2] {
     [s.pick("9.4 albedo", &[0.2, 0.3, 0.4, 0.6, 0.7, 0.8]), s.pick("9.4 emission", &[2.0, 3.0, 4.0, 5.0, 6.0])]
