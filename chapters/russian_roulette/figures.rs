@@ -11,7 +11,7 @@ use super::claims::exact;
 use super::exercises::{COMMAND_Q, radius_of};
 use super::one_pixel::PATHS;
 use super::weights::{LAST, QS, with_roulette};
-use super::{Measured, Paths};
+use super::{Measured, Paths, Row};
 use fredholm::estimator::Roulette;
 use fredholm::report::book::{self, Folder, Number};
 use fredholm::report::plot::{self, Axis, Curve, Entry, Figure, GREY, Look, Mark, Panel, Point, Sample, Stroke, Words};
@@ -66,7 +66,7 @@ fn tables(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         .prices
         .schedules
         .iter()
-        .map(|r| {
+        .map(|r: &Row| {
             let q = r.q.as_ref().map_or("depends on the path".into(), |q| {
                 q.iter().map(|q| significant(*q, 2)).collect::<Vec<_>>().join(", ")
             });
