@@ -21,8 +21,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
         question: |s| {
             let rho = dim(s);
             format!(
-                "All walls of a furnace emit 1 and have the albedo {rho}. What is the least K so that the sum of the terms k \
-                 = 0, …, K lacks less than 1 % of all light? Predict K, then check it with\n\
+                "All walls of a furnace emit 1 and have the albedo {rho}. What is the least K so that the sum of the \
+                 terms k = 0, …, K lacks less than 1 % of all light? Predict K, then check it with\n\
                  `fredholm series furnace --set 'materials.wall.reflectance=[{rho},{rho},{rho}]' --max-bounces K`\n\
                  The share of the row `k > K` must be below 1 %."
             )
@@ -56,9 +56,9 @@ pub(super) const EXERCISES: &[Exercise] = &[
         question: |s| {
             let (e, [a, b]) = walls(s);
             format!(
-                "In a closed room the walls have the albedo {a}, the floor and the ceiling have the albedo {b}. The walls \
-                 emit {e} W/(m² sr). How much must floor and ceiling emit, so that the same radiance leaves every point in \
-                 every direction? Give three digits."
+                "In a closed room the walls have the albedo {a}, the floor and the ceiling have the albedo {b}. The \
+                 walls emit {e} W/(m² sr). How much must floor and ceiling emit, so that the same radiance leaves \
+                 every point in every direction? Give three digits."
             )
         },
         task: Task::Number {
@@ -85,8 +85,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
             let (e, [a, b]) = walls(s);
             let l = e / (1.0 - a);
             format!(
-                "On the walls L = E + ρ L gives L = {e}/(1 − {a}) = {}. On floor and ceiling the same equation gives E = (1 − \
-                 {b}) L = {} W/(m² sr).",
+                "On the walls L = E + ρ L gives L = {e}/(1 − {a}) = {}. On floor and ceiling the same equation gives \
+                 E = (1 − {b}) L = {} W/(m² sr).",
                 four(l),
                 four(l * (1.0 - b))
             )
@@ -97,8 +97,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
         title: "the cosine is missing",
         question: |s| {
             format!(
-                "A renderer samples directions uniformly, with the density 1/(2π), and forgets the cosine in f cos θ/p. Which \
-                 radiance does it find in a furnace with E = 1 and the albedo {}? Give three digits.",
+                "A renderer samples directions uniformly, with the density 1/(2π), and forgets the cosine in f cos \
+                 θ/p. Which radiance does it find in a furnace with E = 1 and the albedo {}? Give three digits.",
                 small(s)
             )
         },
@@ -136,9 +136,9 @@ pub(super) const EXERCISES: &[Exercise] = &[
         title: "the paint of an integrating sphere",
         question: |s| {
             format!(
-                "A tenth of the area of an integrating sphere emits the radiance 1. The whole sphere has the same albedo, \
-                 which is not known. The reflected radiance is measured: it is {} at every point. What is the albedo? Give \
-                 three digits. Check your answer A with\n\
+                "A tenth of the area of an integrating sphere emits the radiance 1. The whole sphere has the same \
+                 albedo, which is not known. The reflected radiance is measured: it is {} at every point. What is \
+                 the albedo? Give three digits. Check your answer A with\n\
                  `fredholm series sphere --set 'materials.wall.reflectance=[A,A,A]'`\n\
                  The row `all` minus the row `0` must be the measured value.",
                 reading(s)
@@ -160,8 +160,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
         solution: |s| {
             let r = reading(s);
             format!(
-                "The reflected radiance is s = 0.1 ρ/(1 − ρ). Solve for ρ: s (1 − ρ) = 0.1 ρ, so ρ = s/(0.1 + s) = {r}/(0.1 \
-                 + {r}) = {}.",
+                "The reflected radiance is s = 0.1 ρ/(1 − ρ). Solve for ρ: s (1 − ρ) = 0.1 ρ, so ρ = s/(0.1 + s) = \
+                 {r}/(0.1 + {r}) = {}.",
                 four(r / (CAP + r))
             )
         },

@@ -20,8 +20,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
         title: "reflection along the normal",
         question: |s| {
             format!(
-                "A ray in air meets a transparent material of index n = {} along its normal. Which part of the light is \
-                 reflected? Give three digits.",
+                "A ray in air meets a transparent material of index n = {} along its normal. Which part of the light \
+                 is reflected? Give three digits.",
                 index(s)
             )
         },
@@ -53,8 +53,9 @@ pub(super) const EXERCISES: &[Exercise] = &[
         title: "the critical angle",
         question: |s| {
             format!(
-                "A lamp is inside a transparent material of index n = {}, with air above its flat surface. Beyond which \
-                 angle with the normal does none of its light leave? Give the angle in degrees, with three digits.",
+                "A lamp is inside a transparent material of index n = {}, with air above its flat surface. Beyond \
+                 which angle with the normal does none of its light leave? Give the angle in degrees, with three \
+                 digits.",
                 clear(s)
             )
         },
@@ -92,8 +93,9 @@ pub(super) const EXERCISES: &[Exercise] = &[
         title: "the kind of path that is missing",
         question: |s| {
             format!(
-                "The letters of a path are those of its vertices, from the lamp L to the eye E: S is a mirror or glass, D \
-                 is any other surface. Which of the kinds LDE, LDSE, LSDE, LDSDE is missing in the pictures of {}?",
+                "The letters of a path are those of its vertices, from the lamp L to the eye E: S is a mirror or \
+                 glass, D is any other surface. Which of the kinds LDE, LDSE, LSDE, LDSDE is missing in the pictures \
+                 of {}?",
                 renderer(s).0
             )
         },
@@ -113,8 +115,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
             let (words, from_eye) = renderer(s);
             let (end, letter) = if from_eye { ("the lamp", "L") } else { ("the eye", "E") };
             format!(
-                "In {words}, {end} is found only through a connection from the vertex next to it. So the letter next to \
-                 {letter} must be D. Of the four kinds, only {} has an S there.",
+                "In {words}, {end} is found only through a connection from the vertex next to it. So the letter next \
+                 to {letter} must be D. Of the four kinds, only {} has an S there.",
                 missing(from_eye).unwrap_or_default()
             )
         },
@@ -125,10 +127,10 @@ pub(super) const EXERCISES: &[Exercise] = &[
         question: |s| {
             let n = dense(s);
             format!(
-                "A plate has two parallel surfaces and the index n = {n}. Light arrives along the normal and is reflected \
-                 inside again and again. Which part of it leaves on the other side? Give three digits. In a sky of \
-                 radiance 1, a path leaves a plate on the other side after 2, 4, 6, … reflections and refractions. So you \
-                 can check your answer with the sum of T²E, T⁴E, T⁶E and T⁸E in the output of\n\
+                "A plate has two parallel surfaces and the index n = {n}. Light arrives along the normal and is \
+                 reflected inside again and again. Which part of it leaves on the other side? Give three digits. In \
+                 a sky of radiance 1, a path leaves a plate on the other side after 2, 4, 6, … reflections and \
+                 refractions. So you can check your answer with the sum of T²E, T⁴E, T⁶E and T⁸E in the output of\n\
                  `{}`",
                 command(n)
             )
@@ -152,8 +154,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
             let f = normal(n);
             format!(
                 "One surface reflects F = ((n − 1)/(n + 1))² = {}. Light enters and leaves with (1 − F)². Before it \
-                 leaves, it is reflected 0, 2, 4, … times inside. The sum is (1 − F)² (1 + F² + F⁴ + …) = \
-                 (1 − F)²/(1 − F²) = (1 − F)/(1 + F) = {}.",
+                 leaves, it is reflected 0, 2, 4, … times inside. The sum is (1 − F)² (1 + F² + F⁴ + …) = (1 − \
+                 F)²/(1 − F²) = (1 − F)/(1 + F) = {}.",
                 four(f),
                 four(through(f))
             )
