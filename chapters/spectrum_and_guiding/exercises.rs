@@ -159,7 +159,7 @@ const STEP: Exercise = Exercise {
         let [t12, t13, t32] = matrix(s);
         format!(
             "B₂ = 1, B₃ = {t32} and B₁ = {t12} + {t13} · {t32} = {}. The part of B₁ that comes through patch 3 is {}, so \
-             p₁₃ = {}. The walk then goes on to patch 2 and ends there. Its weight is B₁/B₃ · B₃/B₂, whichever way it takes: \
+             p₁₃ = {}. The walk by way of patch 3 has the weight B₁/B₃ · B₃/B₂, the direct one B₁/B₂. Both are B₁: \
              every walk gives B₁.",
             significant(t12 + t13 * t32, 4),
             significant(t13 * t32, 3),
