@@ -99,7 +99,8 @@ proptest! {
 /// Two vertices, q = 0.25 at the first: with probability 1/4 the path has added 2, with 3/4 it has added 2 + 3/0.75.
 #[test]
 fn two_vertices_by_hand() {
-    let stop = |hit: f32, weight| Stop { hit: Rgb::splat(hit), connect: Rgb::ZERO, albedo: Rgb::ONE, weight, number: 0.5 };
+    let stop =
+        |hit: f32, weight| Stop { hit: Rgb::splat(hit), connect: Rgb::ZERO, albedo: Rgb::ONE, weight, number: 0.5 };
     let path = [stop(2.0, Some(Rgb::splat(0.5))), stop(6.0, None)];
     let (ways, chosen) = ends(&path, &Roulette::Constant { from: 0, q: 0.25 }, 1);
     let found: Vec<(f64, f64)> = ways.iter().map(|w| (w.probability, w.scored.iter().map(|x| x.x).sum())).collect();

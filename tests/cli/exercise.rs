@@ -89,7 +89,13 @@ fn the_book_is_found_or_the_way_to_build_it_is_told() {
 fn the_page_of_commands_has_every_command_and_option() {
     let desk = Desk::new();
     let page = desk.run_wide("man --markdown");
-    for what in ["## fredholm series", "### fredholm check scene", "## fredholm exercise", "`--max-bounces K`", "`-o, --out DIR`"] {
+    for what in [
+        "## fredholm series",
+        "### fredholm check scene",
+        "## fredholm exercise",
+        "`--max-bounces K`",
+        "`-o, --out DIR`",
+    ] {
         assert!(page.contains(what), "{what}");
     }
     assert!(!page.contains("<COMMAND>"), "angle brackets are HTML in Markdown");
