@@ -208,3 +208,16 @@ fn every_chapter_asks_and_answers() {
         }
     }
 }
+
+/// A reader who does not see a figure hears its description; one who prints the book needs the caption.
+#[test]
+fn every_figure_is_described() {
+    for (name, text) in chapters().into_iter().chain(other_pages()) {
+        for image in text.split("<img ").skip(1).map(|rest| rest.split('>').next().unwrap()) {
+            let alt = image.split("alt=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap_or("");
+            assert!(alt.len() >= 10, "{name}: no description: <img {image}>");
+        }
+        let count = |what: &str| text.matches(what).count();
+        assert_eq!(count("<figure>"), count("<figcaption>"), "{name}: a figure without a caption");
+    }
+}
