@@ -76,12 +76,35 @@ fn reduced(command: &str, quick: &str) -> Vec<String> {
     words.into_iter().chain(quick).collect()
 }
 
+/// Name and text of all pages that are no chapter. The pages of commands are made by the program.
+fn other_pages() -> Vec<(String, String)> {
+    let files = fs::read_dir(source()).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap());
+    let pages = files.filter(|n| n.ends_with(".md") && !n.starts_with(|c: char| c.is_ascii_digit()));
+    pages.map(|n| (n.clone(), fs::read_to_string(source().join(n)).unwrap())).collect()
+}
+
+#[test]
+fn every_page_is_in_the_table_of_contents() {
+    let summary = fs::read_to_string(source().join("SUMMARY.md")).unwrap();
+    for (name, _) in chapters().into_iter().chain(other_pages()).filter(|(name, _)| name != "SUMMARY.md") {
+        assert!(summary.contains(&format!("]({name})")), "{name}");
+    }
+}
+
 #[test]
 fn every_command_of_the_book_runs() {
     let desk = tempfile::tempdir().unwrap();
-    for (name, text) in chapters() {
+    // the reader stands in the folder of the project
+    fs::create_dir(desk.path().join("scenes")).unwrap();
+    for file in fs::read_dir(source().join("../../scenes")).unwrap().map(|f| f.unwrap()) {
+        fs::copy(file.path(), desk.path().join("scenes").join(file.file_name())).unwrap();
+    }
+    // tests/readme.rs runs the commands by purpose, of which the reference has more
+    let others = other_pages().into_iter().filter(|(name, _)| name != "reference.md");
+    for (name, text) in chapters().into_iter().chain(others) {
         let lines = commands(&name, &text);
-        assert!(lines.len() >= 2, "{name}: a command for the chapter, and experiments");
+        let chapter = name.starts_with(|c: char| c.is_ascii_digit());
+        assert!(!chapter || lines.len() >= 2, "{name}: a command for the chapter, and experiments");
         for Line { place, command, quick } in lines {
             let words = reduced(&command, &quick);
             let output = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"))
@@ -126,14 +149,11 @@ fn headings(text: &str) -> HashSet<String> {
 
 #[test]
 fn every_link_leads_somewhere() {
-    let mut texts = chapters();
-    for name in ["SUMMARY.md", "reference.md"] {
-        texts.push((name.into(), fs::read_to_string(source().join(name)).unwrap()));
-    }
+    let texts: Vec<(String, String)> = chapters().into_iter().chain(other_pages()).collect();
     for (name, text) in &texts {
         for target in targets(text) {
             if target.is_empty() || target.starts_with("http") {
-                continue; // a chapter that is not yet written; the network is not asked
+                continue; // the network is not asked
             }
             let (file, heading) = target.split_once('#').unwrap_or((&target, ""));
             // figures are made by the chapters; tests/chapters.rs checks them
@@ -186,5 +206,18 @@ fn every_chapter_asks_and_answers() {
         for inside in text.split("</details>").collect::<Vec<_>>().split_last().unwrap().1 {
             assert!(inside.ends_with("\n\n"), "{name}: no empty line before `</details>`");
         }
+    }
+}
+
+/// A reader who does not see a figure hears its description; one who prints the book needs the caption.
+#[test]
+fn every_figure_is_described() {
+    for (name, text) in chapters().into_iter().chain(other_pages()) {
+        for image in text.split("<img ").skip(1).map(|rest| rest.split('>').next().unwrap()) {
+            let alt = image.split("alt=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap_or("");
+            assert!(alt.len() >= 10, "{name}: no description: <img {image}>");
+        }
+        let count = |what: &str| text.matches(what).count();
+        assert_eq!(count("<figure>"), count("<figcaption>"), "{name}: a figure without a caption");
     }
 }

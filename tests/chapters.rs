@@ -17,16 +17,32 @@ mod claims_of_change_of_measure;
 mod claims_of_choosing_directions;
 #[path = "chapters/04_furnace.rs"]
 mod claims_of_furnace;
+#[path = "chapters/14_is_it_right.rs"]
+mod claims_of_is_it_right;
+#[path = "chapters/12_mirrors_and_glass.rs"]
+mod claims_of_mirrors_and_glass;
+#[path = "chapters/11_multiple_importance_sampling.rs"]
+mod claims_of_multiple_importance_sampling;
 #[path = "chapters/05_naive_recursion.rs"]
 mod claims_of_naive_recursion;
 #[path = "chapters/06_neumann_series.rs"]
 mod claims_of_neumann_series;
+#[path = "chapters/13_noise.rs"]
+mod claims_of_noise;
 #[path = "chapters/01_one_box_three_answers.rs"]
 mod claims_of_one_box_three_answers;
+#[path = "chapters/09_path_tracing.rs"]
+mod claims_of_path_tracing;
 #[path = "chapters/07_radiosity.rs"]
 mod claims_of_radiosity;
 #[path = "chapters/02_reflection_equation.rs"]
 mod claims_of_reflection_equation;
+#[path = "chapters/10_russian_roulette.rs"]
+mod claims_of_russian_roulette;
+#[path = "chapters/15_spectrum_and_guiding.rs"]
+mod claims_of_spectrum_and_guiding;
+#[path = "chapters/16_where_it_breaks.rs"]
+mod claims_of_where_it_breaks;
 
 /// Runs the short form of a chapter in a folder of its own.
 fn quick(chapter: &Chapter, out: &Path) -> Found {
@@ -75,6 +91,24 @@ fn claims_hold_and_every_file_of_the_text_is_written() {
         for anchor in anchors(&text, &format!("figures/{name}/numbers.md")) {
             assert!(numbers.contains(&format!("ANCHOR: {anchor}\n")), "{name}: there is no number `{anchor}`");
         }
+    }
+}
+
+#[test]
+fn every_chapter_has_exercises_that_its_text_names() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for chapter in CHAPTERS {
+        let text = fs::read_to_string(root.join(format!("book/src/{}.md", chapter.name))).unwrap();
+        assert!(!chapter.exercises.is_empty(), "{}: no exercise that the program judges", chapter.name);
+        let mut numbers: Vec<u32> = chapter.exercises.iter().map(|e| e.number).collect();
+        for n in &numbers {
+            let number = format!("{}.{n}", chapter.number);
+            for part in [format!("**{number}**"), format!("fredholm exercise {number} --student")] {
+                assert!(text.contains(&part), "{}: the text lacks `{part}`", chapter.name);
+            }
+        }
+        numbers.dedup();
+        assert_eq!(numbers.len(), chapter.exercises.len(), "{}: a number twice", chapter.name);
     }
 }
 

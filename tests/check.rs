@@ -116,3 +116,54 @@ fn a_watch_may_be_interrupted() {
     assert!(out.contains("No bias found") && desk.path("stopped/summary.json").exists(), "{out}");
     assert!(String::from_utf8(output.stderr).unwrap().contains("batches"));
 }
+
+/// The furnace with other expected values: the scene of the program, with one line of its file changed.
+fn furnace(desk: &Desk, from: &str, to: &str) {
+    let text = include_str!("../scenes/furnace.toml");
+    assert!(text.contains(from), "{from}");
+    std::fs::write(desk.path("mine.toml"), text.replace(from, to)).unwrap();
+}
+
+#[test]
+fn a_scene_keeps_what_its_file_promises() {
+    let desk = Desk::new();
+    furnace(&desk, "gamma = 0.5", "gamma = 0.5");
+    let said = desk.run("check scene mine.toml -q -o right");
+    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert!(said.out.starts_with("All 10 values of [expect] are confirmed"), "{}", said.out);
+    let record = summary::read(&desk.path("right/summary.json")).unwrap();
+    assert!(record.verdicts.iter().any(|v| v.name.starts_with("path tracer: total")), "{:?}", record.verdicts);
+    let again = desk.run("check scene mine.toml -q -o right -t 1");
+    assert_eq!(said.out, again.out, "the same bits for any number of threads");
+}
+
+#[test]
+fn a_wrong_promise_is_found() {
+    // one term 2 % too small; a ratio that a slip of the pen changes; a total that forgets the tail; and a rounded value
+    let desk = Desk::new();
+    let sum = "gamma = 0.5";
+    for (from, to, wrong) in [
+        ("terms = [1, 0.5, 0.25,", "terms = [1, 0.5, 0.245,", Some("T2")),
+        (sum, "gamma = 0.05", Some("tail")),
+        (sum, "total = 2.05", Some("total")),
+        (sum, "total = 2.00002", None),
+    ] {
+        furnace(&desk, from, to);
+        let said = desk.run("check scene mine.toml -q --force -o wrong");
+        assert_eq!(said.code, i32::from(wrong.is_some()), "{to}: {}{}", said.out, said.err);
+        if let Some(name) = wrong {
+            let answer = said.out.split("\n\n").next().unwrap().replace('\n', " ");
+            assert!(answer.contains(name) && answer.contains("not what [expect] says"), "{to}: {answer}");
+        }
+    }
+}
+
+#[test]
+fn only_promises_of_the_file_itself_are_checked() {
+    let desk = Desk::new();
+    let said = desk.run("check scene cornell -q");
+    assert_eq!(said.code, 3);
+    assert!(said.err.contains("no table [expect]") && said.err.contains("\nhelp: "), "{}", said.err);
+    let said = desk.run("check scene furnace --set materials.wall.reflectance=[0.4,0.4,0.4] -q");
+    assert_eq!(said.code, 2, "{}", said.err);
+}

@@ -3,6 +3,8 @@
 
 #[path = "cli/comparisons.rs"]
 mod comparisons;
+#[path = "cli/exercise.rs"]
+mod exercise;
 #[path = "cli/process.rs"]
 mod process;
 #[path = "common/program.rs"]
@@ -37,6 +39,12 @@ impl Desk {
     }
     fn run(&self, line: &str) -> Said {
         run_tidily(self.0.path(), line)
+    }
+    /// The output of what must go well and is no text for a terminal.
+    fn run_wide(&self, line: &str) -> String {
+        let said = program::run(self.0.path(), line);
+        assert_eq!(said.code, 0, "{line}: {}", said.err);
+        said.out
     }
     /// Runs what must go well.
     fn ok(&self, line: &str) -> Said {

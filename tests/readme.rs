@@ -25,11 +25,12 @@ fn commands() -> Vec<String> {
 }
 
 /// Flags that make a command quick, by the words with which it starts.
-const QUICK: [(&str, &str); 12] = [
+const QUICK: [(&str, &str); 13] = [
     ("series", "--spp 16 --size 16x16 --patches 60"),
     ("sweep", "--spp 16 --size 16x16"),
     ("check bias", "--spp 64 --size 8x8"),
     ("check equilibrium", "--spp 256 --points 8 --size 8x8"),
+    ("check scene", "--time 5s"),
     ("roulette", "--spp 16 --size 16x16"),
     ("radiosity", "--patches 60 --spp 16 --size 16x16"),
     ("walk", "--patches 60 --spp 64"),
@@ -82,6 +83,9 @@ fn every_command_of_the_readme_runs() {
     let own = run(desk.path(), "series cornell --spp 16 --size 16x16 --patches 60 -q -o own");
     assert!(own.code <= 1, "{}", own.err);
     fs::copy(desk.path().join("own/terms.exr"), desk.path().join("mine.exr")).unwrap();
+    fs::create_dir(desk.path().join("scenes")).unwrap();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/furnace.toml");
+    fs::copy(scene, desk.path().join("scenes/furnace.toml")).unwrap();
     for command in found {
         let line = expanded(desk.path(), &reduced(&command));
         let said = run(desk.path(), &line);

@@ -18,11 +18,11 @@ use common::random::{cases, furnished, items, matrix, schedule};
 use common::sampling::{Kind, TECHNIQUES, collect, film, plan};
 use common::scenes::{description, quad, room, sphere};
 use fredholm::estimator::{PathTracer, Prefix, Roulette, Technique};
-use fredholm::math::{Key, Purpose, Rng};
+use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::matrix_walk::Rows;
-use fredholm::operator::{Kernel, SceneTransport, Sensor, Transport};
+use fredholm::operator::{Kernel, SceneTransport, Sensor};
 use fredholm::scene::Scene;
-use fredholm::study::enumeration::{ends, follow, mean};
+use fredholm::study::enumeration::{Stop, ends, follow, mean};
 use fredholm::terms::Estimate;
 use fredholm::terms::functional::image_replicates;
 use glam::DVec3;
@@ -94,6 +94,18 @@ proptest! {
         let scene = Scene::new(&furnished(DVec3::from(walls), &items));
         check(&SceneTransport::new(&scene), &scene.camera, &schedule, 2)?;
     }
+}
+
+/// Two vertices, q = 0.25 at the first: with probability 1/4 the path has added 2, with 3/4 it has added 2 + 3/0.75.
+#[test]
+fn two_vertices_by_hand() {
+    let stop =
+        |hit: f32, weight| Stop { hit: Rgb::splat(hit), connect: Rgb::ZERO, albedo: Rgb::ONE, weight, number: 0.5 };
+    let path = [stop(2.0, Some(Rgb::splat(0.5))), stop(6.0, None)];
+    let (ways, chosen) = ends(&path, &Roulette::Constant { from: 0, q: 0.25 }, 1);
+    let found: Vec<(f64, f64)> = ways.iter().map(|w| (w.probability, w.scored.iter().map(|x| x.x).sum())).collect();
+    assert_eq!((found.as_slice(), chosen), ([(0.25, 2.0), (0.75, 6.0)].as_slice(), 1));
+    assert_eq!(mean(&ways)[1].x, 3.0, "T1 without roulette is 0.5 · 6");
 }
 
 fn minus(a: &Estimate, b: &Estimate) -> Estimate {

@@ -183,6 +183,8 @@ fn help_says_how_k_counts() {
       zoo          Shows estimators that are wrong on purpose
       info         Lists scenes, or describes one: materials, lights, bounds on ‖T‖
       chapter      Runs a chapter of the book
+      exercise     Asks an exercise with your own numbers, and judges the answer
+      book         Opens the book in the browser
       completions  Prints a script that completes commands in a shell
       man          Prints the man page, or writes one for every command
       help         Print this message or the help of the given subcommand(s)

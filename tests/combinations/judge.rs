@@ -77,6 +77,7 @@ impl Findings {
     pub fn verdict(&self) -> &'static str {
         let (all, judged, proved) = self.image;
         match () {
+            () if self.scalars() == 0 => "–",
             () if !self.wrong.is_empty() => "DIFFERS",
             () if self.unsampled > 0 => "not supported",
             () if proved == all => "agrees",

@@ -86,6 +86,10 @@ const REFUSED: &[(&str, &str, usize, &str, &str)] = &[
     ("terms = [1, 0.5]", "terms = [1, -0.5]", 56, "expect.terms[1]", "-0.5 is negative"),
     ("gamma = 0.5", "gama = 0.5", 57, "expect.gama", "unknown key `gama`"),
     ("source = \"by hand\"", "", 55, "expect.source", "missing key `source`"),
+    ("gamma = 0.5", "gamma = 1", 57, "expect.gamma", "with gamma = 1 the series diverges"),
+    ("gamma = 0.5", "gamma = 0.5\ntotal = 2", 57, "expect.gamma", "gamma and total both give the terms beyond the last one"),
+    ("gamma = 0.5", "total = 1.4", 57, "expect.total", "the whole series, 1.4, is smaller than the sum of the given terms, 1.5"),
+    ("gamma = 0.5", "tolerance = 2", 57, "expect.tolerance", "a tolerance of 2"),
 ];
 
 #[test]

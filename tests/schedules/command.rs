@@ -88,3 +88,22 @@ fn the_optimum_is_that_of_the_quantity_that_was_asked_for() {
     let (code, _, err) = fredholm(desk.path(), "roulette cornell --for everything");
     assert!(code == 2 && err.contains("whole"), "{err}");
 }
+
+#[test]
+fn the_enumeration_shows_that_no_schedule_changes_a_term() {
+    let desk = tempfile::TempDir::new().unwrap();
+    let line = "roulette cornell --size 16x16 --enumerate -q --schedules lecture,albedo,constant:0.9@0 -o out";
+    let (code, out, err) = fredholm(desk.path(), line);
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(out.starts_with("Roulette changes no term of any of "), "{out}");
+    // the products of the example add up to what the path adds without roulette
+    let csv = std::fs::read_to_string(desk.path().join("out/enumeration.csv")).unwrap();
+    let column = |i: usize| csv.lines().skip(1).map(move |l| l.split(',').nth(i).unwrap().parse::<f64>().unwrap());
+    let (probability, product): (f64, f64) = (column(1).sum(), column(3).sum());
+    assert!((probability - 1.0).abs() < 1e-9, "{csv}");
+    let said = out.split("Without roulette the path adds ").nth(1).unwrap().split('\n').next().unwrap();
+    let without: f64 = said.trim_end_matches('.').parse().unwrap();
+    assert!((product / without - 1.0).abs() < 1e-4, "{product} {without}");
+    let (code, _, err) = fredholm(desk.path(), "roulette cornell --size 8x8 --enumerate -q --schedules optimal");
+    assert!(code == 2 && err.contains("cannot be enumerated"), "{err}");
+}
