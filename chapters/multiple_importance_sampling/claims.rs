@@ -9,7 +9,7 @@ use super::mistakes::Factor;
 use super::pairs::Pair;
 use super::plates::PLATES;
 use fredholm::report::book::{Claim, Number};
-use fredholm::report::text::number::significant;
+use fredholm::report::text::number::{plus_minus, significant};
 
 /// The statements of the text.
 pub fn claims(m: &Measured) -> Vec<Claim> {
@@ -89,6 +89,11 @@ pub(super) fn largest(all: &[&Pair], i: usize) -> Number {
     all.iter().map(|p| p.rays[i]).fold(first, |a, b| if b.value > a.value { b } else { a })
 }
 
+/// `value ± standard error`; of an error above 100, two digits are written.
 pub(super) fn value(x: &Number) -> String {
-    fredholm::report::text::number::plus_minus(x.value, x.std_error, 1)
+    let unit = 10f64.powf(x.std_error.max(100.0).log10().floor() - 1.0);
+    match x.std_error > 100.0 {
+        true => format!("{} ± {}", (x.value / unit).round() * unit, (x.std_error / unit).round() * unit),
+        false => plus_minus(x.value, x.std_error, 1),
+    }
 }

@@ -39,9 +39,9 @@ const POINT: Exercise = Exercise {
             "A point light of the intensity {i} W/sr is added to the Cornell box. Which part of the direct light k = 1 does BSDF \
              sampling alone find? Run this command twice, with mis and with scatter after --technique, and divide the means of \
              the row k = 1:\n\n\
-             fredholm series cornell --worlds terms --max-bounces 1 --size 64x64 --spp 256 --technique mis \
+             fredholm series cornell --worlds terms --max-bounces 1 --size 64x64 --spp 1024 --technique mis \
              --set 'lights=[{{ type = \"point\", position = [-0.4, 0.5, 0.5], intensity = [{i}, {i}, {i}] }}]'\n\n\
-             Give two digits.",
+             Give three digits.",
             i = intensity(s)
         )
     },
@@ -58,7 +58,8 @@ const POINT: Exercise = Exercise {
             ]
         },
     },
-    hint: "A direction hits a lamp with an area by chance, and a point never.",
+    hint: "A direction hits a lamp with an area by chance, and a point never. So mis without the point light has the same mean \
+           as scatter with it, and less noise.",
     solution: |s| match share(s) {
         Ok(x) => format!(
             "BSDF sampling never finds the point light, so its mean is the direct light of the lamp with an area. MIS finds both: \
@@ -132,7 +133,7 @@ fn balance(p: f64, other: f64) -> f64 {
 
 /// The mistakes of exercise 11.3.
 const SUSPECTS: &[&str] =
-    &["double-emission", "mixed-heuristics", "mixed-measures", "wrong-light-choice", "no-shadow-test"];
+    &["double-emission", "mixed-heuristics", "mixed-measures", "wrong-light-choice", "area-density"];
 
 fn suspect(s: &Student) -> &'static str {
     s.pick("11.3 mistake", SUSPECTS)
@@ -169,10 +170,7 @@ const NAME: Exercise = Exercise {
                 "It would depend on the scale: close to 1 for a small room, far below 1 for a large one.",
             ),
             ("wrong-light-choice", "With one lamp it would change nothing. Only the last number could differ from 1."),
-            (
-                "no-shadow-test",
-                "It would add light by the same factor at every scale of the Cornell box, more than 15 %.",
-            ),
+            ("area-density", "It would make a room that is ten times larger about a hundred times brighter."),
         ],
     },
     hint: "Ask first: does the factor depend on the scale? Then: does it differ from 1 with a single lamp?",
@@ -186,7 +184,10 @@ const NAME: Exercise = Exercise {
                 "the factor falls with the scale: a density per area is compared with one per solid angle"
             }
             "wrong-light-choice" => "one lamp gives 1, and 96 lamps do not: the probability of the lamp is wrong",
-            _ => "there is more light at every scale, but not twice as much: light reaches the shadows",
+            _ => {
+                "the light grows a hundredfold with each step of the scale: samples are divided by a density per area, so that \
+                 a factor of the unit 1/m² is missing"
+            }
         };
         format!("It is {}: {why}.", suspect(s))
     },

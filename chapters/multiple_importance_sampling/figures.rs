@@ -10,7 +10,7 @@
 use super::claims::{largest, opposite, value};
 use super::mistakes::{Run, SCALES, cornell, direct, from_the_lamp, member, point_light};
 use super::pairs::Pair;
-use super::plates::{ALPHA, PLATES, RADIUS};
+use super::plates::{ALPHA, RADIUS};
 use super::{Measured, line, pictures};
 use fredholm::engine::by_rays::Sampled;
 use fredholm::report::book::{self, Folder, Number};
@@ -28,11 +28,11 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     pictures::draw(folder)?;
     rays(folder, m)?;
     scales(folder)?;
+    let all: Vec<&Pair> = m.pairs.iter().flatten().collect();
     let row = |i: usize| -> Vec<String> {
-        let cells = m.pairs.iter().flatten().map(|p: &Pair| p.rays[i]);
-        let [low, high] = [f64::min, f64::max].map(|f| cells.clone().map(|x| x.value).fold(f64::NAN, f));
-        let wins = cells.filter(|x| x.value <= 1.0).count();
-        vec![NAMES[i].into(), significant(low, 2), significant(high, 2), wins.to_string()]
+        let cells = || all.iter().map(|p| p.rays[i].value);
+        let (least, wins) = (cells().fold(f64::INFINITY, f64::min), cells().filter(|x| *x <= 1.0).count());
+        vec![NAMES[i].into(), significant(least, 2), value(&largest(&all, i)), wins.to_string()]
     };
     let head = ["technique", "fewest rays", "most rays", "pairs with at most 1"];
     folder.text("rays.md", &markdown::table(&head, &(0..4).map(row).collect::<Vec<_>>()))?;
@@ -60,7 +60,6 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     folder.text("line.md", &markdown::table(&head, &(0..4).map(row).collect::<Vec<_>>()))?;
 
     let [connect, scatter] = opposite(m);
-    let all: Vec<&Pair> = m.pairs.iter().flatten().collect();
     let excess = all.iter().map(|p| p.excess).fold(all[0].excess, |a, b| if b.value > a.value { b } else { a });
     let percent = |x: Number| format!("{} %", significant(100.0 * (1.0 - x.value).abs(), 1));
     let factor = |name: &str| m.mistakes.iter().find(|f| f.name == name).ok_or("this mistake was not measured");
@@ -68,8 +67,6 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     Ok(folder.numbers(&[
         ("smooth_large", value(&connect)),
         ("rough_small", value(&scatter)),
-        ("worst_scatter", significant(largest(&all, 0).value, 2)),
-        ("worst_connect", significant(largest(&all, 1).value, 2)),
         ("worst_balance", value(&largest(&all, 2))),
         ("worst_power", value(&largest(&all, 3))),
         ("excess", value(&excess)),
@@ -98,13 +95,13 @@ fn rays(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
         }
     };
     let drawn = figure("rays", 960, 760, &folder.caption("veach-mis"), |page| {
-        for plate in 0..PLATES {
+        for (plate, alpha) in ALPHA.iter().enumerate() {
             let mut x = Axis::log("radius of the lamp, m", RADIUS.into_iter());
             x.ticks = RADIUS.iter().map(|r| (*r, r.to_string())).collect();
             x.minor = Vec::new();
             let y = Axis::log("rays for the same error", everything.iter().copied());
             let place = [80.0 + 470.0 * (plate % 2) as f64, 46.0 + 350.0 * (plate / 2) as f64, 390.0, 250.0];
-            let panel = Panel::draw(page, &format!("plate with alpha {}", ALPHA[plate]), place, x, y)?;
+            let panel = Panel::draw(page, &format!("plate with alpha {alpha}"), place, x, y)?;
             panel.line(
                 (RADIUS[0] * 0.8, 1.0),
                 (RADIUS[3] * 1.2, 1.0),
@@ -112,8 +109,8 @@ fn rays(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
             )?;
             (0..4).try_for_each(|i| panel.curve(&curve(plate, i), 0.0, true))?;
         }
-        for i in 0..4 {
-            let mark = Entry::new(Sample::Mark(Look::nth(i)), NAMES[i]);
+        for (i, name) in NAMES.into_iter().enumerate() {
+            let mark = Entry::new(Sample::Mark(Look::nth(i)), name);
             page.legend((80.0 + 225.0 * i as f64, 738.0), 220.0, &[mark])?;
         }
         Ok(())

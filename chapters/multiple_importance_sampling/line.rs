@@ -61,7 +61,7 @@ fn half(i: usize, u: f32) -> usize {
 /// Measures the variances: the mean of (X − μ)² and of (Y − μ)².
 pub fn variances(folder: &Folder<'_>, weight: LineWeight) -> Variances {
     let key = Key::new(folder.seed, "line");
-    let each = folder.pick(1 << 14, 1 << 12);
+    let each = folder.pick(1 << 14, 1 << 11);
     let batch = |b: u32| {
         let mut sums = [0.0; 8];
         for n in 0..each {

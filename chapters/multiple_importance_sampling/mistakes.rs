@@ -48,7 +48,7 @@ pub struct Run<'a> {
 impl<'a> Run<'a> {
     /// The seed and the length of a chapter.
     pub fn of(folder: &Folder<'a>) -> Self {
-        let (pixels, spp) = folder.pick((96, 64), (48, 32));
+        let (pixels, spp) = folder.pick((96, 32), (48, 32));
         Self { seed: folder.seed, pixels, spp, progress: folder.progress }
     }
 }

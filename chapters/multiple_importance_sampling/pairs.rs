@@ -54,7 +54,7 @@ fn ratio(m: &Moments, terms: &[(f64, usize)], b: usize) -> Number {
 /// The moments of one plate and one lamp: components 0 to 3 are X, 4 to 7 are (X − X')²/2, 8 is X X' of MIS.
 fn moments(folder: &Folder<'_>, scene: &Scene, points: &[Vertex], name: &str, weight: Weight) -> Moments {
     let (t, key) = (SceneTransport::new(scene), Key::new(folder.seed, name));
-    let each = folder.pick(3072, 1024);
+    let each = folder.pick(2048, 896);
     let batch = |b: u32| {
         let mut sums = [0.0; 9];
         for n in 0..each {

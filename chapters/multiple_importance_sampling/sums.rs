@@ -37,7 +37,7 @@ pub fn sums(folder: &Folder<'_>, q_light: Density) -> book::Result<(f64, u64)> {
     let description = veach([96, 64])?;
     let scene = Scene::new(&description);
     let t = SceneTransport::new(&scene);
-    let (key, many) = (Key::new(folder.seed, "sums"), folder.pick(64, 16));
+    let (key, many) = (Key::new(folder.seed, "sums"), folder.pick(64, 8));
     let of = |i: usize, x: &Vertex, y: &Vertex, pair: [f32; 2]| {
         let q = [t.toward(x, y, Role::Radiance).density, q_light(&t, x, y)];
         let sum = |h| weight(h, i, pair) + weight(h, 1 - i, [q[1 - i], q[i]]);
