@@ -191,7 +191,7 @@ const TWO_RUNS: Exercise = Exercise {
         let ([n, l], [a, b]) = runs(s);
         format!(
             "Two computers rendered the same pixel from independent random numbers. {n} paths gave the mean {a}, {l} paths \
-             gave the mean {b}. Which mean has all {} paths together? Give three digits.",
+             gave the mean {b}. What is the mean of all {} paths together? Give three digits.",
             n + l
         )
     },

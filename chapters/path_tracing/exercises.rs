@@ -197,8 +197,8 @@ const TWICE: Exercise = Exercise {
         let [rho, e] = furnace(s);
         format!(
             "A renderer counts emission on every hit with weight 1 and through every connection with weight 1. It renders this \
-             furnace:\n\n{}\n\nThe command prints the right terms, and the sum `all`, which is noisy. Which radiance has the \
-             picture of the wrong renderer, with all reflections? Give three digits.",
+             furnace:\n\n{}\n\nThe command prints the right terms, and the sum `all`, which is noisy. Which radiance \
+             does the wrong renderer show, with all reflections? Give three digits.",
             command(rho, e)
         )
     },
@@ -263,7 +263,7 @@ const NAME: Exercise = Exercise {
              divided by the right terms. Both pictures have the same random numbers, so a ratio that the mistake does not change is \
              exactly 1:\n\n{table}\n\nWhat is wrong: double-emission (both ways to find \
              the lamp have weight 1), emission-missing (the lamp is black for the eye), no-emission-after-mirror (a hit never \
-             counts), half-bounce (the throughput is halved at every bounce), or is it right?"
+             counts, not even after a mirror or glass), half-bounce (the throughput is halved at every bounce), or is it right?"
         ),
         Err(e) => format!("The terms could not be rendered: {e}"),
     },
