@@ -157,7 +157,7 @@ pub(super) const EXERCISES: &[Exercise] = &[
                     },
                     Mistake {
                         value: r * r,
-                        says: "This is the part of light that is polarised across the plane from the start.",
+                        says: "This is the part that remains of light polarised perpendicular to the plane from the start.",
                     },
                     Mistake { value: 0.5 * r, says: "This is the part after one reflection." },
                 ]
@@ -168,8 +168,8 @@ pub(super) const EXERCISES: &[Exercise] = &[
             let n = index(s);
             let r = polarised(n);
             format!(
-                "R_s = {}. Half of the light is polarised across the plane; R_s² of it remains. The other half is lost at the first \
-                 reflection. So ½ R_s² = {} remains, twice as much as F² = (R_s/2)² = {}.",
+                "R_s = {}. Half of the light is polarised perpendicular to the plane; R_s² of it remains. The other half is lost at \
+                 the first reflection. So ½ R_s² = {} remains, twice as much as F² = (R_s/2)² = {}.",
                 significant(r, 4),
                 significant(0.5 * r * r, 4),
                 significant(0.25 * r * r, 4)
