@@ -1,13 +1,13 @@
 //! Chapter 6, the Neumann series and its decay: how fast the terms get smaller, and how many of them are enough.
 //!
 //! ```text
-//! L = Σ T^k E,  m_k = ‖T^k E‖₁,  r_k = m_{k+1}/m_k → r(T)          L(s) = Σ s^k T^k E: all albedos times s
+//! L = Σ T^k E,  m_k = ‖T^k E‖₁,  γ_k = m_{k+1}/m_k → r(T)          L(s) = Σ s^k T^k E: all albedos times s
 //! ‖Σ_{k>K} T^k E‖₁ ≤ g/(1 − g) m_K ≤ g^(K+1)/(1 − g) m_0            g = ρ_max ≥ ‖T‖₁
 //! ```
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | m_k, r_k | mean of T^k E over all surfaces, from random paths; ratio of consecutive terms | [`terms`], [`ratios`] |
+//! | m_k, γ_k | mean of T^k E over all surfaces, from random paths; ratio of consecutive terms | [`terms`], [`ratios`] |
 //! | r(T), g | spectral radius, from two meshes; the largest albedo | [`Measured`] |
 //! | s | factor of all albedos | [`scaled`] |
 //!
@@ -73,7 +73,7 @@ pub struct Measured {
     pub remainder: Vec<Value>,
     /// r(T) for h → 0.
     pub radius: Value,
-    /// r_k of the furnace, and of the Cornell box.
+    /// γ_k of the furnace, and of the Cornell box.
     pub furnace: Vec<Value>,
     /// See `furnace`.
     pub ratios: Vec<Value>,
@@ -95,7 +95,7 @@ fn terms(scene: &Scene, paths: u32, seed: u64, technique: Technique, progress: P
     surface::norms(scene, Estimator::Prefix, paths, &settings, progress)
 }
 
-/// r_k = m_{k+1}/m_k. Both terms come from the same paths, so the error uses their covariance.
+/// γ_k = m_{k+1}/m_k. Both terms come from the same paths, so the error uses their covariance.
 fn ratios(terms: &TermMeans) -> Vec<Value> {
     (0..LAST).filter_map(|k| ratio(terms, k)).collect()
 }

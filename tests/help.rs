@@ -162,7 +162,7 @@ fn a_mistyped_word_gets_a_suggestion() {
         ("chapter box", 2, "did you mean `fredholm chapter 1`?"),
         ("chapter 99", 2, "`fredholm chapter` lists the chapters"),
         ("completions bsh", 2, "did you mean `bash`?"),
-        ("check", 2, "`fredholm check COMMAND`, where COMMAND is `bias` or `equilibrium`"),
+        ("check", 2, "`fredholm check COMMAND`, where COMMAND is `bias`, `equilibrium` or `scene`"),
         ("compare a", 2, "required arguments were not provided: <B>"),
         ("series cornel", 3, "did you mean `cornell`? built-in scenes: cornell, furnace, sphere"),
         ("zoo double-emission --scene cornel", 2, "did you mean `cornell`?"),

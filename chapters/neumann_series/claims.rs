@@ -37,7 +37,7 @@ pub fn claims(m: &Measured) -> Vec<Claim> {
             format!("largest difference {}", significant(furnace, 1)),
             furnace < 1e-5,
         ),
-        claim("in the Cornell box r₀ and r₂ are at least 5 % below r(T)", ratios, early < 0.95),
+        claim("in the Cornell box γ₀ and γ₂ are at least 5 % below r(T)", ratios, early < 0.95),
         claim("the rate of the late terms is r(T), to 5 %", rates, late < 0.05),
         claim("no remainder after K = 0 to 12 exceeds its bounds", bounds, after < 1.0 && before < 1.0),
         claim("less than a third of the guaranteed bounces are enough", ks.join(", "), third),

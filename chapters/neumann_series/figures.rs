@@ -2,7 +2,7 @@
 //!
 //! | file | shows |
 //! |---|---|
-//! | `ratios` | r_k of the Cornell box, from paths and from the matrix, and of the furnace, below the largest albedo and r(T) |
+//! | `ratios` | γ_k of the Cornell box, from paths and from the matrix, and of the furnace, below the largest albedo and r(T) |
 //! | `remainder` | Σ_{k>K} m_k against K, below its two bounds |
 //! | `scaled` | Σ s^k m_k against s: partial sums, and all terms by the matrix, up to the pole at s = 1/r(T) |
 //! | `enough.md`, `lit.md` | how many bounces are enough; which bounce lights which surface |
@@ -33,7 +33,7 @@ pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
     let surfaces = lit(&room, &Scene::new(&room), folder.pick(1 << 17, 1 << 12), &settings, folder.progress);
     let table = lit_table::grid(&surfaces);
     folder.text("lit.md", &markdown::table(&table.head, &table.rows))?;
-    // m_1 + m_1 r_0 + m_1 r_0² + … over the reflected light
+    // m_1 + m_1 γ_0 + m_1 γ_0² + … over the reflected light
     let extrapolated = m.terms.mean[1] / (1.0 - m.ratios[0].0) / m.remainder[0].0;
     folder.numbers(&[
         ("radius", value(m.radius)),
