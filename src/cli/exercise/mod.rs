@@ -75,7 +75,7 @@ pub fn run(args: &Options) -> Result<Ending, Failure> {
     };
     let line = format!("fredholm exercise {number} --student {}", quoted(student.name()));
     if args.hint {
-        return print(&wrapped(exercise.hint)).map(|()| Ending::Ok);
+        return print(&laid_out(exercise.hint)).map(|()| Ending::Ok);
     }
     if args.solution {
         let left = ENOUGH.saturating_sub(tries.wrong(&number));
@@ -84,7 +84,7 @@ pub fn run(args: &Options) -> Result<Ending, Failure> {
                 format!("the solution of {number} is shown after a right answer or {}", counted(ENOUGH, "wrong one"));
             return Err(usage(&what, &format!("{line} --hint gives a hint; wrong answers left: {left}")));
         }
-        return print(&wrapped(&(exercise.solution)(&student))).map(|()| Ending::Ok);
+        return print(&laid_out(&(exercise.solution)(&student))).map(|()| Ending::Ok);
     }
     let Some(answer) = &args.answer else {
         return print(&question(chapter, exercise, &student, &line)).map(|()| Ending::Ok);
@@ -104,6 +104,13 @@ pub fn run(args: &Options) -> Result<Ending, Failure> {
     Ok(if judged.right { Ending::Ok } else { Ending::Failed })
 }
 
+/// Text as a terminal shows it. A line with a command stays whole, so that it can be copied.
+fn laid_out(text: &str) -> String {
+    let line =
+        |line: &str| if line.trim_start().starts_with("fredholm ") { line.trim_start().into() } else { wrapped(line) };
+    text.lines().map(line).collect::<Vec<_>>().join("\n")
+}
+
 /// The number of wrong answers so far, and when the solution is shown.
 fn said(wrong: usize) -> String {
     let so_far = counted(wrong, "wrong answer");
@@ -117,7 +124,12 @@ fn said(wrong: usize) -> String {
 fn question(chapter: &Chapter, exercise: &Exercise, student: &Student, line: &str) -> String {
     let head = format!("Exercise {}.{} for {}: {}", chapter.number, exercise.number, student.name(), exercise.title);
     let asks = format!("The answer is {}.", exercise.asks_for());
-    format!("{}\n\n{}\n\n{}\n{line} --answer X", wrapped(&head), wrapped(&(exercise.question)(student)), wrapped(&asks))
+    format!(
+        "{}\n\n{}\n\n{}\n{line} --answer X",
+        wrapped(&head),
+        laid_out(&(exercise.question)(student)),
+        wrapped(&asks)
+    )
 }
 
 /// All exercises, or those of one chapter.
