@@ -8,6 +8,7 @@
 mod common;
 
 use common::program::run;
+use rayon::prelude::*;
 use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -91,34 +92,43 @@ fn every_page_is_in_the_table_of_contents() {
     }
 }
 
-#[test]
-fn every_command_of_the_book_runs() {
+/// A folder for the commands of one page: the reader stands in the folder of the project.
+fn desk() -> tempfile::TempDir {
     let desk = tempfile::tempdir().unwrap();
-    // the reader stands in the folder of the project
     fs::create_dir(desk.path().join("scenes")).unwrap();
     for file in fs::read_dir(source().join("../../scenes")).unwrap().map(|f| f.unwrap()) {
         fs::copy(file.path(), desk.path().join("scenes").join(file.file_name())).unwrap();
     }
+    desk
+}
+
+/// Runs the commands of one page, one after the other.
+fn run_page(name: &str, text: &str) {
+    let lines = commands(name, text);
+    let chapter = name.starts_with(|c: char| c.is_ascii_digit());
+    assert!(!chapter || lines.len() >= 2, "{name}: a command for the chapter, and experiments");
+    // tests/chapters.rs runs every chapter; one of them shows here that the command is right
+    let run_elsewhere = |l: &Line| l.command.starts_with("fredholm chapter ") && !name.starts_with("01");
+    let desk = desk();
+    for Line { place, command, quick } in lines.into_iter().filter(|l| !run_elsewhere(l)) {
+        let words = reduced(&command, &quick);
+        let output = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"))
+            .args(&words)
+            .current_dir(desk.path())
+            .output()
+            .unwrap();
+        let err = String::from_utf8_lossy(&output.stderr);
+        // a comparison that fails or is not decided is an answer; a wrong argument or file is not
+        assert!(matches!(output.status.code(), Some(0 | 1)), "{place}: {}\n{err}", words.join(" "));
+    }
+}
+
+#[test]
+fn every_command_of_the_book_runs() {
     // tests/readme.rs runs the commands by purpose, of which the reference has more
     let others = other_pages().into_iter().filter(|(name, _)| name != "reference.md");
-    for (name, text) in chapters().into_iter().chain(others) {
-        let lines = commands(&name, &text);
-        let chapter = name.starts_with(|c: char| c.is_ascii_digit());
-        assert!(!chapter || lines.len() >= 2, "{name}: a command for the chapter, and experiments");
-        // tests/chapters.rs runs every chapter; one of them shows here that the command is right
-        let run_elsewhere = |l: &Line| l.command.starts_with("fredholm chapter ") && !name.starts_with("01");
-        for Line { place, command, quick } in lines.into_iter().filter(|l| !run_elsewhere(l)) {
-            let words = reduced(&command, &quick);
-            let output = std::process::Command::new(assert_cmd::cargo::cargo_bin!("fredholm"))
-                .args(&words)
-                .current_dir(desk.path())
-                .output()
-                .unwrap();
-            let err = String::from_utf8_lossy(&output.stderr);
-            // a comparison that fails or is not decided is an answer; a wrong argument or file is not
-            assert!(matches!(output.status.code(), Some(0 | 1)), "{place}: {}\n{err}", words.join(" "));
-        }
-    }
+    let pages: Vec<(String, String)> = chapters().into_iter().chain(others).collect();
+    pages.par_iter().with_max_len(1).for_each(|(name, text)| run_page(name, text));
 }
 
 #[test]
