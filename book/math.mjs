@@ -22,8 +22,9 @@ const CODE = /(^ *(`{3,}|~{3,})[\s\S]*?^ *\2 *$|`[^`\n]+`)/m;
 const DISPLAY = /\$\$([\s\S]+?)\$\$/g;
 const INLINE = /(?<![\\$])\$(?!\s)([^$\n]+?)(?<!\s)\$(?!\d)/g; // "$5 and $6" is money
 
-// Markdown reads the text between HTML tags: its marks must not look like emphasis, code, links or escapes.
-const plain = (html) => html.replace(/>([^<]+)</g, (_, text) => `>${text.replace(/[*_`\\[\]~|]/g, (c) => `&#${c.charCodeAt(0)};`)}<`);
+// Markdown reads the text between HTML tags: its marks must not look like emphasis, code, links or escapes. The outline of a
+// root has line ends, which would end a row of a table.
+const plain = (html) => html.replace(/\n/g, ' ').replace(/>([^<]+)</g, (_, text) => `>${text.replace(/[*_`\\[\]~|]/g, (c) => `&#${c.charCodeAt(0)};`)}<`);
 
 function page(name, markdown) {
   const tex = (source, displayMode) => {
