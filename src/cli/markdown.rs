@@ -77,7 +77,12 @@ fn defaults(a: &Arg) -> String {
 /// Text in a cell of a table: on one line, with the marks of Markdown, of HTML and of formulas escaped.
 fn plain(text: &str) -> String {
     let escaped = |text: &str| {
-        text.replace('&', "&amp;").replace('<', "&lt;").replace('|', "\\|").replace('*', "\\*").replace('_', "\\_")
+        text.replace('&', "&amp;")
+            .replace('<', "&lt;")
+            .replace('|', "\\|")
+            .replace('*', "\\*")
+            .replace('_', "\\_")
+            .replace("--", "\\-\\-")
     };
     // what stands between backticks is code already
     let parts = text.split('`').enumerate().map(|(i, part)| if i % 2 == 0 { escaped(part) } else { part.into() });
