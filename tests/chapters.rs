@@ -1,8 +1,8 @@
-//! Every chapter's program runs, its claims hold, each of them fails if the result is made wrong, and the program writes
-//! every file that the text includes.
+//! Every chapter's program runs, its claims hold, each of them fails if the result is made wrong, the program writes every
+//! file that the text includes, and every exercise judges right and wrong answers.
 #![allow(clippy::unwrap_used)]
 
-use fredholm::report::book::{Chapter, Folder, Found};
+use fredholm::report::book::{Chapter, Claim, Folder, Found};
 use programs::*;
 use std::{fs, path::Path};
 
@@ -43,6 +43,27 @@ mod claims_of_russian_roulette;
 mod claims_of_spectrum_and_guiding;
 #[path = "chapters/16_where_it_breaks.rs"]
 mod claims_of_where_it_breaks;
+
+#[path = "chapters/exercises.rs"]
+mod exercises;
+
+/// Every claim holds for the right result. Each wrong result refutes the one claim that contains its words, and no other. Every
+/// claim is refuted by at least one of them.
+fn each_claim_fails_alone<M>(
+    right: &M,
+    claims: fn(&M) -> Vec<Claim>,
+    wrong: impl IntoIterator<Item = (&'static str, M)>,
+) {
+    let refuted = |m: &M| claims(m).into_iter().filter(|c| !c.holds).map(|c| c.says).collect::<Vec<_>>();
+    assert_eq!(refuted(right), [""; 0]);
+    let mut left: Vec<&str> = claims(right).iter().map(|c| c.says).collect();
+    for (words, wrong) in wrong {
+        let found = refuted(&wrong);
+        assert!(matches!(found[..], [says] if says.contains(words)), "`{words}` refutes {found:?}");
+        left.retain(|says| !found.contains(says));
+    }
+    assert_eq!(left, [""; 0], "claims without a mistake that refutes them");
+}
 
 /// Runs the short form of a chapter in a folder of its own.
 fn quick(chapter: &Chapter, out: &Path) -> Found {

@@ -1,9 +1,7 @@
 //! Every claim of chapter 1 holds, and each of them fails if one result is made wrong.
 
-use crate::one_box_three_answers::{CHAPTER, Measured, claims, measure};
+use crate::one_box_three_answers::{Measured, claims, measure};
 use fredholm::report::book::Folder;
-use fredholm::report::exercise::{Student, Task, Unit};
-use fredholm::report::text::number::significant;
 use fredholm::terms::Estimate;
 use std::f64::consts::PI;
 
@@ -82,25 +80,5 @@ fn every_claim_of_chapter_1_can_fail() {
         (m.run.terms, m.run.path, m.run.surface) = (terms, path, norms);
         let matrix = m.run.radiosity.as_mut().unwrap();
         (matrix.fine, matrix.coarse) = meshes;
-    }
-}
-
-#[test]
-fn the_exercises_of_chapter_1_have_right_answers() {
-    for (exercise, i) in CHAPTER.exercises.iter().flat_map(|e| (0..20).map(move |i| (e, i))) {
-        let student = Student::new(&format!("student {i}")).unwrap();
-        let judge = |answer: &str| exercise.judge(&student, answer).unwrap();
-        let name = format!("1.{} of student {i}", exercise.number);
-        let Task::Number { truth, mistakes, unit, .. } = exercise.task else { panic!("{name} is no number") };
-        let x = truth(&student).unwrap().value;
-        let right = judge(&if unit == Unit::Count { x.to_string() } else { significant(x, 4) });
-        assert!(right.right, "{name}: {}", right.says);
-        for mistake in mistakes(&student) {
-            let wrong = judge(&mistake.value.to_string());
-            assert!(!wrong.right && wrong.says.ends_with(mistake.says), "{name}: {}: {}", mistake.says, wrong.says);
-        }
-        for text in [(exercise.question)(&student), (exercise.solution)(&student)] {
-            assert!(!text.contains("NaN"), "{name}: {text}");
-        }
     }
 }

@@ -1,9 +1,8 @@
 //! Chapter 5: its claims hold, and each of them fails if the result is wrong in the way that it is about.
 
-use crate::naive_recursion::{CHAPTER, CHILDREN, K, Measured, claims, measure, recursion};
-use fredholm::report::book::{Claim, Folder};
-use fredholm::report::exercise::{Student, Task, Unit};
-use fredholm::report::text::number::significant;
+use crate::each_claim_fails_alone;
+use crate::naive_recursion::{CHILDREN, K, Measured, claims, measure, recursion};
+use fredholm::report::book::Folder;
 
 /// A change to the result, with words of the one claim that it must refute.
 type Mistake = (&'static str, fn(&mut Measured));
@@ -11,10 +10,6 @@ type Mistake = (&'static str, fn(&mut Measured));
 fn right() -> Measured {
     let place = tempfile::tempdir().unwrap();
     measure(&Folder::new(place.path(), "test").unwrap().quick(true), |n| 1.0 / n as f32).unwrap()
-}
-
-fn refuted(m: &Measured) -> Vec<&'static str> {
-    claims(m).into_iter().filter(|c: &Claim| !c.holds).map(|c| c.says).collect()
 }
 
 const MISTAKES: [Mistake; 7] = [
@@ -53,39 +48,10 @@ const MISTAKES: [Mistake; 7] = [
 #[test]
 fn every_claim_holds_and_can_fail() {
     let right = right();
-    assert_eq!(refuted(&right), [""; 0]);
-    for (words, mistake) in MISTAKES {
+    let mutants = MISTAKES.map(|(words, mistake)| {
         let mut wrong = right.clone();
         mistake(&mut wrong);
-        let refuted = refuted(&wrong);
-        assert!(refuted.len() == 1 && refuted[0].contains(words), "`{words}`: {refuted:?}");
-    }
-    for claim in claims(&right) {
-        let named = MISTAKES.iter().filter(|(words, _)| claim.says.contains(words)).count();
-        assert_eq!(named, 1, "mistakes for the claim `{}`", claim.says);
-    }
-}
-
-#[test]
-fn the_exercises_of_chapter_5_have_right_answers() {
-    let mut seen = std::collections::HashSet::new(); // students with the same numbers have the same truth
-    for student in (0..20).map(|i| Student::new(&format!("student {i}")).unwrap()) {
-        for e in CHAPTER.exercises {
-            let what = format!("5.{} {}", e.number, student.name());
-            if !seen.insert((e.question)(&student)) {
-                continue;
-            }
-            let words = (e.question)(&student) + &(e.solution)(&student);
-            assert!(!words.contains("NaN") && !words.contains('–'), "{what}: {words}");
-            let Task::Number { unit, truth, mistakes, .. } = e.task else { panic!("{what}") };
-            let value = truth(&student).unwrap().value;
-            let answer = if unit == Unit::Count { value.to_string() } else { significant(value, 4) };
-            let judged = e.judge(&student, &answer).unwrap();
-            assert!(judged.right, "{what}: {}", judged.says);
-            for wrong in mistakes(&student) {
-                let judged = e.judge(&student, &wrong.value.to_string()).unwrap();
-                assert!(!judged.right && judged.says.ends_with(wrong.says), "{what}: {}", judged.says);
-            }
-        }
-    }
+        (words, wrong)
+    });
+    each_claim_fails_alone(&right, claims, mutants);
 }

@@ -1,11 +1,10 @@
 //! Every claim of chapter 8 holds, and each of them fails if one ingredient is made wrong.
 
-use crate::change_of_measure::{CHAPTER, Measured, claims, direct, measure, scene, solid_angle_per_area, wall::wall};
+use crate::change_of_measure::{Measured, claims, direct, measure, scene, solid_angle_per_area, wall::wall};
+use crate::each_claim_fails_alone;
 use fredholm::engine::by_rays::Sampled;
 use fredholm::estimator::Technique;
 use fredholm::report::book::Folder;
-use fredholm::report::exercise::{Student, Task};
-use fredholm::report::text::number::significant;
 use fredholm::zoo::{self, Mistake};
 
 fn mistake(name: &str) -> &'static dyn Mistake {
@@ -58,46 +57,5 @@ fn every_claim_of_chapter_8_can_fail() {
         ("1.5 times", Measured { lamps: [uniform.clone(), uniform], ..right.clone() }),
     ];
 
-    let all = claims(&right);
-    all.iter().for_each(|c| assert!(c.holds, "{}: {}", c.says, c.found));
-    for (words, mutant) in &mutants {
-        for c in claims(mutant) {
-            assert_eq!(c.holds, !c.says.contains(words), "`{words}` made wrong: {}: {}", c.says, c.found);
-        }
-    }
-    for c in &all {
-        assert_eq!(mutants.iter().filter(|(words, _)| c.says.contains(words)).count(), 1, "{}", c.says);
-    }
-}
-
-#[test]
-fn the_exercises_of_chapter_8_have_right_answers() {
-    for (exercise, i) in CHAPTER.exercises.iter().flat_map(|e| (0..20).map(move |i| (e, i))) {
-        let student = Student::new(&format!("student {i}")).unwrap();
-        let judge = |answer: &str| exercise.judge(&student, answer).unwrap();
-        let name = format!("8.{} of student {i}", exercise.number);
-        match exercise.task {
-            Task::Number { truth, mistakes, .. } => {
-                let x = truth(&student).unwrap().value;
-                let right = judge(&significant(x, 4));
-                assert!(right.right, "{name}: {}", right.says);
-                for mistake in mistakes(&student) {
-                    let wrong = judge(&format!("{:.8}", mistake.value));
-                    let known = !wrong.right && wrong.says.ends_with(mistake.says);
-                    assert!(known, "{name}: {}: {}", mistake.says, wrong.says);
-                }
-            }
-            Task::Choice { words, truth, mistakes } => {
-                let x = truth(&student).unwrap();
-                assert!(judge(x).right, "{name}");
-                for word in words.iter().filter(|word| **word != x) {
-                    let (_, says) = mistakes.iter().find(|m| m.0 == *word).unwrap();
-                    assert!(!judge(word).right && judge(word).says.ends_with(says), "{name}: {word}");
-                }
-            }
-        }
-        for text in [(exercise.question)(&student), (exercise.solution)(&student)] {
-            assert!(!text.contains("NaN") && !text.contains("could not"), "{name}: {text}");
-        }
-    }
+    each_claim_fails_alone(&right, claims, mutants);
 }
