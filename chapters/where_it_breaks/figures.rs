@@ -11,12 +11,9 @@ use super::claims::growth;
 use super::dimension::{LAST, variance};
 use super::{GLASS, Measured, polarisation, rare};
 use fredholm::report::book::{self, Folder, Number};
-use fredholm::report::plot::{self, Axis, Curve, Entry, Look, Mark, Panel, Point, Sample, Stroke, Words};
+use fredholm::report::plot::{self, Axis, Curve, Line, Look, Mark, Point, Stroke};
 use fredholm::report::text::{markdown, number::significant};
 use fredholm::study::convergence::NoiseCurve;
-
-/// A line without marks: its label, its points, its stroke.
-type Line = (String, Vec<(f64, f64)>, Stroke);
 
 /// Writes everything that the text includes.
 pub(super) fn write(folder: &Folder<'_>, m: &Measured) -> book::Result<()> {
@@ -158,22 +155,10 @@ fn draw(
     folder: &Folder<'_>,
     stem: &str,
     [title, scene]: [&str; 2],
-    [x, y]: [Axis; 2],
+    axes: [Axis; 2],
     curves: &[Curve],
     lines: &[Line],
 ) -> book::Result<()> {
-    let drawing = plot::figure(stem, 960, 480, &folder.caption(scene), |page| {
-        page.text(title, (24.0, 26.0), Words { size: 18.0, ..Words::default() })?;
-        let panel = Panel::draw(page, "", [92.0, 56.0, 560.0, 370.0], x, y)?;
-        for (_, path, stroke) in lines {
-            path.windows(2).try_for_each(|ends| panel.line(ends[0], ends[1], *stroke))?;
-        }
-        curves.iter().try_for_each(|c| panel.curve(c, 0.0, true))?;
-        let mut marks: Vec<&Curve> = curves.iter().collect();
-        marks.dedup_by_key(|c| &c.label);
-        let paths = lines.iter().map(|(label, _, stroke)| Entry::new(Sample::Line(*stroke), label));
-        let marks = marks.iter().map(|c| Entry::new(Sample::Mark(c.look), &c.label));
-        page.legend((672.0, 66.0), 276.0, &paths.chain(marks).collect::<Vec<_>>()).map(|_| ())
-    })?;
+    let drawing = plot::chart([stem, title], axes, (curves, true), lines, &folder.caption(scene))?;
     Ok(folder.figure(stem, &drawing)?)
 }

@@ -38,7 +38,7 @@ pub mod spectrum_and_guiding;
 pub mod where_it_breaks;
 
 /// All chapters, in their order.
-pub const CHAPTERS: [Chapter; 16] = [
+pub static CHAPTERS: [Chapter; 16] = [
     one_box_three_answers::CHAPTER,
     reflection_equation::CHAPTER,
     choosing_directions::CHAPTER,

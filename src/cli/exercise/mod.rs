@@ -149,14 +149,13 @@ fn list(only: Option<&Chapter>, tries: Option<&Tries>) -> String {
 
 /// The exercise with a number such as 10.1.
 fn find(word: &str) -> Result<(&'static Chapter, &'static Exercise), Failure> {
-    static ALL: [Chapter; CHAPTERS.len()] = CHAPTERS;
     let parts: Vec<Option<u32>> = word.split('.').map(|part| part.parse().ok()).collect();
     let list = "`fredholm exercise --list` lists the exercises";
     let [Some(n), Some(m)] = parts[..] else {
         let help = format!("write chapter and exercise, such as 10.1; {list}");
         return Err(usage(&format!("`{word}` is not the number of an exercise"), &help));
     };
-    let Some(chapter) = ALL.iter().find(|c| c.number == n) else {
+    let Some(chapter) = CHAPTERS.iter().find(|c| c.number == n) else {
         return Err(usage(&format!("there is no chapter {n}, so there is no exercise {word}"), list));
     };
     chapter.exercises.iter().find(|e| e.number == m).map(|e| (chapter, e)).ok_or_else(|| {

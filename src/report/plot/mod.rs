@@ -16,12 +16,14 @@
 
 mod axis;
 mod canvas;
+mod chart;
 mod figure;
 mod look;
 mod panel;
 
 pub use axis::Axis;
 pub use canvas::{Align, Canvas, Colour, Drawn, Entry, Place, Sample, Stroke, Words};
+pub use chart::{Line, chart};
 pub use figure::{Figure, figure};
 pub use look::{BLACK, BLUE, Curve, FAINT, GREEN, GREY, GRID, Look, Mark, ORANGE, PURPLE, Point, SKY, VERMILION};
 pub use panel::Panel;
