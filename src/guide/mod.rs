@@ -51,7 +51,7 @@ use crate::operator::patches::Patches;
 use crate::operator::transport::{self, Samples, Seen, Sensor, Step, Transport};
 use crate::progress::Progress;
 use crate::scene::bsdf::{Bsdf, Sampling, diffuse, diffuse::Diffuse};
-use crate::scene::{Camera, Scene, SceneError, Side, Vertex, VertexWave, numbers, offset_origin, stand_in};
+use crate::scene::{Camera, Rays, Scene, SceneError, Side, Vertex, VertexWave, numbers, offset_origin, stand_in};
 use glam::Vec3;
 use incident::{Fineness, Incident};
 use lamps::Lamps;
@@ -213,10 +213,16 @@ impl GuidedTransport<'_> {
         ratio().unwrap_or(1.0)
     }
 
-    /// Returns true if waves are traced in packets of rays. Packets are used only without a choice of lamps in the guide.
-    #[inline(always)]
-    fn in_packets(&self) -> bool {
-        self.scene.scene.in_packets() && self.guide.lamps.is_none()
+    /// Returns true if paths advance in waves. They do so only without a choice of lamps in the guide.
+    fn in_waves(&self) -> bool {
+        self.scene.scene.in_waves() && self.guide.lamps.is_none()
+    }
+
+    /// [`Self::share`] of every path of a wave.
+    fn shares(&self, wave: &mut VertexWave, n: usize) {
+        for i in 0..n {
+            wave.rays.share[i] = self.share(&wave.get(i));
+        }
     }
 }
 
@@ -276,24 +282,31 @@ impl Transport for GuidedTransport<'_> {
     }
 
     fn connect_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples) {
-        if !self.in_packets() {
+        if !self.in_waves() {
             return transport::connect_one_by_one(self, wave, streams, out);
         }
-        numbers(streams, &mut wave.rays.u);
-        self.scene.scene.light_points(&mut wave.rays, streams.len());
-        self.scene.connect_packets(wave, streams.len(), out, self.guide.bsdf);
+        self.scene.connect_wave(wave, streams, out);
+        self.shares(wave, streams.len());
+        out.other_pdf.iter_mut().zip(&wave.rays.share[..streams.len()]).for_each(|(pdf, share)| *pdf *= share);
     }
 
     /// Looks up the tables path by path and does everything else as without a guide. The result has the same bits as the
     /// default.
     fn scatter_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
-        if !self.in_packets() || self.scene.sampling == Sampling::Uniform {
+        if !self.in_waves() || self.scene.sampling == Sampling::Uniform {
             return transport::scatter_one_by_one(self, wave, streams, out, alive);
         }
         let n = streams.len();
         numbers(streams, &mut wave.rays.u);
-        warped(self.guide, &wave.p, &wave.side[..n], &mut wave.rays.u, &mut out.pdf[..n]);
-        self.scene.scatter_packets(wave, n, out, alive, |out, i| out.pdf[i], self.guide.bsdf);
+        self.shares(wave, n);
+        let VertexWave { p, side, rays, .. } = wave;
+        warped(self.guide, p, &side[..n], rays);
+        self.scene.scatter_numbered(wave, n, out, alive);
+        for &i in alive.iter() {
+            let i = i as usize;
+            out.value.set(i, out.value.get(i) * (1.0 / wave.rays.ratio[i]));
+            out.pdf[i] *= wave.rays.share[i];
+        }
     }
 }
 
@@ -310,7 +323,7 @@ impl Expecting for GuidedTransport<'_> {
 const TOGETHER: usize = 32;
 
 /// Warps the first two random numbers of every path of a wave by the table at its state, and writes the density ratios to
-/// `ratio`.
+/// `rays.ratio`. A path whose share is 1 is not guided.
 #[pulp::with_simd(warped = pulp::Arch::new())]
 #[inline(always)]
 fn warped_with_simd<'a, S: pulp::Simd>(
@@ -318,15 +331,15 @@ fn warped_with_simd<'a, S: pulp::Simd>(
     guide: &'a Guide,
     p: &'a Columns,
     side: &'a [Side],
-    numbers: &'a mut [Vec<f32>; 4],
-    ratio: &'a mut [f32],
+    rays: &'a mut Rays,
 ) {
-    let [u, v, ..] = numbers;
+    let Rays { u: [u, v, ..], ratio, share, .. } = rays;
     let (mut table, mut rows) = ([NONE; TOGETHER], [0; TOGETHER]);
     for first in (0..side.len()).step_by(TOGETHER) {
         let some = first..(first + TOGETHER).min(side.len());
         for (i, table) in some.clone().zip(&mut table) {
-            *table = guide.find(p.get(i), side[i]).map_or(NONE, |patch| guide.tables[patch]);
+            let found = if share[i] == 1.0 { None } else { guide.find(p.get(i), side[i]) };
+            *table = found.map_or(NONE, |patch| guide.tables[patch]);
         }
         for (i, (&table, row)) in some.clone().zip(table.iter().zip(&mut rows)) {
             let warp = guide.warps.get(table as usize);

@@ -22,6 +22,7 @@ pub mod rays;
 mod scene_adjoint;
 mod scene_kernel;
 pub mod scene_transport;
+mod scene_waves;
 pub mod surface_strip;
 pub mod transport;
 

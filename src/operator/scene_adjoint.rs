@@ -110,7 +110,7 @@ impl Adjoint for SceneTransport<'_> {
             };
         }
         match self.towards(at, direction, role.mode()) {
-            Some((value, pdf, _)) => Toward { value, density: pdf * self.angle(at, to, direction) },
+            Some(t) => Toward { value: t.value, density: t.pdf * self.angle(at, to, direction) },
             None => Toward::default(),
         }
     }

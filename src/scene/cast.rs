@@ -20,17 +20,41 @@ impl Scene {
         if seen.is_none() && self.has_environment() { Some(Vertex::escaped(self.beyond(o, d), d)) } else { seen }
     }
 
-    /// Returns true if waves are traced in packets of rays.
-    pub(crate) fn in_packets(&self) -> bool {
-        self.packets
+    /// Returns true if paths are advanced in waves; false if one after the other.
+    pub(crate) fn in_waves(&self) -> bool {
+        self.waves
     }
 
-    /// The same scene without packets: the reference with which tests compare them.
+    /// The same scene without waves and packets: the reference with which tests compare them.
     #[doc(hidden)]
     #[must_use]
     pub fn one_by_one(mut self) -> Self {
-        self.packets = false;
+        (self.waves, self.packets) = (false, false);
         self
+    }
+
+    /// What the first `n` rays of a wave see, in ascending order: `at(i, vertex)` for every ray that hits a surface, or that
+    /// leaves the scene if there is a sky.
+    #[inline(always)]
+    pub(crate) fn look_wave(&self, rays: &mut Rays, n: usize, mut at: impl FnMut(&Rays, usize, Vertex)) {
+        if self.packets {
+            packets::closest(&self.accel.shapes, rays, n);
+        } else {
+            for i in 0..n {
+                let hit = self.accel.closest(rays.o.get(i), rays.d.get(i));
+                (rays.t[i], rays.prim[i]) = (hit.t, hit.prim);
+            }
+        }
+        let sky = self.has_environment();
+        for i in 0..n {
+            let (o, d) = (rays.o.get(i), rays.d.get(i));
+            if rays.prim[i] != u32::MAX {
+                let seen = self.arrive(o, d, shape::Hit { t: rays.t[i], prim: rays.prim[i] });
+                at(rays, i, seen);
+            } else if sky {
+                at(rays, i, Vertex::escaped(self.beyond(o, d), d));
+            }
+        }
     }
 
     /// Traces the first `n` rays of a wave in packets. `at(i, vertex)` is called, in ascending order of i, for every ray

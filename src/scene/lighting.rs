@@ -12,7 +12,8 @@
 //! The densities for each light are those of [`emitter`](super::emitter).
 
 use super::emitter::{Light, cone};
-use super::{ESCAPED, LIGHT, Scene, Vertex, connection, solid_angle};
+use super::groups::Vertices;
+use super::{ESCAPED, LIGHT, Rays, Scene, Vertex, connection, packets, solid_angle};
 use glam::Vec3;
 
 /// A point on a light, chosen by next-event estimation.
@@ -90,6 +91,33 @@ impl Scene {
         let (to, r2, _, cos) = connection(x, Vec3::ZERO, p, n);
         let pdf = solid_angle(self.lights.density[prim as usize], r2, cos);
         LightSample { state: Vertex { p, n, omega: -to, side: 2 * prim }, to, pdf, can_be_hit: true }
+    }
+
+    /// [`Self::sample_light`] for the first `m` places of a sorted wave, from the random numbers `rays.u` of their paths. Writes
+    /// by place: direction, density, position, normal and radiance to `rays.to`, `rays.t`, `rays.q`, `rays.m` and
+    /// `rays.radiance`, and to `rays.prim` whether a ray can hit the light. The density is 0 where there is no light point.
+    pub(crate) fn light_wave(&self, at: Vertices, rays: &mut Rays, m: usize) {
+        if let Some(prim) = self.lights.only() {
+            let density = self.lights.density[prim as usize];
+            packets::lamp_points(&self.accel.shapes[prim as usize], density, at.p, rays, m);
+            rays.radiance.fill(m, self.emission(2 * prim));
+            rays.prim[..m].fill(1);
+            return;
+        }
+        for place in 0..m {
+            let i = rays.order[place] as usize;
+            let u = rays.u.each_ref().map(|u| u[i]);
+            let Some(sample) = self.propose_light(&at.get(i), u) else {
+                rays.t[place] = 0.0;
+                continue;
+            };
+            rays.to.set(place, sample.to);
+            rays.t[place] = sample.pdf;
+            rays.q.set(place, sample.state.p);
+            rays.m.set(place, sample.state.n);
+            rays.radiance.set(place, self.light(&sample.state));
+            rays.prim[place] = u32::from(sample.can_be_hit);
+        }
     }
 
     fn sky_sample(&self, u: [f32; 2]) -> (Vec3, f32) {

@@ -19,6 +19,8 @@ pub mod coplanar;
 pub mod description;
 pub mod emitter;
 mod error;
+mod faces;
+mod groups;
 mod lighting;
 pub mod load;
 mod packets;
@@ -46,13 +48,15 @@ use coplanar::Relation;
 use description::LightDescription;
 pub use emitter::Selection;
 use emitter::{Light, Lights};
+use faces::Faces;
 use glam::{DVec3, Vec3};
+pub(crate) use groups::{DELTA, NOTHING, Vertices};
 pub(crate) use rounding::{error, offset_origin, segment};
 use shape::Shape;
 use textures::Textures;
 pub(crate) use vertex::Rays;
 
-pub(crate) use packets::{cosine_directions, numbers};
+pub(crate) use packets::numbers;
 
 /// Change of measure: converts a density per area at a point y to one per solid angle at a point at distance r, with `r2` =
 /// r².
@@ -80,11 +84,10 @@ pub struct Scene {
     accel: Accel,
     /// True if waves are traced in packets of rays.
     packets: bool,
+    /// True if waves are advanced together, and not path by path.
+    waves: bool,
     /// For every side: its BSDF, largest albedo and emission, and whether it takes part in light transport.
-    bsdf: Vec<Bsdf>,
-    albedo: Vec<Rgb>,
-    emission: Vec<Rgb>,
-    takes_part: Vec<bool>,
+    faces: Faces,
     area: Vec<f64>,
     textures: Option<Textures>,
     /// Position of the scene's coordinate origin in the coordinates of the file, m.
@@ -119,23 +122,9 @@ impl Scene {
         let shapes: Vec<Shape> = prims.iter().map(|(_, p)| Shape::new(p, touch)).collect();
         let farthest = all[0].abs().max(all[1].abs()).max_element();
         let widened: Vec<[Vec3; 2]> = bounds.iter().map(|b| accel::widened(*b, farthest, touch)).collect();
-        let (mut bsdf, mut emission, mut takes_part) = (vec![], vec![], vec![]);
-        for &(shape, _) in prims {
-            let shape = &description.shapes[shape];
-            let material = &description.materials[shape.material];
-            let both = material.both_sides();
-            let back = if both { Bsdf::new(&material.bsdf, true) } else { Bsdf::Black };
-            bsdf.extend([Bsdf::new(&material.bsdf, false), back]);
-            emission.extend([shape.emission.as_vec3(), Rgb::ZERO]);
-            takes_part.extend([true, both]);
-        }
         let textures = Textures::new(description, prims);
-        let plain = bsdf.iter().all(|b| matches!(b, Bsdf::Diffuse(_) | Bsdf::Black));
-        let plain = plain && textures.is_none() && description.lights.is_empty();
-        let albedo = bsdf.iter().enumerate().map(|(side, b)| match &textures {
-            Some(t) => t.brightest(side / 2).map_or(*b, |rho| b.with_reflectance(rho)).max_albedo(),
-            None => b.max_albedo(),
-        });
+        let faces = Faces::new(description, prims, |i| textures.as_ref().and_then(|t| t.brightest(i)));
+        let any_delta = faces.iter().any(|face| face.bsdf.has_delta());
         // lights without area illuminate the shapes too, so `beyond` must also lead past point lights
         let outside = description.lights.iter().filter_map(|l| match l {
             LightDescription::Point { position, .. } => Some(*position),
@@ -143,21 +132,19 @@ impl Scene {
         });
         let reach = outside.map(|p| (p - center).length()).fold(radius, f64::max);
         Self {
-            packets: plain && packets::suit(&shapes),
+            packets: packets::suit(&shapes),
+            waves: true,
             camera: Camera::new(&description.camera, center, radius),
             lights: Lights::new(description, prims, radius),
             accel: Accel::new(shapes, &widened),
-            albedo: albedo.collect(),
-            any_delta: bsdf.iter().any(Bsdf::has_delta),
+            any_delta,
             lit: description.lit().as_vec3(),
             last_resort: None,
             center: center.as_vec3(),
             radius: radius as f32,
             beyond: (4.0 * reach) as f32,
-            bsdf,
+            faces,
             textures,
-            emission,
-            takes_part,
             area: prims.iter().map(|(_, p)| p.area()).collect(),
             origin,
             conflicts: surfaces.conflicts(description),
@@ -177,13 +164,13 @@ impl Scene {
 
     /// Number of sides: two per primitive.
     pub fn sides(&self) -> u32 {
-        self.takes_part.len() as u32
+        self.faces.sides()
     }
 
     /// Returns true if a side takes part in light transport: every front, and the back of a two-sided surface. All other sides
     /// block light and are black.
     pub fn takes_part(&self, side: Side) -> bool {
-        self.takes_part[side as usize]
+        self.faces.of(side).takes_part
     }
 
     /// Area of a side, m².
@@ -197,7 +184,7 @@ impl Scene {
         if !at.on_surface() {
             return Bsdf::Black;
         }
-        let bsdf = self.bsdf[at.side as usize];
+        let bsdf = self.faces.of(at.side).bsdf;
         match &self.textures {
             None => bsdf,
             Some(t) => match t.reflectance(at.side / 2, &self.accel.shapes[(at.side / 2) as usize], at.p) {
@@ -225,18 +212,18 @@ impl Scene {
     /// The largest albedo of a side over all directions and, for a texture, all its texels; ρ for a Lambertian side.
     #[inline(always)]
     pub fn albedo(&self, side: Side) -> Rgb {
-        self.albedo[side as usize]
+        self.faces.of(side).albedo
     }
 
     /// The largest albedo of all sides, per channel: the bound on ‖T‖₁ and ‖T‖∞.
     pub fn max_albedo(&self) -> Rgb {
-        self.albedo.iter().fold(Rgb::ZERO, |a, &b| a.max(b))
+        self.faces.iter().fold(Rgb::ZERO, |a, b| a.max(b.albedo))
     }
 
     /// Emitted radiance E of a side, W·sr⁻¹·m⁻², the same in every direction.
     #[inline(always)]
     pub fn emission(&self, side: Side) -> Rgb {
-        self.emission[side as usize]
+        self.faces.of(side).emission
     }
 
     /// Density per area (m⁻²) with which next-event estimation chooses a point of this side; 0 if it cannot choose it.
@@ -295,26 +282,5 @@ impl Scene {
     #[inline(always)]
     pub(crate) fn beyond(&self, x: Vec3, d: Vec3) -> Vec3 {
         x + d * self.beyond
-    }
-
-    /// Chooses a point on a light for each path of a wave. Writes positions to `rays.o`, normals to `rays.d`, densities
-    /// (m⁻²) to `rays.t` and primitives to `rays.prim`.
-    #[inline(always)]
-    pub(crate) fn light_points(&self, rays: &mut Rays, n: usize) {
-        if let Some(prim) = self.lights.only() {
-            packets::points_on(&self.accel.shapes[prim as usize], self.lights.density[prim as usize], rays, n);
-            rays.prim[..n].fill(prim);
-            return;
-        }
-        for i in 0..n {
-            let [u, v, s, t] = rays.u.each_ref().map(|u| u[i]);
-            let prim = self.lights.primitive(self.lights.choose(u), v).unwrap_or_default();
-            let shape = &self.accel.shapes[prim as usize];
-            let p = shape.point([s, t]);
-            rays.o.set(i, p);
-            rays.d.set(i, shape.normal(p));
-            rays.t[i] = self.lights.density[prim as usize];
-            rays.prim[i] = prim;
-        }
     }
 }

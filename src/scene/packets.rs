@@ -7,6 +7,7 @@
 
 use super::shape::{Flat, Shape};
 use super::vertex::Rays;
+use super::{connection, solid_angle};
 use crate::math::{Columns, Points, Streams};
 use glam::Vec3;
 use pulp::{Arch, Simd};
@@ -16,9 +17,9 @@ const LANES: usize = 16;
 /// Largest number of primitives for packets; beyond it the tree is faster.
 const SMALL: usize = 64;
 
-/// Returns true if a scene should be traced in packets: it has few primitives, and all are flat.
+/// Returns true if a scene should be traced in packets: it has few primitives.
 pub(crate) fn suit(shapes: &[Shape]) -> bool {
-    shapes.len() <= SMALL && shapes.iter().all(|s| matches!(s, Shape::Flat(_) | Shape::Triangle(_)))
+    shapes.len() <= SMALL
 }
 
 type Lane = [f32; LANES];
@@ -84,7 +85,8 @@ pub(crate) fn closest_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], rays
             match shape {
                 Shape::Flat(s) => nearest_flat(s, id as u32, &o, &d, &mut t, &mut prim),
                 Shape::Triangle(s) => nearest(|o, d| s.meet(o, d), id as u32, &o, &d, &mut t, &mut prim),
-                Shape::Ball(_) | Shape::Disc(_) => {}
+                Shape::Ball(s) => nearest(|o, d| s.meet(o, d), id as u32, &o, &d, &mut t, &mut prim),
+                Shape::Disc(s) => nearest(|o, d| s.meet(o, d), id as u32, &o, &d, &mut t, &mut prim),
             }
         }
         rays.t[at..at + LANES].copy_from_slice(&t);
@@ -140,7 +142,8 @@ pub(crate) fn occluded_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], ray
             match shape {
                 Shape::Flat(s) => block_flat(s, &r, &mut blocked),
                 Shape::Triangle(s) => block(|o, d| s.meet(o, d), &r, &mut blocked),
-                Shape::Ball(_) | Shape::Disc(_) => {}
+                Shape::Ball(s) => block(|o, d| s.meet(o, d), &r, &mut blocked),
+                Shape::Disc(s) => block(|o, d| s.meet(o, d), &r, &mut blocked),
             }
         }
         for (&ray, &b) in list.iter().zip(&blocked) {
@@ -169,38 +172,40 @@ pub(crate) fn numbers_with_simd<'a, S: Simd>(_simd: S, streams: Streams<'a>, u: 
     }
 }
 
-/// Cosine-distributed directions about the normals, computed from the first two columns of random numbers.
-#[pulp::with_simd(cosine_directions = Arch::new())]
+/// Uniform points of a lamp of one primitive, for the first `m` places of a sorted wave with the points `x`, from the last two
+/// columns of random numbers: direction, density per solid angle, position and normal, by place.
+#[pulp::with_simd(lamp_points = Arch::new())]
 #[inline(always)]
-pub(crate) fn cosine_directions_with_simd<'a, S: Simd>(
+pub(crate) fn lamp_points_with_simd<'a, S: Simd>(
     _simd: S,
-    normals: &'a Columns,
-    u: &'a [Vec<f32>; 4],
-    d: &'a mut Columns,
-    cosine: &'a mut [f32],
-    n: usize,
+    shape: &'a Shape,
+    density: f32,
+    x: &'a Columns,
+    rays: &'a mut Rays,
+    m: usize,
 ) {
-    let (nx, ny, nz) = (&normals.x[..n], &normals.y[..n], &normals.z[..n]);
-    let (dx, dy, dz, cosine) = (&mut d.x[..n], &mut d.y[..n], &mut d.z[..n], &mut cosine[..n]);
-    let (u0, u1) = (&u[0][..n], &u[1][..n]);
-    for i in 0..n {
-        let (v, z) = crate::math::direction::cosine_hemisphere(Vec3::new(nx[i], ny[i], nz[i]), [u0[i], u1[i]]);
-        (dx[i], dy[i], dz[i], cosine[i]) = (v.x, v.y, v.z, z);
-    }
-}
-
-/// Uniform points of one shape, computed from the last two columns of random numbers. Writes positions, normals and the same
-/// density for all.
-#[pulp::with_simd(points_on = Arch::new())]
-#[inline(always)]
-pub(crate) fn points_on_with_simd<'a, S: Simd>(_simd: S, shape: &'a Shape, density: f32, rays: &'a mut Rays, n: usize) {
-    let (u, v) = (&rays.u[2][..n], &rays.u[3][..n]);
-    let (ox, oy, oz) = (&mut rays.o.x[..n], &mut rays.o.y[..n], &mut rays.o.z[..n]);
-    let (dx, dy, dz, t) = (&mut rays.d.x[..n], &mut rays.d.y[..n], &mut rays.d.z[..n], &mut rays.t[..n]);
-    for i in 0..n {
-        let p = shape.point([u[i], v[i]]);
-        let m = shape.normal(p);
-        (ox[i], oy[i], oz[i]) = (p.x, p.y, p.z);
-        (dx[i], dy[i], dz[i], t[i]) = (m.x, m.y, m.z, density);
+    for place in (0..m).step_by(LANES) {
+        let (mut to, mut q, mut n, mut pdf) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [[0.0; LANES]; 3], [0.0; LANES]);
+        let (mut at, mut u) = ([[0.0; LANES]; 3], [[0.0; LANES]; 2]);
+        for lane in 0..LANES.min(m - place) {
+            let i = rays.order[place + lane] as usize;
+            (at[0][lane], at[1][lane], at[2][lane]) = (x.x[i], x.y[i], x.z[i]);
+            (u[0][lane], u[1][lane]) = (rays.u[2][i], rays.u[3][i]);
+        }
+        for lane in 0..LANES {
+            let p = shape.point([u[0][lane], u[1][lane]]);
+            let normal = shape.normal(p);
+            let (d, r2, _, cos) = connection(Vec3::new(at[0][lane], at[1][lane], at[2][lane]), Vec3::ZERO, p, normal);
+            pdf[lane] = solid_angle(density, r2, cos);
+            (to[0][lane], to[1][lane], to[2][lane]) = (d.x, d.y, d.z);
+            (q[0][lane], q[1][lane], q[2][lane]) = (p.x, p.y, p.z);
+            (n[0][lane], n[1][lane], n[2][lane]) = (normal.x, normal.y, normal.z);
+        }
+        for (c, lanes) in [(&mut rays.to, &to), (&mut rays.q, &q), (&mut rays.m, &n)] {
+            c.x[place..place + LANES].copy_from_slice(&lanes[0]);
+            c.y[place..place + LANES].copy_from_slice(&lanes[1]);
+            c.z[place..place + LANES].copy_from_slice(&lanes[2]);
+        }
+        rays.t[place..place + LANES].copy_from_slice(&pdf);
     }
 }

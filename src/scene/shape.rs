@@ -272,7 +272,7 @@ pub(crate) struct Disc {
 
 impl Disc {
     #[inline(always)]
-    fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
+    pub(crate) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
         let t = (self.h - dot(self.n, o)) / dot(self.n, d);
         let f = o + d * t - self.center;
         (t, (t > 0.0) & (dot(f, f) <= self.radius * self.radius))

@@ -48,31 +48,96 @@ pub struct VertexWave {
     pub(crate) rays: Rays,
 }
 
-/// Buffers for the rays of a wave: origins `o`, directions `d`, distances `t`, primitives, a list of ray indices, and
-/// cosines.
+/// Buffers for the rays of a wave. Columns are by path, or by place in the order in which [`groups`](super::groups) sorts
+/// the paths.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rays {
+    /// Origins and directions of rays, or of segments.
     pub(crate) o: Columns,
     pub(crate) d: Columns,
+    /// Distances, or densities.
     pub(crate) t: Vec<f32>,
+    /// Primitives that rays hit.
     pub(crate) prim: Vec<u32>,
+    /// Numbers of some rays.
     pub(crate) list: Vec<u32>,
+    /// Cosines, or densities of the other technique.
     pub(crate) cosine: Vec<f32>,
-    /// Four columns of random numbers.
+    /// Four columns of random numbers, by path.
     pub(crate) u: [Vec<f32>; 4],
+    /// The paths in sorted order, the group of each path, and the end of each group in the order.
+    pub(crate) order: Vec<u32>,
+    pub(crate) group: Vec<u32>,
+    pub(crate) ends: Vec<u32>,
+    /// Reflectances of coloured groups, by place.
+    pub(crate) colour: Columns,
+    /// Light points by place: unit directions towards them, positions, normals, radiances.
+    pub(crate) to: Columns,
+    pub(crate) q: Columns,
+    pub(crate) m: Columns,
+    pub(crate) radiance: Columns,
+    /// Weights, and whether a sample is not zero, by place.
+    pub(crate) value: Columns,
+    pub(crate) flag: Vec<u32>,
+    /// Of a guide, by path: ratio of densities, and share of BSDF sampling.
+    pub(crate) ratio: Vec<f32>,
+    pub(crate) share: Vec<f32>,
+}
+
+impl Rays {
+    /// Removes the places without a sample from the first `n`, in the same order. Returns their new number.
+    pub(crate) fn keep_samples(&mut self, n: usize) -> usize {
+        let none = super::NOTHING;
+        let Some(first) = self.flag[..n].iter().position(|&f| f == none) else { return n };
+        let mut to = first;
+        for from in first..n {
+            if self.flag[from] != none {
+                self.o.set(to, self.o.get(from));
+                self.d.set(to, self.d.get(from));
+                self.value.set(to, self.value.get(from));
+                (self.t[to], self.flag[to], self.order[to]) = (self.t[from], self.flag[from], self.order[from]);
+                to += 1;
+            }
+        }
+        to
+    }
+}
+
+/// Buffers are longer than a wave by this much, so that a group of lanes may reach beyond the last path.
+const MARGIN: usize = 16;
+
+impl Rays {
+    fn resize(&mut self, n: usize) {
+        let n = n + MARGIN;
+        for c in [
+            &mut self.o,
+            &mut self.d,
+            &mut self.colour,
+            &mut self.to,
+            &mut self.q,
+            &mut self.m,
+            &mut self.radiance,
+            &mut self.value,
+        ] {
+            *c = Columns::new(n);
+        }
+        for c in [&mut self.prim, &mut self.list, &mut self.order, &mut self.group, &mut self.flag] {
+            *c = vec![0; n];
+        }
+        for c in [&mut self.t, &mut self.cosine, &mut self.ratio, &mut self.share] {
+            *c = vec![0.0; n];
+        }
+        self.u = std::array::from_fn(|_| vec![0.0; n]);
+    }
 }
 
 impl VertexWave {
     pub(crate) fn resize(&mut self, n: usize) {
-        for c in [&mut self.p, &mut self.n, &mut self.omega, &mut self.rays.o, &mut self.rays.d] {
+        for c in [&mut self.p, &mut self.n, &mut self.omega] {
             *c = Columns::new(n);
         }
-        for c in [&mut self.side, &mut self.rays.prim, &mut self.rays.list] {
-            *c = vec![0; n];
-        }
-        self.rays.t = vec![0.0; n];
-        self.rays.cosine = vec![0.0; n];
-        self.rays.u = std::array::from_fn(|_| vec![0.0; n]);
+        self.side = vec![0; n];
+        self.rays.resize(n);
     }
 
     #[inline(always)]

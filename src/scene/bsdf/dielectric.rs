@@ -20,7 +20,7 @@ use super::ggx::{Ggx, Microfacets};
 use super::mirror::reflection;
 pub use super::odds::{Choice, Odds};
 use super::rough_dielectric::RoughDielectric;
-use super::{BsdfSample, Model, Sampling, Surface, TransportMode};
+use super::{BsdfSample, Model, Sampling, Surface, TransportMode, Visitor};
 use crate::math::Rgb;
 use crate::scene::SceneError;
 use crate::scene::load::{Cursor, MtlMaterial, keys, keys::IOR};
@@ -114,6 +114,13 @@ impl Model for Dielectric {
     }
     fn transmits(&self) -> bool {
         matches!(self, Self::Rough(_))
+    }
+    #[inline(always)]
+    fn welcome<V: Visitor>(&self, visitor: V) -> V::Out {
+        match self {
+            Self::Smooth(f) => f.welcome(visitor),
+            Self::Rough(f) => f.welcome(visitor),
+        }
     }
 }
 

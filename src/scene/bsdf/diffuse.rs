@@ -9,7 +9,7 @@
 
 use super::colour::Colour;
 use super::model::blind_pdf;
-use super::{BsdfSample, Model, Sampling, Surface, TransportMode};
+use super::{BsdfSample, Departure, Model, Sampling, Surface, Towards, TransportMode};
 use crate::math::{
     Rgb,
     direction::{cosine_hemisphere, uniform_hemisphere},
@@ -51,8 +51,30 @@ impl Model for Diffuse {
     fn max_albedo(&self) -> Rgb {
         self.reflectance
     }
+    #[inline(always)]
     fn with_reflectance(self, reflectance: Rgb) -> Self {
         Self { reflectance }
+    }
+
+    /// Without local coordinates: f does not depend on them.
+    #[inline(always)]
+    fn depart(&self, n: Vec3, _: Vec3, sampling: Sampling, _: TransportMode, u: [f32; 3]) -> Option<Departure> {
+        (self.reflectance != Rgb::ZERO).then(|| {
+            let (direction, weight, pdf) = sample(self.reflectance, n, sampling, [u[0], u[1]]);
+            Departure { direction, normal: n, weight, pdf, delta: false }
+        })
+    }
+    #[inline(always)]
+    fn towards(&self, n: Vec3, _: Vec3, to: Vec3, sampling: Sampling, _: TransportMode) -> Option<Towards> {
+        let cos = n.dot(to);
+        let value = self.reflectance * (FRAC_1_PI * cos);
+        (cos > 0.0).then(|| Towards { value, pdf: sampling.pdf(cos), normal: n })
+    }
+    #[inline(always)]
+    fn connect(&self, n: Vec3, _: Vec3, to: Vec3, pdf: f32, sampling: Sampling) -> Option<Towards> {
+        let cos = n.dot(to);
+        let value = self.reflectance * (FRAC_1_PI * cos / pdf);
+        (cos > 0.0 && self.reflectance != Rgb::ZERO).then(|| Towards { value, pdf: sampling.pdf(cos), normal: n })
     }
 }
 

@@ -49,8 +49,10 @@ pub mod register;
 pub mod rough_dielectric;
 mod sampling;
 pub mod surface;
+pub mod world;
 
-pub use model::Model;
+pub use model::{Model, Visitor};
 pub use register::Bsdf;
 pub use sampling::{BsdfSample, Sampling, TransportMode};
 pub use surface::Surface;
+pub use world::{Departure, Towards};

@@ -1,5 +1,6 @@
 //! The interface of every BSDF: the same methods as [`Bsdf`](super::Bsdf), in the same local directions.
 
+use super::world::{self, Departure, Towards};
 use super::{BsdfSample, Sampling, TransportMode};
 use crate::math::Rgb;
 use glam::Vec3;
@@ -43,9 +44,41 @@ pub trait Model: Copy {
     }
     /// The same BSDF with another reflectance of its diffuse part, which a texture gives.
     #[must_use]
+    #[inline(always)]
     fn with_reflectance(self, _reflectance: Rgb) -> Self {
         self
     }
+
+    /// [`Self::sample`] in world coordinates. An override may be faster, but means the same.
+    #[inline(always)]
+    fn depart(&self, n: Vec3, omega: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<Departure> {
+        world::depart(self, n, omega, sampling, mode, u)
+    }
+    /// f cos θ_i and [`Self::pdf`] in world coordinates; `None` if f cos θ_i is zero.
+    #[inline(always)]
+    fn towards(&self, n: Vec3, omega: Vec3, to: Vec3, sampling: Sampling, mode: TransportMode) -> Option<Towards> {
+        world::towards(self, n, omega, to, sampling, mode)
+    }
+    /// The same for radiance from a direction that was drawn with density `pdf`: the value is divided by it.
+    #[inline(always)]
+    fn connect(&self, n: Vec3, omega: Vec3, to: Vec3, pdf: f32, sampling: Sampling) -> Option<Towards> {
+        let t = self.towards(n, omega, to, sampling, TransportMode::Radiance)?;
+        Some(Towards { value: t.value * (1.0 / pdf), ..t })
+    }
+    /// Calls the visitor with this BSDF. A BSDF that is one of several formulas passes the visitor on to the one that it is,
+    /// so that the choice is made once and not for each path.
+    #[inline(always)]
+    fn welcome<V: Visitor>(&self, visitor: V) -> V::Out {
+        visitor.visit(self)
+    }
+}
+
+/// Work that is compiled for each BSDF separately.
+pub trait Visitor {
+    /// Result of the work.
+    type Out;
+    /// Does the work with this BSDF.
+    fn visit<M: Model>(self, f: &M) -> Self::Out;
 }
 
 /// A sample that does not follow f: a direction of the hemisphere with the density of `sampling`, or of the whole sphere if

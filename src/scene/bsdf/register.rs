@@ -4,7 +4,10 @@
 //! ([`Model`]).
 
 use super::surface::Surface;
-use super::{BsdfSample, Model, Sampling, TransportMode, conductor, dielectric, diffuse, mirror, phong, plastic};
+use super::{
+    BsdfSample, Departure, Model, Sampling, Towards, TransportMode, Visitor, conductor, dielectric, diffuse, mirror,
+    phong, plastic,
+};
 use crate::math::Rgb;
 use crate::scene::SceneError;
 use crate::scene::description::Colour;
@@ -78,6 +81,12 @@ macro_rules! register {
             $($(#[$about])* $kind($side),)+
         }
 
+        $(impl From<$side> for Bsdf {
+            fn from(side: $side) -> Self {
+                Self::$kind(side)
+            }
+        })+
+
         impl Bsdf {
             /// The BSDF of one side; `back` is the side from which the normal points away. A textured reflectance is white
             /// until [`Self::with_reflectance`] sets it. Tables are computed here: once per material, not per hit.
@@ -105,6 +114,33 @@ macro_rules! register {
             /// Density of ω_i under [`Self::sample`] without delta parts, sr⁻¹.
             pub fn pdf(&self, wo: Vec3, wi: Vec3, sampling: Sampling) -> f32 {
                 match self { Self::Black => 0.0, $(Self::$kind(f) => f.pdf(wo, wi, sampling),)+ }
+            }
+
+            /// [`Self::sample`] in world coordinates, for a vertex with the normal `n` seen from `omega`.
+            #[inline(always)]
+            pub fn depart(
+                &self, n: Vec3, omega: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3],
+            ) -> Option<Departure> {
+                match self { Self::Black => None, $(Self::$kind(f) => f.depart(n, omega, sampling, mode, u),)+ }
+            }
+
+            /// f cos θ_i and [`Self::pdf`] in world coordinates; `None` if f cos θ_i is zero.
+            #[inline(always)]
+            pub fn towards(
+                &self, n: Vec3, omega: Vec3, to: Vec3, sampling: Sampling, mode: TransportMode,
+            ) -> Option<Towards> {
+                match self { Self::Black => None, $(Self::$kind(f) => f.towards(n, omega, to, sampling, mode),)+ }
+            }
+
+            /// The same for radiance from a direction that was drawn with density `pdf`: the value is divided by it.
+            #[inline(always)]
+            pub fn connect(&self, n: Vec3, omega: Vec3, to: Vec3, pdf: f32, sampling: Sampling) -> Option<Towards> {
+                match self { Self::Black => None, $(Self::$kind(f) => f.connect(n, omega, to, pdf, sampling),)+ }
+            }
+
+            /// Calls the visitor with the formulas of this BSDF; `None` for black.
+            pub fn welcome<V: Visitor>(&self, visitor: V) -> Option<V::Out> {
+                match self { Self::Black => None, $(Self::$kind(f) => Some(f.welcome(visitor)),)+ }
             }
 
             /// The fraction of the light that is scattered, per channel: ∫ f(ω_o → ω_i) cos θ_i dω_i including the delta

@@ -1,0 +1,144 @@
+//! T sampled for a wave of paths in a scene: the same steps as for one path, each done for all paths before the next.
+//!
+//! ```text
+//! connect   sort by surface → light points → f cos θ/p → shadow rays            → weight · E where nothing blocks
+//! scatter   sort by surface → directions and weights → rays → first surfaces    → new states with both densities
+//! ```
+//!
+//! | step | place |
+//! |---|---|
+//! | sort by surface; BSDFs in SIMD lanes | [`crate::scene::groups`](crate::scene) |
+//! | light points | `Scene::light_wave` |
+//! | rays and shadow rays | `Scene::look_wave`, `Scene::block_wave` |
+//!
+//! Every number has the bits that [`SceneTransport`] computes for one path (tested).
+
+use super::scene_transport::SceneTransport;
+use super::transport::Samples;
+use crate::math::{Columns, Rgb, Streams};
+use crate::scene::bsdf::{Bsdf, TransportMode};
+use crate::scene::{Camera, DELTA, ESCAPED, LIGHT, NOTHING, Vertex, VertexWave, Vertices, numbers};
+
+impl SceneTransport<'_> {
+    /// E at the first `n` vertices of a wave.
+    pub(super) fn emission_of_wave(&self, wave: &VertexWave, n: usize, value: &mut Columns) {
+        for (i, &side) in wave.side[..n].iter().enumerate() {
+            let e = match side {
+                side if side < LIGHT => self.scene.emission(side),
+                _ => self.scene.light(&wave.get(i)),
+            };
+            value.set(i, e);
+        }
+    }
+
+    /// One connection for each path of a wave.
+    pub(super) fn connect_by_wave(&self, wave: &mut VertexWave, streams: Streams, out: &mut Samples) {
+        numbers(streams, &mut wave.rays.u);
+        self.connect_numbered(wave, streams.len(), out);
+    }
+
+    /// One connection for each of the first `n` paths, from the random numbers in `wave.rays.u`.
+    pub(crate) fn connect_numbered(&self, wave: &mut VertexWave, n: usize, out: &mut Samples) {
+        let VertexWave { p, n: normals, omega, side, rays } = wave;
+        let at = Vertices { p, n: normals, omega, side };
+        out.value.fill(n, Rgb::ZERO);
+        out.pdf[..n].fill(1.0);
+        out.other_pdf[..n].fill(0.0);
+        if self.scene.lights.is_empty() {
+            return;
+        }
+        let places = self.scene.sort(at, n, rays, Bsdf::connects);
+        self.scene.light_wave(at, rays, places);
+        self.scene.connect(at, rays, self.sampling);
+        let mut some = 0;
+        for place in 0..places {
+            if rays.flag[place] != NOTHING {
+                rays.list[some] = place as u32;
+                some += 1;
+            }
+        }
+        // the answers replace what `prim` said
+        for &place in &rays.list[..some] {
+            if rays.prim[place as usize] == 0 {
+                rays.cosine[place as usize] = 0.0;
+            }
+        }
+        self.scene.block_wave(rays, some);
+        for &place in &rays.list[..some] {
+            let place = place as usize;
+            if rays.prim[place] == 0 {
+                let value = rays.value.get(place) * rays.radiance.get(place);
+                out.set(rays.order[place] as usize, value, rays.t[place], rays.cosine[place]);
+            }
+        }
+    }
+
+    /// One step of each path of a wave.
+    pub(super) fn scatter_by_wave(
+        &self,
+        wave: &mut VertexWave,
+        streams: Streams,
+        out: &mut Samples,
+        alive: &mut Vec<u32>,
+    ) {
+        numbers(streams, &mut wave.rays.u);
+        self.scatter_numbered(wave, streams.len(), out, alive);
+    }
+
+    /// One step of each of the first `n` paths, from the random numbers in `wave.rays.u`.
+    pub(crate) fn scatter_numbered(&self, wave: &mut VertexWave, n: usize, out: &mut Samples, alive: &mut Vec<u32>) {
+        let VertexWave { p, n: normals, omega, side, rays } = wave;
+        let at = Vertices { p, n: normals, omega, side };
+        let places = self.scene.sort(at, n, rays, |_| true);
+        self.scene.depart(at, rays, self.sampling, TransportMode::Radiance);
+        let rest = rays.keep_samples(places);
+        std::mem::swap(&mut rays.t, &mut rays.cosine);
+        let (mut ascends, mut last) = (true, 0);
+        self.scene.look_wave(rays, rest, |rays, place, state| {
+            let i = rays.order[place] as usize;
+            let (weight, pdf, delta) = (rays.value.get(place), rays.cosine[place], rays.flag[place] == DELTA);
+            let lit = state.side == ESCAPED || self.scene.emission(state.side) != Rgb::ZERO;
+            let (pdf, other_pdf) = if delta || !lit {
+                (pdf, 0.0)
+            } else {
+                let before = Vertex { p: p.get(i), n: normals.get(i), omega: omega.get(i), side: side[i] };
+                self.densities(&before, &state, pdf)
+            };
+            p.set(i, state.p);
+            normals.set(i, state.n);
+            omega.set(i, state.omega);
+            side[i] = state.side;
+            out.set(i, weight, pdf, other_pdf);
+            ascends &= i >= last;
+            last = i;
+            alive.push(i as u32);
+        });
+        if !ascends {
+            alive.sort_unstable();
+        }
+    }
+}
+
+/// What the camera sees along one ray for each path of a wave.
+pub(super) fn start_by_wave(
+    camera: &Camera,
+    t: &SceneTransport,
+    wave: &mut VertexWave,
+    streams: Streams,
+    alive: &mut Vec<u32>,
+) {
+    numbers(streams, &mut wave.rays.u);
+    let VertexWave { p, n, omega, side, rays } = wave;
+    for i in 0..streams.len() {
+        let (o, d) = camera.ray(streams.pixel[i], [rays.u[0][i], rays.u[1][i]]);
+        rays.o.set(i, o);
+        rays.d.set(i, d);
+    }
+    t.scene.look_wave(rays, streams.len(), |_, i, state| {
+        p.set(i, state.p);
+        n.set(i, state.n);
+        omega.set(i, state.omega);
+        side[i] = state.side;
+        alive.push(i as u32);
+    });
+}

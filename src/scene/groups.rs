@@ -1,0 +1,307 @@
+//! BSDFs of a wave of vertices, in SIMD lanes: vertices are sorted by the formula of their surface, and sixteen vertices with
+//! the same formula are evaluated at once.
+//!
+//! | notation | type | place |
+//! |---|---|---|
+//! | place | position of a path in the sorted order, and of its ray in the buffers | `Rays::order` lists the paths by place |
+//! | group | surfaces with one formula | [`Group`](super::faces::Group) |
+//! | ρ | reflectance at each vertex, where it differs within a group | `Rays::colour` |
+//!
+//! The loops call the functions of [`Model`] for one vertex after the other. The compiler turns them into loops over lanes
+//! where the formulas allow it, and leaves them as they are where not (Phong's powers). So a BSDF is one file either way, and
+//! the bits are those of single vertices.
+
+use super::bsdf::{Bsdf, Model, Sampling, TransportMode, Visitor};
+use super::rounding::{offset_origin, segment};
+use super::vertex::{Rays, Side};
+use super::{Scene, Vertex};
+use crate::math::{Columns, Rgb};
+use glam::Vec3;
+use pulp::{Arch, Simd, WithSimd};
+use std::ops::Range;
+
+/// Vertices that are evaluated at once.
+const LANES: usize = 16;
+
+type Lane = [f32; LANES];
+type Lane3 = [Lane; 3];
+
+/// A sample that is zero.
+pub(crate) const NOTHING: u32 = 0;
+/// A sample that is not zero.
+pub(crate) const SOME: u32 = 1;
+/// The same, from a delta part.
+pub(crate) const DELTA: u32 = 2;
+
+/// The columns of a wave of vertices.
+#[derive(Clone, Copy)]
+pub(crate) struct Vertices<'a> {
+    pub(crate) p: &'a Columns,
+    pub(crate) n: &'a Columns,
+    pub(crate) omega: &'a Columns,
+    pub(crate) side: &'a [Side],
+}
+
+impl Vertices<'_> {
+    #[inline(always)]
+    pub(crate) fn get(&self, i: usize) -> Vertex {
+        Vertex { p: self.p.get(i), n: self.n.get(i), omega: self.omega.get(i), side: self.side[i] }
+    }
+}
+
+impl Scene {
+    /// Sorts the first `n` vertices by group into `rays.order`, without those whose group `wanted` rejects, and sets the
+    /// reflectances of coloured groups. Returns the number of places. `rays.ends` holds the end of each group.
+    pub(crate) fn sort(&self, at: Vertices, n: usize, rays: &mut Rays, wanted: impl Fn(&Bsdf) -> bool) -> usize {
+        let groups = self.faces.groups();
+        rays.ends.clear();
+        rays.ends.resize(groups.len() + 1, 0);
+        let mut wants = [false; 64];
+        let many = groups.len() > wants.len();
+        groups.iter().zip(&mut wants).skip(1).for_each(|(g, w)| *w = wanted(&g.bsdf));
+        let group_of = |side: Side| {
+            let group = self.faces.group_of(side) as usize;
+            let taken = if many { group != 0 && wanted(&groups[group].bsdf) } else { wants[group % 64] };
+            if taken { group } else { 0 }
+        };
+        for (group, &side) in rays.group[..n].iter_mut().zip(&at.side[..n]) {
+            *group = group_of(side) as u32;
+            rays.ends[*group as usize] += 1;
+        }
+        // the starts of groups 1, 2, …; group 0 has no place
+        let mut start = 0;
+        for end in rays.ends.iter_mut().skip(1) {
+            (*end, start) = (start, start + *end);
+        }
+        for i in 0..n {
+            let group = rays.group[i] as usize;
+            if group != 0 {
+                rays.order[rays.ends[group] as usize] = i as u32;
+                rays.ends[group] += 1;
+            }
+        }
+        rays.ends[0] = 0;
+        self.colours(at, rays);
+        start as usize
+    }
+
+    /// The reflectance of every vertex in a coloured group.
+    fn colours(&self, at: Vertices, rays: &mut Rays) {
+        for g in (1..self.faces.groups().len()).filter(|&g| self.faces.groups()[g].coloured) {
+            for place in rays.ends[g - 1] as usize..rays.ends[g] as usize {
+                let i = rays.order[place] as usize;
+                let rho = self.colour_at(at.side[i], || at.p.get(i));
+                rays.colour.set(place, rho);
+            }
+        }
+    }
+
+    /// Calls `work` with each group that has vertices: its number and its places.
+    fn each_group(&self, rays: &mut Rays, mut work: impl FnMut(&super::faces::Group, Range<usize>, &mut Rays)) {
+        for g in 1..self.faces.groups().len() {
+            let places = rays.ends[g - 1] as usize..rays.ends[g] as usize;
+            if !places.is_empty() {
+                work(&self.faces.groups()[g], places, rays);
+            }
+        }
+    }
+
+    /// Samples a direction at every sorted vertex, from the random numbers `rays.u` of its path. Writes by place: the ray to
+    /// `rays.o` and `rays.d`, the weight, the density and whether there is a sample to `rays.value`, `rays.t`, `rays.flag`.
+    pub(crate) fn depart(&self, at: Vertices, rays: &mut Rays, sampling: Sampling, mode: TransportMode) {
+        self.each_group(rays, |group, places, rays| {
+            group.bsdf.welcome(Depart { at, rays, places, coloured: group.coloured, sampling, mode });
+        });
+    }
+
+    /// Evaluates the BSDF of every sorted vertex for its light point, given by place in `rays.to`, `rays.t` (density) and
+    /// `rays.q`, `rays.m` (position and normal). Writes by place: the shadow segment to `rays.o` and `rays.d`, the weight to
+    /// `rays.value`, the density of scattering to `rays.cosine`, and whether there is a contribution to `rays.flag`.
+    pub(crate) fn connect(&self, at: Vertices, rays: &mut Rays, sampling: Sampling) {
+        self.each_group(rays, |group, places, rays| {
+            group.bsdf.welcome(Connect { at, rays, places, coloured: group.coloured, sampling });
+        });
+    }
+}
+
+#[inline(always)]
+fn gather(column: &[f32], at: &[u32; LANES]) -> Lane {
+    let mut lane = [0.0; LANES];
+    // neighbours in the wave are usually neighbours here too
+    if at[LANES - 1].wrapping_sub(at[0]) == LANES as u32 - 1 {
+        lane.copy_from_slice(&column[at[0] as usize..][..LANES]);
+    } else {
+        for (lane, &i) in lane.iter_mut().zip(at) {
+            *lane = column[i as usize];
+        }
+    }
+    lane
+}
+
+#[inline(always)]
+fn gather3(c: &Columns, at: &[u32; LANES]) -> Lane3 {
+    [gather(&c.x, at), gather(&c.y, at), gather(&c.z, at)]
+}
+
+#[inline(always)]
+fn load(column: &[f32], at: usize) -> Lane {
+    let mut lane = [0.0; LANES];
+    lane.copy_from_slice(&column[at..at + LANES]);
+    lane
+}
+
+#[inline(always)]
+fn load3(c: &Columns, at: usize) -> Lane3 {
+    [load(&c.x, at), load(&c.y, at), load(&c.z, at)]
+}
+
+#[inline(always)]
+fn store(column: &mut [f32], at: usize, lane: &Lane) {
+    column[at..at + LANES].copy_from_slice(lane);
+}
+
+#[inline(always)]
+fn store3(c: &mut Columns, at: usize, lane: &Lane3) {
+    store(&mut c.x, at, &lane[0]);
+    store(&mut c.y, at, &lane[1]);
+    store(&mut c.z, at, &lane[2]);
+}
+
+#[inline(always)]
+fn vector(lane: &Lane3, i: usize) -> Vec3 {
+    Vec3::new(lane[0][i], lane[1][i], lane[2][i])
+}
+
+#[inline(always)]
+fn put(lane: &mut Lane3, i: usize, v: Vec3) {
+    (lane[0][i], lane[1][i], lane[2][i]) = (v.x, v.y, v.z);
+}
+
+/// The paths at sixteen places from `place` on; after the last place of the group, the last path again.
+#[inline(always)]
+fn paths(order: &[u32], place: usize, end: usize) -> [u32; LANES] {
+    if place + LANES <= end {
+        let mut paths = [0; LANES];
+        paths.copy_from_slice(&order[place..place + LANES]);
+        return paths;
+    }
+    std::array::from_fn(|i| order[(place + i).min(end - 1)])
+}
+
+struct Depart<'a, 'r> {
+    at: Vertices<'a>,
+    rays: &'r mut Rays,
+    places: Range<usize>,
+    coloured: bool,
+    sampling: Sampling,
+    mode: TransportMode,
+}
+
+struct With<T, M>(T, M);
+
+impl Visitor for Depart<'_, '_> {
+    type Out = ();
+    fn visit<M: Model>(self, f: &M) {
+        Arch::new().dispatch(With(self, *f));
+    }
+}
+
+impl<M: Model> WithSimd for With<Depart<'_, '_>, M> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let With(Depart { at, rays, places, coloured, sampling, mode }, f) = self;
+        for place in places.clone().step_by(LANES) {
+            let list = paths(&rays.order, place, places.end);
+            let (p, n, omega) = (gather3(at.p, &list), gather3(at.n, &list), gather3(at.omega, &list));
+            let u = [gather(&rays.u[0], &list), gather(&rays.u[1], &list), gather(&rays.u[2], &list)];
+            let rho = load3(&rays.colour, place);
+            let (mut o, mut d, mut weight) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [[0.0; LANES]; 3]);
+            let (mut pdf, mut flag) = ([0.0; LANES], [NOTHING; LANES]);
+            for i in 0..LANES {
+                let f = if coloured { f.with_reflectance(vector(&rho, i)) } else { f };
+                let n = vector(&n, i);
+                let sample = f.depart(n, vector(&omega, i), sampling, mode, [u[0][i], u[1][i], u[2][i]]);
+                if let Some(s) = sample {
+                    put(&mut o, i, offset_origin(vector(&p, i), s.normal));
+                    put(&mut d, i, s.direction);
+                    put(&mut weight, i, s.weight);
+                    pdf[i] = s.pdf;
+                    flag[i] = if s.delta { DELTA } else { SOME };
+                }
+            }
+            store3(&mut rays.o, place, &o);
+            store3(&mut rays.d, place, &d);
+            store3(&mut rays.value, place, &weight);
+            store(&mut rays.t, place, &pdf);
+            rays.flag[place..place + LANES].copy_from_slice(&flag);
+        }
+    }
+}
+
+struct Connect<'a, 'r> {
+    at: Vertices<'a>,
+    rays: &'r mut Rays,
+    places: Range<usize>,
+    coloured: bool,
+    sampling: Sampling,
+}
+
+impl Visitor for Connect<'_, '_> {
+    type Out = ();
+    fn visit<M: Model>(self, f: &M) {
+        Arch::new().dispatch(With(self, *f));
+    }
+}
+
+impl<M: Model> WithSimd for With<Connect<'_, '_>, M> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let With(Connect { at, rays, places, coloured, sampling }, f) = self;
+        for place in places.clone().step_by(LANES) {
+            let list = paths(&rays.order, place, places.end);
+            let (p, n, omega) = (gather3(at.p, &list), gather3(at.n, &list), gather3(at.omega, &list));
+            let (to, q, m) = (load3(&rays.to, place), load3(&rays.q, place), load3(&rays.m, place));
+            let (density, rho) = (load(&rays.t, place), load3(&rays.colour, place));
+            let (mut o, mut d, mut value) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [[0.0; LANES]; 3]);
+            let (mut pdf, mut flag) = ([0.0; LANES], [NOTHING; LANES]);
+            for i in 0..LANES {
+                let f = if coloured { f.with_reflectance(vector(&rho, i)) } else { f };
+                let found = f.connect(vector(&n, i), vector(&omega, i), vector(&to, i), density[i], sampling);
+                // a density of 0 or less: the light faces away; an infinite one: it is seen exactly edge-on
+                let seen = (density[i] > 0.0) & (density[i] < f32::INFINITY);
+                if let Some(found) = found {
+                    let (start, along) = segment(vector(&p, i), found.normal, vector(&q, i), vector(&m, i));
+                    put(&mut o, i, start);
+                    put(&mut d, i, along);
+                    put(&mut value, i, found.value);
+                    pdf[i] = found.pdf;
+                    flag[i] = if seen { SOME } else { NOTHING };
+                }
+            }
+            store3(&mut rays.o, place, &o);
+            store3(&mut rays.d, place, &d);
+            store3(&mut rays.value, place, &value);
+            store(&mut rays.cosine, place, &pdf);
+            rays.flag[place..place + LANES].copy_from_slice(&flag);
+        }
+    }
+}
+
+impl Scene {
+    /// The reflectance of a side at a point `p`: from its image, or of its Lambertian surface; white for other kinds.
+    #[inline(always)]
+    fn colour_at(&self, side: Side, p: impl Fn() -> Vec3) -> Rgb {
+        let prim = side / 2;
+        if let Some(t) = &self.textures
+            && let Some(rho) = t.reflectance(prim, &self.accel.shapes[prim as usize], p())
+        {
+            return rho;
+        }
+        match self.faces.of(side).bsdf {
+            Bsdf::Diffuse(f) => f.reflectance,
+            _ => Rgb::ONE,
+        }
+    }
+}
