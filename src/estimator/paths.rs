@@ -87,7 +87,7 @@ impl<W> Paths<W> {
         let streams = streams(batch.key, &self.pixel[..self.n], &self.sample[..self.n], 0, Purpose::Start);
         sensor.start_wave(t, &mut self.state, streams, &mut self.alive);
         self.throughput.fill(self.n, t.lit());
-        self.compact();
+        self.keep_names();
     }
 
     /// Copies some paths of another wave. The copies go on with the random numbers of another stream and with throughput α ·
@@ -132,8 +132,9 @@ impl<W> Paths<W> {
         if let Some(key) = self.key {
             let streams = streams(key, &self.pixel[..self.n], &self.sample[..self.n], v, Purpose::Scatter);
             t.scatter_wave(&mut self.state, streams, &mut self.samples, &mut self.alive);
+            // states and samples are at the front already
+            self.keep_names();
             self.throughput.multiply(&self.samples.value, self.n);
-            self.compact();
         }
     }
 
@@ -197,14 +198,20 @@ impl<W> Paths<W> {
         W: Wave<S>,
     {
         if self.alive.len() < self.n {
-            let alive = &self.alive;
-            self.state.keep(alive);
-            self.throughput.keep(alive);
-            columns::keep(&mut self.pixel, alive);
-            columns::keep(&mut self.sample, alive);
-            columns::keep(&mut self.samples.pdf, alive);
-            columns::keep(&mut self.samples.other_pdf, alive);
-            self.n = alive.len();
+            self.state.keep(&self.alive);
+            columns::keep(&mut self.samples.pdf, &self.alive);
+            columns::keep(&mut self.samples.other_pdf, &self.alive);
+        }
+        self.keep_names();
+    }
+
+    /// Keeps the throughputs, pixels and samples of the paths that are alive.
+    fn keep_names(&mut self) {
+        if self.alive.len() < self.n {
+            self.throughput.keep(&self.alive);
+            columns::keep(&mut self.pixel, &self.alive);
+            columns::keep(&mut self.sample, &self.alive);
+            self.n = self.alive.len();
         }
         self.alive.clear();
     }

@@ -218,10 +218,13 @@ impl GuidedTransport<'_> {
         self.scene.scene.in_waves() && self.guide.lamps.is_none()
     }
 
-    /// [`Self::share`] of every path of a wave.
+    /// [`Self::share`] of every path of a wave, and in `rays.group` whether it can be guided.
     fn shares(&self, wave: &mut VertexWave, n: usize) {
         for i in 0..n {
-            wave.rays.share[i] = self.share(&wave.get(i));
+            let at = wave.get(i);
+            let lambertian = matches!(self.scene.scene.bsdf(&at), Bsdf::Diffuse(_));
+            wave.rays.group[i] = u32::from(lambertian);
+            wave.rays.share[i] = self.share(&at);
         }
     }
 }
@@ -302,10 +305,9 @@ impl Transport for GuidedTransport<'_> {
         let VertexWave { p, side, rays, .. } = wave;
         warped(self.guide, p, &side[..n], rays);
         self.scene.scatter_numbered(wave, n, out, alive);
-        for &i in alive.iter() {
-            let i = i as usize;
-            out.value.set(i, out.value.get(i) * (1.0 / wave.rays.ratio[i]));
-            out.pdf[i] *= wave.rays.share[i];
+        for (to, &from) in alive.iter().enumerate() {
+            out.value.set(to, out.value.get(to) * (1.0 / wave.rays.ratio[from as usize]));
+            out.pdf[to] *= wave.rays.share[from as usize];
         }
     }
 }
@@ -323,7 +325,7 @@ impl Expecting for GuidedTransport<'_> {
 const TOGETHER: usize = 32;
 
 /// Warps the first two random numbers of every path of a wave by the table at its state, and writes the density ratios to
-/// `rays.ratio`. A path whose share is 1 is not guided.
+/// `rays.ratio`. A path whose group is 0 is not guided.
 #[pulp::with_simd(warped = pulp::Arch::new())]
 #[inline(always)]
 fn warped_with_simd<'a, S: pulp::Simd>(
@@ -333,12 +335,12 @@ fn warped_with_simd<'a, S: pulp::Simd>(
     side: &'a [Side],
     rays: &'a mut Rays,
 ) {
-    let Rays { u: [u, v, ..], ratio, share, .. } = rays;
+    let Rays { u: [u, v, ..], ratio, group, .. } = rays;
     let (mut table, mut rows) = ([NONE; TOGETHER], [0; TOGETHER]);
     for first in (0..side.len()).step_by(TOGETHER) {
         let some = first..(first + TOGETHER).min(side.len());
         for (i, table) in some.clone().zip(&mut table) {
-            let found = if share[i] == 1.0 { None } else { guide.find(p.get(i), side[i]) };
+            let found = if group[i] == 0 { None } else { guide.find(p.get(i), side[i]) };
             *table = found.map_or(NONE, |patch| guide.tables[patch]);
         }
         for (i, (&table, row)) in some.clone().zip(table.iter().zip(&mut rows)) {

@@ -90,6 +90,8 @@ impl<T: Expecting> Transport for Tracked<'_, T> {
     }
     fn scatter_wave(&self, wave: &mut Self::Wave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
         self.0.scatter_wave(&mut wave.states, streams, out, alive);
+        columns::keep(&mut wave.start, alive);
+        columns::keep(&mut wave.siblings, alive);
     }
 }
 
@@ -117,10 +119,8 @@ impl<'a, T: Expecting, S: Sensor<T>> Sensor<Tracked<'a, T>> for TrackedSensor<'_
         self.0.start(t.0, pixel, rng).map(|x| Track::begin(t.0, x))
     }
     fn start_wave(&self, t: &Tracked<'a, T>, wave: &mut TrackedWave<T::Wave>, streams: Streams, alive: &mut Vec<u32>) {
-        let before = alive.len();
         self.0.start_wave(t.0, &mut wave.states, streams, alive);
-        for &i in &alive[before..] {
-            let i = i as usize;
+        for i in 0..alive.len() {
             wave.set(i, Track::begin(t.0, wave.states.get(i)));
         }
     }

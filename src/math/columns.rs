@@ -48,6 +48,13 @@ impl Columns {
         }
     }
 
+    /// Changes the sign of the first `n` vectors.
+    pub fn negate(&mut self, n: usize) {
+        for a in [&mut self.x, &mut self.y, &mut self.z] {
+            a[..n].iter_mut().for_each(|a| *a = -*a);
+        }
+    }
+
     /// Multiplies vector `i` by the number `by[i]`, for the first `n` vectors.
     pub fn scale(&mut self, by: &[f32], n: usize) {
         for a in [&mut self.x, &mut self.y, &mut self.z] {
@@ -62,6 +69,33 @@ impl Columns {
         keep(&mut self.y, indices);
         keep(&mut self.z, indices);
     }
+}
+
+impl Columns {
+    /// Vector `j` becomes vector `indices[j]` of `from`.
+    pub fn gather(&mut self, from: &Columns, indices: &[u32]) {
+        gather(&mut self.x, &from.x, indices);
+        gather(&mut self.y, &from.y, indices);
+        gather(&mut self.z, &from.z, indices);
+    }
+}
+
+/// Length of the runs that are copied at once.
+const RUN: usize = 16;
+
+/// `to[j] = from[indices[j]]`. Runs of consecutive indices are copied as a whole.
+pub fn gather<X: Copy>(to: &mut [X], from: &[X], indices: &[u32]) {
+    let to = &mut to[..indices.len()];
+    let (runs, last) = indices.as_chunks::<RUN>();
+    let (places, rest) = to.as_chunks_mut::<RUN>();
+    for (to, run) in places.iter_mut().zip(runs) {
+        if run[RUN - 1].wrapping_sub(run[0]) as usize == RUN - 1 && run.is_sorted() {
+            to.copy_from_slice(&from[run[0] as usize..][..RUN]);
+        } else {
+            to.iter_mut().zip(run).for_each(|(to, &i)| *to = from[i as usize]);
+        }
+    }
+    rest.iter_mut().zip(last).for_each(|(to, &i)| *to = from[i as usize]);
 }
 
 /// Keeps only the chosen entries of one column: `v[j] = v[indices[j]]`. The indices must ascend, so the order is kept.

@@ -15,9 +15,9 @@
 
 use super::scene_transport::SceneTransport;
 use super::transport::Samples;
-use crate::math::{Columns, Rgb, Streams};
+use crate::math::{Columns, Rgb, Streams, columns};
 use crate::scene::bsdf::{Bsdf, TransportMode};
-use crate::scene::{Camera, DELTA, ESCAPED, LIGHT, NOTHING, Vertex, VertexWave, Vertices, numbers};
+use crate::scene::{Camera, DELTA, ESCAPED, LIGHT, NOTHING, NOWHERE, VertexWave, Vertices, numbers};
 
 impl SceneTransport<'_> {
     /// E at the first `n` vertices of a wave.
@@ -93,29 +93,42 @@ impl SceneTransport<'_> {
         self.scene.depart(at, rays, self.sampling, TransportMode::Radiance);
         let rest = rays.keep_samples(places);
         std::mem::swap(&mut rays.t, &mut rays.cosine);
-        let (mut ascends, mut last) = (true, 0);
-        self.scene.look_wave(rays, rest, |rays, place, state| {
-            let i = rays.order[place] as usize;
-            let (weight, pdf, delta) = (rays.value.get(place), rays.cosine[place], rays.flag[place] == DELTA);
-            let lit = state.side == ESCAPED || self.scene.emission(state.side) != Rgb::ZERO;
-            let (pdf, other_pdf) = if delta || !lit {
-                (pdf, 0.0)
-            } else {
-                let before = Vertex { p: p.get(i), n: normals.get(i), omega: omega.get(i), side: side[i] };
-                self.densities(&before, &state, pdf)
-            };
-            p.set(i, state.p);
-            normals.set(i, state.n);
-            omega.set(i, state.omega);
-            side[i] = state.side;
-            out.set(i, weight, pdf, other_pdf);
-            ascends &= i >= last;
-            last = i;
-            alive.push(i as u32);
-        });
-        if !ascends {
-            alive.sort_unstable();
+        self.scene.look_wave(rays, rest);
+        // the places of the paths that go on, in ascending order of the paths
+        let mut on = 0;
+        let mut go_on = |place: usize, side: &[u32], list: &mut [u32]| {
+            list[on] = place as u32;
+            on += usize::from(side[place] != NOWHERE);
+        };
+        if rays.groups() > 1 {
+            rays.place[..n].fill(u32::MAX);
+            for place in 0..rest {
+                rays.place[rays.order[place] as usize] = place as u32;
+            }
+            for &place in rays.place[..n].iter().filter(|&&place| place != u32::MAX) {
+                go_on(place as usize, &rays.side, &mut rays.list);
+            }
+        } else {
+            (0..rest).for_each(|place| go_on(place, &rays.side, &mut rays.list));
         }
+        let list = &rays.list[..on];
+        alive.extend(list.iter().map(|&place| rays.order[place as usize]));
+        out.value.gather(&rays.value, list);
+        columns::gather(&mut out.pdf, &rays.cosine, list);
+        out.other_pdf[..on].fill(0.0);
+        for (to, &place) in list.iter().enumerate() {
+            let (seen, place) = (rays.side[place as usize], place as usize);
+            let both = seen == ESCAPED || self.scene.emission(seen) != Rgb::ZERO;
+            if both && rays.flag[place] != DELTA {
+                let from = at.get(rays.order[place] as usize);
+                (out.pdf[to], out.other_pdf[to]) = self.densities(&from, &rays.seen(place), rays.cosine[place]);
+            }
+        }
+        p.gather(&rays.q, list);
+        normals.gather(&rays.m, list);
+        omega.gather(&rays.d, list);
+        columns::gather(side, &rays.side, list);
+        omega.negate(on);
     }
 }
 
@@ -134,11 +147,12 @@ pub(super) fn start_by_wave(
         rays.o.set(i, o);
         rays.d.set(i, d);
     }
-    t.scene.look_wave(rays, streams.len(), |_, i, state| {
-        p.set(i, state.p);
-        n.set(i, state.n);
-        omega.set(i, state.omega);
-        side[i] = state.side;
-        alive.push(i as u32);
-    });
+    t.scene.look_wave(rays, streams.len());
+    let seen = (0..streams.len()).filter(|&i| rays.side[i] != NOWHERE).map(|i| i as u32);
+    alive.extend(seen);
+    for (state, ray) in [(p, &rays.q), (n, &rays.m), (omega, &rays.d)] {
+        state.gather(ray, alive);
+    }
+    columns::gather(side, &rays.side, alive);
+    omega.negate(alive.len());
 }

@@ -86,8 +86,8 @@ pub trait Transport: Sync {
         connect_one_by_one(self, wave, streams, out);
     }
 
-    /// Scatters every state i and stores the weight of the step in `out.value[i]`. The new state replaces the old one. The
-    /// indices of the paths that continue are pushed to `alive` in ascending order.
+    /// Scatters every state. The indices of the paths that continue are pushed to `alive` in ascending order. Their new states
+    /// move to the front of the wave in this order, and so do the weights and densities of their steps in `out`.
     fn scatter_wave(&self, wave: &mut Self::Wave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
         scatter_one_by_one(self, wave, streams, out, alive);
     }
@@ -118,8 +118,8 @@ pub(crate) fn scatter_one_by_one<T: Transport + ?Sized>(
 ) {
     for i in 0..streams.len() {
         if let Some(s) = t.scatter(&wave.get(i), &mut streams.rng(i)) {
-            wave.set(i, s.state);
-            out.set(i, s.weight, s.pdf, s.other_pdf);
+            wave.set(alive.len(), s.state);
+            out.set(alive.len(), s.weight, s.pdf, s.other_pdf);
             alive.push(i as u32);
         }
     }
@@ -211,7 +211,8 @@ pub trait Sensor<T: Transport>: Sync {
     fn sees(&self, _t: &T, _at: &T::State) -> bool {
         true
     }
-    /// Samples the first states of a wave. The indices of the paths that have one are pushed to `alive` in ascending order.
+    /// Samples the first states of a wave. The indices of the paths that have one are pushed to `alive` in ascending order, and
+    /// their states move to the front of the wave in this order.
     fn start_wave(&self, t: &T, wave: &mut T::Wave, streams: Streams, alive: &mut Vec<u32>) {
         start_one_by_one(self, t, wave, streams, alive);
     }
@@ -227,7 +228,7 @@ pub(crate) fn start_one_by_one<T: Transport, W: Sensor<T> + ?Sized>(
 ) {
     for i in 0..streams.len() {
         if let Some(state) = sensor.start(t, streams.pixel[i], &mut streams.rng(i)) {
-            wave.set(i, state);
+            wave.set(alive.len(), state);
             alive.push(i as u32);
         }
     }

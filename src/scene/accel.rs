@@ -54,6 +54,13 @@ impl Accel {
         best
     }
 
+    pub(crate) fn closest_wave(&self, rays: &mut super::Rays, n: usize) {
+        for i in 0..n {
+            let hit = self.closest(rays.o.get(i), rays.d.get(i));
+            (rays.t[i], rays.prim[i]) = (hit.t, hit.prim);
+        }
+    }
+
     /// Returns true if a primitive lies on `o + t·d` with 0 < t < 1.
     #[inline(always)]
     pub(crate) fn occluded(&self, o: Vec3, d: Vec3) -> bool {

@@ -2,7 +2,7 @@
 //! segment is tested for occlusion.
 
 use super::vertex::{Rays, Vertex};
-use super::{Scene, packets, rounding::offset_origin, rounding::segment, shape};
+use super::{Scene, arrive, packets, rounding::offset_origin, rounding::segment, shape};
 use glam::Vec3;
 
 impl Scene {
@@ -29,32 +29,8 @@ impl Scene {
     #[doc(hidden)]
     #[must_use]
     pub fn one_by_one(mut self) -> Self {
-        (self.waves, self.packets) = (false, false);
+        (self.waves, self.flats) = (false, None);
         self
-    }
-
-    /// What the first `n` rays of a wave see, in ascending order: `at(i, vertex)` for every ray that hits a surface, or that
-    /// leaves the scene if there is a sky.
-    #[inline(always)]
-    pub(crate) fn look_wave(&self, rays: &mut Rays, n: usize, mut at: impl FnMut(&Rays, usize, Vertex)) {
-        if self.packets {
-            packets::closest(&self.accel.shapes, rays, n);
-        } else {
-            for i in 0..n {
-                let hit = self.accel.closest(rays.o.get(i), rays.d.get(i));
-                (rays.t[i], rays.prim[i]) = (hit.t, hit.prim);
-            }
-        }
-        let sky = self.has_environment();
-        for i in 0..n {
-            let (o, d) = (rays.o.get(i), rays.d.get(i));
-            if rays.prim[i] != u32::MAX {
-                let seen = self.arrive(o, d, shape::Hit { t: rays.t[i], prim: rays.prim[i] });
-                at(rays, i, seen);
-            } else if sky {
-                at(rays, i, Vertex::escaped(self.beyond(o, d), d));
-            }
-        }
     }
 
     /// Traces the first `n` rays of a wave in packets. `at(i, vertex)` is called, in ascending order of i, for every ray
@@ -78,7 +54,7 @@ impl Scene {
 
     /// The same as [`Scene::trace_packets`], but traces rays one by one if the scene is not traced in packets.
     pub(crate) fn trace_wave(&self, rays: &mut Rays, n: usize, mut at: impl FnMut(usize, Vertex)) {
-        if self.packets {
+        if self.flats.is_some() {
             return self.trace_packets(rays, n, at);
         }
         for i in 0..n {
@@ -90,7 +66,7 @@ impl Scene {
 
     /// The same as [`Scene::block_packets`], but tests segments one by one if the scene is not traced in packets.
     pub(crate) fn block_wave(&self, rays: &mut Rays, n: usize) {
-        if self.packets {
+        if self.flats.is_some() {
             return self.block_packets(rays, n);
         }
         for &ray in &rays.list[..n] {
@@ -101,11 +77,7 @@ impl Scene {
 
     #[inline(always)]
     fn arrive(&self, o: Vec3, d: Vec3, hit: shape::Hit) -> Vertex {
-        let shape = &self.accel.shapes[hit.prim as usize];
-        let p = shape.settle(o + d * hit.t);
-        let n = shape.normal(p);
-        let back = shape::dot(n, d) > 0.0;
-        Vertex { p, n: if back { -n } else { n }, omega: -d, side: 2 * hit.prim + u32::from(back) }
+        arrive::arrive(&self.accel.shapes, o, d, hit)
     }
 
     /// Start of a ray that leaves `p` on the side of the normal `n`: the point is moved off the surface by the bound on its

@@ -21,6 +21,8 @@ pub(crate) struct Face {
     pub(crate) albedo: Rgb,
     pub(crate) emission: Rgb,
     pub(crate) takes_part: bool,
+    /// Reflectance if the side is Lambertian and has no image; otherwise white.
+    pub(crate) colour: Rgb,
     /// Number of its group.
     pub(crate) group: u32,
 }
@@ -67,6 +69,7 @@ impl Faces {
                     albedo: image.map_or(bsdf, |rho| bsdf.with_reflectance(rho)).max_albedo(),
                     emission: if back { Rgb::ZERO } else { shape.emission.as_vec3() },
                     takes_part,
+                    colour: if let Bsdf::Diffuse(f) = bsdf { f.reflectance } else { Rgb::ONE },
                     group,
                 });
             }

@@ -64,6 +64,17 @@ impl Scene {
             let taken = if many { group != 0 && wanted(&groups[group].bsdf) } else { wants[group % 64] };
             if taken { group } else { 0 }
         };
+        if let [_, only] = groups {
+            // nothing to sort
+            let (wants, mut places) = (wanted(&only.bsdf), 0);
+            for (i, &side) in at.side[..n].iter().enumerate() {
+                rays.order[places] = i as u32;
+                places += usize::from(wants && self.faces.group_of(side) != 0);
+            }
+            rays.ends[1] = places as u32;
+            self.colours(at, rays);
+            return places;
+        }
         for (group, &side) in rays.group[..n].iter_mut().zip(&at.side[..n]) {
             *group = group_of(side) as u32;
             rays.ends[*group as usize] += 1;
@@ -90,7 +101,10 @@ impl Scene {
         for g in (1..self.faces.groups().len()).filter(|&g| self.faces.groups()[g].coloured) {
             for place in rays.ends[g - 1] as usize..rays.ends[g] as usize {
                 let i = rays.order[place] as usize;
-                let rho = self.colour_at(at.side[i], || at.p.get(i));
+                let rho = match self.textures {
+                    None => self.faces.of(at.side[i]).colour,
+                    Some(_) => self.colour_at(at.side[i], at.p.get(i)),
+                };
                 rays.colour.set(place, rho);
             }
         }
@@ -292,16 +306,13 @@ impl<M: Model> WithSimd for With<Connect<'_, '_>, M> {
 impl Scene {
     /// The reflectance of a side at a point `p`: from its image, or of its Lambertian surface; white for other kinds.
     #[inline(always)]
-    fn colour_at(&self, side: Side, p: impl Fn() -> Vec3) -> Rgb {
+    fn colour_at(&self, side: Side, p: Vec3) -> Rgb {
         let prim = side / 2;
         if let Some(t) = &self.textures
-            && let Some(rho) = t.reflectance(prim, &self.accel.shapes[prim as usize], p())
+            && let Some(rho) = t.reflectance(prim, &self.accel.shapes[prim as usize], p)
         {
             return rho;
         }
-        match self.faces.of(side).bsdf {
-            Bsdf::Diffuse(f) => f.reflectance,
-            _ => Rgb::ONE,
-        }
+        self.faces.of(side).colour
     }
 }

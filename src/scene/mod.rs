@@ -11,6 +11,7 @@
 //! | W(x, ω) | [`Camera`], [`SurfaceSensor`] | [`sensor`] |
 
 mod accel;
+mod arrive;
 pub mod bsdf;
 pub mod builtin;
 mod cast;
@@ -39,10 +40,12 @@ pub use lighting::LightSample;
 pub use primitive::Primitive;
 pub use sensor::{Camera, SurfaceSensor};
 pub use stand_in::stand_in;
+pub(crate) use vertex::NOWHERE;
 pub use vertex::{ESCAPED, LIGHT, Side, Vertex, VertexWave};
 
 use crate::math::Rgb;
 use accel::Accel;
+use arrive::Flats;
 use bsdf::Bsdf;
 use coplanar::Relation;
 use description::LightDescription;
@@ -82,8 +85,8 @@ pub struct Scene {
     /// All lights.
     pub lights: Lights,
     accel: Accel,
-    /// True if waves are traced in packets of rays.
-    packets: bool,
+    /// The flat primitives of a small scene, whose waves are traced in packets of rays.
+    flats: Option<Box<Flats>>,
     /// True if waves are advanced together, and not path by path.
     waves: bool,
     /// For every side: its BSDF, largest albedo and emission, and whether it takes part in light transport.
@@ -132,7 +135,7 @@ impl Scene {
         });
         let reach = outside.map(|p| (p - center).length()).fold(radius, f64::max);
         Self {
-            packets: packets::suit(&shapes),
+            flats: packets::suit(&shapes).then(|| Box::new(Flats::new(&shapes))),
             waves: true,
             camera: Camera::new(&description.camera, center, radius),
             lights: Lights::new(description, prims, radius),

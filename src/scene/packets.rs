@@ -15,7 +15,7 @@ use pulp::{Arch, Simd};
 /// Number of rays in a packet.
 const LANES: usize = 16;
 /// Largest number of primitives for packets; beyond it the tree is faster.
-const SMALL: usize = 64;
+const SMALL: usize = super::arrive::MOST;
 
 /// Returns true if a scene should be traced in packets: it has few primitives.
 pub(crate) fn suit(shapes: &[Shape]) -> bool {
@@ -184,17 +184,43 @@ pub(crate) fn lamp_points_with_simd<'a, S: Simd>(
     rays: &'a mut Rays,
     m: usize,
 ) {
+    // the kind is chosen here and not for each point, so that the loops inside have no branch
+    match shape {
+        Shape::Flat(s) => points(
+            #[inline(always)]
+            |u| (s.point(u), s.normal()),
+            density,
+            x,
+            rays,
+            m,
+        ),
+        other => points(
+            #[inline(always)]
+            |u| {
+                let p = other.point(u);
+                (p, other.normal(p))
+            },
+            density,
+            x,
+            rays,
+            m,
+        ),
+    }
+}
+
+#[inline(always)]
+fn points(point: impl Fn([f32; 2]) -> (Vec3, Vec3), density: f32, x: &Columns, rays: &mut Rays, m: usize) {
     for place in (0..m).step_by(LANES) {
-        let (mut to, mut q, mut n, mut pdf) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [[0.0; LANES]; 3], [0.0; LANES]);
-        let (mut at, mut u) = ([[0.0; LANES]; 3], [[0.0; LANES]; 2]);
+        let mut to = [[0.0; LANES]; 3];
+        let (mut q, mut n, mut at, mut pdf) = (to, to, to, [0.0; LANES]);
+        let mut u = [[0.0; LANES]; 2];
         for lane in 0..LANES.min(m - place) {
             let i = rays.order[place + lane] as usize;
             (at[0][lane], at[1][lane], at[2][lane]) = (x.x[i], x.y[i], x.z[i]);
             (u[0][lane], u[1][lane]) = (rays.u[2][i], rays.u[3][i]);
         }
         for lane in 0..LANES {
-            let p = shape.point([u[0][lane], u[1][lane]]);
-            let normal = shape.normal(p);
+            let (p, normal) = point([u[0][lane], u[1][lane]]);
             let (d, r2, _, cos) = connection(Vec3::new(at[0][lane], at[1][lane], at[2][lane]), Vec3::ZERO, p, normal);
             pdf[lane] = solid_angle(density, r2, cos);
             (to[0][lane], to[1][lane], to[2][lane]) = (d.x, d.y, d.z);

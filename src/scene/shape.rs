@@ -96,6 +96,50 @@ impl Flat {
         }
     }
 
+    /// How many numbers describe where a hit lies.
+    pub(crate) const NUMBERS: usize = 22;
+
+    /// The numbers that [`Self::settle`] uses.
+    pub(crate) fn numbers(&self) -> [f32; Self::NUMBERS] {
+        let Self { n, h, a, a0, b, b0, sure, half_u: u, half_v: v, keep, .. } = *self;
+        [
+            n.x, n.y, n.z, h, a.x, a.y, a.z, a0, b.x, b.y, b.z, b0, sure[0], sure[1], u.x, u.y, u.z, v.x, v.y, v.z,
+            keep[0], keep[1],
+        ]
+    }
+
+    /// A parallelogram with these numbers. It has no corners, so no ray can meet it.
+    #[inline(always)]
+    pub(crate) fn on_plane(x: [f32; Self::NUMBERS]) -> Self {
+        Self {
+            n: Vec3::new(x[0], x[1], x[2]),
+            h: x[3],
+            a: Vec3::new(x[4], x[5], x[6]),
+            a0: x[7],
+            b: Vec3::new(x[8], x[9], x[10]),
+            b0: x[11],
+            sure: [x[12], x[13]],
+            half_u: Vec3::new(x[14], x[15], x[16]),
+            half_v: Vec3::new(x[17], x[18], x[19]),
+            keep: [x[20], x[21]],
+            band: 0.0,
+            corners: [Vec3::ZERO; 4],
+            center: Vec3::ZERO,
+        }
+    }
+
+    /// The unit normal of the front.
+    #[inline(always)]
+    pub(crate) fn normal(&self) -> Vec3 {
+        self.n
+    }
+
+    /// A uniformly distributed point, chosen by `u`.
+    #[inline(always)]
+    pub(crate) fn point(&self, u: [f32; 2]) -> Vec3 {
+        onto(self.center + self.half_u * (2.0 * u[0] - 1.0) + self.half_v * (2.0 * u[1] - 1.0), self.n, self.h)
+    }
+
     /// Returns the distance t, whether the ray passes inside the parallelogram or close to its edges, and whether this is
     /// certain. If not, [`Self::edges`] decides. Packets use this function lane by lane.
     #[inline(always)]
@@ -361,10 +405,7 @@ impl Shape {
     #[inline(always)]
     pub(crate) fn point(&self, u: [f32; 2]) -> Vec3 {
         match self {
-            Self::Flat(s) => {
-                let p = s.center + s.half_u * (2.0 * u[0] - 1.0) + s.half_v * (2.0 * u[1] - 1.0);
-                onto(p, s.n, s.h)
-            }
+            Self::Flat(s) => s.point(u),
             Self::Triangle(s) => {
                 let r = u[0].sqrt();
                 let p = s.p[0] * (1.0 - r) + s.p[1] * (r * (1.0 - u[1])) + s.p[2] * (r * u[1]);

@@ -10,6 +10,8 @@ pub type Side = u32;
 pub const LIGHT: Side = 1 << 31;
 /// Denotes a ray that has left the scene; its radiance is that of the sky.
 pub const ESCAPED: Side = u32::MAX;
+/// Denotes a ray that has left a scene without a sky.
+pub(crate) const NOWHERE: Side = u32::MAX - 1;
 
 /// A surface point x with the direction ω in which radiance leaves it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -68,14 +70,18 @@ pub(crate) struct Rays {
     /// The paths in sorted order, the group of each path, and the end of each group in the order.
     pub(crate) order: Vec<u32>,
     pub(crate) group: Vec<u32>,
+    /// The place of each path; `u32::MAX` if it has none.
+    pub(crate) place: Vec<u32>,
     pub(crate) ends: Vec<u32>,
     /// Reflectances of coloured groups, by place.
     pub(crate) colour: Columns,
-    /// Light points by place: unit directions towards them, positions, normals, radiances.
+    /// Light points by place: unit directions towards them, positions, normals, radiances. Or the points, normals and sides
+    /// that rays see.
     pub(crate) to: Columns,
     pub(crate) q: Columns,
     pub(crate) m: Columns,
     pub(crate) radiance: Columns,
+    pub(crate) side: Vec<Side>,
     /// Weights, and whether a sample is not zero, by place.
     pub(crate) value: Columns,
     pub(crate) flag: Vec<u32>,
@@ -85,6 +91,17 @@ pub(crate) struct Rays {
 }
 
 impl Rays {
+    /// The vertex that ray `i` sees.
+    #[inline(always)]
+    pub(crate) fn seen(&self, i: usize) -> Vertex {
+        Vertex { p: self.q.get(i), n: self.m.get(i), omega: -self.d.get(i), side: self.side[i] }
+    }
+
+    /// Number of groups that have a place in the order.
+    pub(crate) fn groups(&self) -> usize {
+        self.ends.windows(2).filter(|w| w[1] > w[0]).count()
+    }
+
     /// Removes the places without a sample from the first `n`, in the same order. Returns their new number.
     pub(crate) fn keep_samples(&mut self, n: usize) -> usize {
         let none = super::NOTHING;
@@ -121,7 +138,15 @@ impl Rays {
         ] {
             *c = Columns::new(n);
         }
-        for c in [&mut self.prim, &mut self.list, &mut self.order, &mut self.group, &mut self.flag] {
+        for c in [
+            &mut self.prim,
+            &mut self.list,
+            &mut self.order,
+            &mut self.group,
+            &mut self.flag,
+            &mut self.side,
+            &mut self.place,
+        ] {
             *c = vec![0; n];
         }
         for c in [&mut self.t, &mut self.cosine, &mut self.ratio, &mut self.share] {

@@ -59,22 +59,23 @@ impl Model for Diffuse {
     /// Without local coordinates: f does not depend on them.
     #[inline(always)]
     fn depart(&self, n: Vec3, _: Vec3, sampling: Sampling, _: TransportMode, u: [f32; 3]) -> Option<Departure> {
-        (self.reflectance != Rgb::ZERO).then(|| {
-            let (direction, weight, pdf) = sample(self.reflectance, n, sampling, [u[0], u[1]]);
-            Departure { direction, normal: n, weight, pdf, delta: false }
-        })
+        let (direction, weight, pdf) = sample(self.reflectance, n, sampling, [u[0], u[1]]);
+        let some = Departure { direction, normal: n, weight, pdf, delta: false };
+        if self.reflectance == Rgb::ZERO { None } else { Some(some) }
     }
     #[inline(always)]
     fn towards(&self, n: Vec3, _: Vec3, to: Vec3, sampling: Sampling, _: TransportMode) -> Option<Towards> {
         let cos = n.dot(to);
         let value = self.reflectance * (FRAC_1_PI * cos);
-        (cos > 0.0).then(|| Towards { value, pdf: sampling.pdf(cos), normal: n })
+        let some = Towards { value, pdf: sampling.pdf(cos), normal: n };
+        if cos > 0.0 { Some(some) } else { None }
     }
     #[inline(always)]
     fn connect(&self, n: Vec3, _: Vec3, to: Vec3, pdf: f32, sampling: Sampling) -> Option<Towards> {
         let cos = n.dot(to);
         let value = self.reflectance * (FRAC_1_PI * cos / pdf);
-        (cos > 0.0 && self.reflectance != Rgb::ZERO).then(|| Towards { value, pdf: sampling.pdf(cos), normal: n })
+        let some = Towards { value, pdf: sampling.pdf(cos), normal: n };
+        if (cos > 0.0) & (self.reflectance != Rgb::ZERO) { Some(some) } else { None }
     }
 }
 

@@ -54,13 +54,16 @@ impl Interface {
     #[inline(always)]
     pub fn refracted(&self, c: f32) -> Option<f32> {
         let g2 = self.e + c * c;
-        (g2 > 0.0).then(|| g2.sqrt())
+        if g2 > 0.0 { Some(g2.sqrt()) } else { None }
     }
 
     /// R: reflectance for incidence at cosine c > 0; 1 under total internal reflection.
     #[inline(always)]
     pub fn reflectance(&self, c: f32) -> f32 {
-        self.refracted(c).map_or(1.0, |g| self.between(c, g))
+        match self.refracted(c) {
+            Some(g) => self.between(c, g),
+            None => 1.0,
+        }
     }
 
     /// R from both cosines c and g/η. Needed when g is known more exactly than c gives it: near the critical angle, g²

@@ -100,7 +100,10 @@ impl Model for RoughDielectric {
         if sampling != Sampling::Bsdf {
             return 0.5 * sampling.pdf(wi.z.abs());
         }
-        self.facet(wo, wi).map_or(0.0, |m| self.density(wo, &m))
+        match self.facet(wo, wi) {
+            Some(m) => self.density(wo, &m),
+            None => 0.0,
+        }
     }
 
     /// Samples a normal visible from ω_o, then reflects there if `u[2]` < p and refracts otherwise. `None` if the result is
@@ -128,7 +131,8 @@ impl Model for RoughDielectric {
         let m = self.facet(wo, wi)?;
         let pdf = self.density(wo, &m);
         let weight = m.share / m.probability * self.facets.lit(wo.z, wi.z.abs()) * self.squeezed(wi, mode);
-        (pdf > 0.0).then_some(BsdfSample { wi, weight: Rgb::splat(weight), pdf, delta: false })
+        let sample = BsdfSample { wi, weight: Rgb::splat(weight), pdf, delta: false };
+        if pdf > 0.0 { Some(sample) } else { None }
     }
 
     fn max_albedo(&self) -> Rgb {

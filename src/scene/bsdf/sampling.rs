@@ -89,6 +89,7 @@ impl BsdfSample {
     /// A sample of the non-delta part. `None` for a direction in the surface, or where the density is 0.
     #[inline(always)]
     pub(super) fn of(wi: Vec3, f: Rgb, pdf: f32) -> Option<Self> {
-        (wi.z != 0.0 && pdf > 0.0).then(|| Self { wi, weight: f * (wi.z.abs() / pdf), pdf, delta: false })
+        let sample = Self { wi, weight: f * (wi.z.abs() / pdf), pdf, delta: false };
+        if (wi.z != 0.0) & (pdf > 0.0) { Some(sample) } else { None }
     }
 }

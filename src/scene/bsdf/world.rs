@@ -74,5 +74,6 @@ pub(super) fn towards(
     let (wo, wi) = (frame.local(omega), frame.local(to));
     let value = f.eval(wo, wi, mode) * wi.z.abs();
     let normal = if wi.z > 0.0 { n } else { -n };
-    (value != Rgb::ZERO).then(|| Towards { value, pdf: f.pdf(wo, wi, sampling), normal })
+    // not `bool::then`: its closure would not be compiled for the lanes
+    if value == Rgb::ZERO { None } else { Some(Towards { value, pdf: f.pdf(wo, wi, sampling), normal }) }
 }

@@ -28,7 +28,7 @@
 //! Greg Humphreys, *Physically Based Rendering* (4th ed. 2023), sec. 12.5 (infinite area lights).
 
 use super::mirror_ball::lat_long;
-use crate::math::{Rgb, distribution::Table, luminance};
+use crate::math::{Rgb, direction::uniform_sphere, distribution::Table, luminance};
 use crate::scene::{description::Sky, raster::Raster};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -100,6 +100,10 @@ impl Environment {
     /// A sampled unit direction towards the sky, and its density in sr⁻¹ (never 0).
     pub fn sample(&self, u: [f32; 2]) -> (Vec3, f32) {
         let [w, h] = self.image.size;
+        if [w, h] == [1, 1] {
+            // one texel has no edges to keep away from
+            return (uniform_sphere(u), self.density([0, 0]));
+        }
         let ([column, row], rest) = self.table.sample(u);
         // the centre of the interval of length 2⁻²⁴ that the number represents
         let [across, down] = rest.map(|t| f64::from(t) + 0.5 / f64::from(1 << 24));
