@@ -92,7 +92,7 @@ fn rays(scene: &Scene, description: &Description, n: usize) -> Vec<Ray> {
         let mut pick = |n: usize| (next() * n as f32) as usize % n;
         let (at, from) = (&points[pick(points.len())], &points[pick(points.len())]);
         let (k, m, sign) = (pick(at.len()), pick(3), [1.0, -1.0][pick(2)]);
-        let target = if i % 2 == 0 { at[k] } else { 0.5 * (at[k] + at[(k + 1) % at.len()]) };
+        let target = if i.is_multiple_of(2) { at[k] } else { 0.5 * (at[k] + at[(k + 1) % at.len()]) };
         let axis = Vec3::AXES[m] * sign;
         let free = size * (2.0 * Vec3::new(next(), next(), next()) - 1.0);
         match i % 7 {

@@ -83,3 +83,69 @@ impl Block {
         self.meet(l, o, d, BELOW_ONE).0 != 0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::shape::Shape;
+    use super::super::lanes::{InstructionSet, Task};
+    use super::*;
+    use crate::scene::Primitive;
+    use glam::DVec3;
+
+    struct Meet<'a>(&'a Block, Vec3, Vec3);
+
+    impl Task for Meet<'_> {
+        type Output = (u32, [f32; N]);
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> Self::Output {
+            self.0.meet(l, self.1, self.2, f32::MAX)
+        }
+    }
+
+    /// Every lane gives the bits of [`Triangle::meet`], also for triangles without an inside and where volumes are too large
+    /// for a number.
+    #[test]
+    fn lanes_give_the_bits_of_single_triangles() {
+        let mut next = {
+            let mut seed = 1u32;
+            move || {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                f64::from(seed >> 8) / f64::from(1 << 24) - 0.5
+            }
+        };
+        let mut met = [0; 3];
+        for i in 0..60_000 {
+            let size = [1.0, 1e-9, 1e13][i % 3];
+            let mut v = || size * DVec3::new(next(), next(), next());
+            let (o, d) = (v(), v());
+            let mut block = Block::EMPTY;
+            let triangles: Vec<Triangle> = (0..i % (N + 1))
+                .map(|k| {
+                    let corner = v();
+                    let corners = match k {
+                        0 => [corner, corner, corner],
+                        1 => [corner, v(), corner],
+                        // corners on the ray
+                        2 => [o + 0.5 * d, o + d, v()],
+                        _ => [corner, v(), v()],
+                    };
+                    let Shape::Triangle(t) = Shape::new(&Primitive::Triangle(corners), 0.0) else { unreachable!() };
+                    block.put(k, k as u32, &t);
+                    t
+                })
+                .collect();
+            let (o, d) = (o.as_vec3(), d.as_vec3());
+            for set in [InstructionSet::Plain, InstructionSet::avx2(), InstructionSet::best()] {
+                let (bits, t) = set.run(Meet(&block, o, d));
+                assert_eq!(bits >> triangles.len(), 0, "a free place is met");
+                for (k, triangle) in triangles.iter().enumerate() {
+                    let (truth, hit) = triangle.meet(o, d);
+                    assert_eq!(bits >> k & 1 == 1, hit, "{triangle:?}, {o}, {d}");
+                    assert!(!hit || t[k].to_bits() == truth.to_bits(), "{triangle:?}, {o}, {d}: {truth}, {}", t[k]);
+                    met[i % 3] += usize::from(hit);
+                }
+            }
+        }
+        assert!(met.iter().all(|n| *n > 1000), "{met:?} hits");
+    }
+}
