@@ -13,13 +13,13 @@ use fredholm::scene::{Description, Scene};
 use glam::{DVec3, Vec3};
 
 /// A ray: origin and direction.
-pub type Ray = (Vec3, Vec3);
+pub(crate) type Ray = (Vec3, Vec3);
 
 /// Rays per batch: as many as a wave of paths has.
-pub const BATCH: usize = 1024;
+pub(crate) const BATCH: usize = 1024;
 
 /// A reproducible stream of numbers in [0, 1).
-pub fn random(seed: u64) -> impl FnMut() -> f32 {
+pub(crate) fn random(seed: u64) -> impl FnMut() -> f32 {
     let mut state = seed;
     move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -52,7 +52,7 @@ fn cube(m: usize, to: impl Fn(DVec3) -> DVec3) -> Geometry {
 }
 
 /// A cube with three dented balls in it, of about this many triangles: a tenth in the walls.
-pub fn room(triangles: usize) -> Description {
+pub(crate) fn room(triangles: usize) -> Description {
     let m = |share: f64| (share * triangles as f64 / 12.0).sqrt().round().max(1.0) as usize;
     let ball = |centre: DVec3, radius: f64, waves: f64| {
         cube(m(0.3), move |p| {
@@ -85,17 +85,17 @@ pub fn room(triangles: usize) -> Description {
 }
 
 /// Rays of one kind.
-pub struct Set {
+pub(crate) struct Set {
     /// Their name.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// True if any hit before t = 1 is asked for, not the first.
-    pub any: bool,
+    pub(crate) any: bool,
     /// The rays.
-    pub rays: Vec<Ray>,
+    pub(crate) rays: Vec<Ray>,
 }
 
 /// About `n` rays of every kind.
-pub fn sets(scene: &Scene, n: usize) -> [Set; 4] {
+pub(crate) fn sets(scene: &Scene, n: usize) -> [Set; 4] {
     let corners = triangles(scene);
     let mut next = random(1);
     let side = (n as f64).sqrt() as usize;
@@ -120,7 +120,7 @@ pub fn sets(scene: &Scene, n: usize) -> [Set; 4] {
 }
 
 /// Cosine-distributed rays from where these rays arrive, in the same order.
-pub fn bounces(scene: &Scene, corners: &[[Vec3; 3]], rays: &[Ray], next: &mut impl FnMut() -> f32) -> Vec<Ray> {
+pub(crate) fn bounces(scene: &Scene, corners: &[[Vec3; 3]], rays: &[Ray], next: &mut impl FnMut() -> f32) -> Vec<Ray> {
     let mut out = vec![];
     for rays in rays.chunks(BATCH) {
         let mut batch = RayBatch::new(rays);
@@ -139,10 +139,10 @@ pub fn bounces(scene: &Scene, corners: &[[Vec3; 3]], rays: &[Ray], next: &mut im
 }
 
 /// Something to measure, with its name.
-pub type Work<'a> = (String, Box<dyn FnMut() + 'a>);
+pub(crate) type Work<'a> = (String, Box<dyn FnMut() + 'a>);
 
 /// Median CPU seconds of every work, in interleaved rounds, and the median ratio of the first to each.
-pub fn medians(rounds: usize, works: &mut [Work<'_>]) -> Vec<[f64; 2]> {
+pub(crate) fn medians(rounds: usize, works: &mut [Work<'_>]) -> Vec<[f64; 2]> {
     let mut times = vec![vec![]; works.len()];
     for _ in 0..rounds {
         for (times, (_, work)) in times.iter_mut().zip(works.iter_mut()) {
@@ -160,7 +160,7 @@ pub fn medians(rounds: usize, works: &mut [Work<'_>]) -> Vec<[f64; 2]> {
 }
 
 /// CPU seconds of this thread so far.
-pub fn cpu_seconds() -> f64 {
+pub(crate) fn cpu_seconds() -> f64 {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("Linux counts CPU time");
     let ns = text.split_whitespace().next().and_then(|w| w.parse::<f64>().ok());
     ns.expect("the first number of schedstat is CPU time in ns") * 1e-9

@@ -136,6 +136,9 @@ impl Collapse<'_> {
             }
             parts.clear();
             self.cut(n, N, &mut parts);
+            // large boxes first: they are the most likely to block a segment
+            let area = |n: &usize| self.bvh.nodes[*n].aabb().half_area();
+            parts.sort_by(|a, b| area(b).total_cmp(&area(a)));
             for (i, &c) in parts.iter().enumerate() {
                 let b = self.bvh.nodes[c].aabb();
                 for axis in 0..3 {
