@@ -123,19 +123,20 @@ fn compare(scene: &Scene, sets: &[Set; 4], n: usize) {
     }
 }
 
-/// Packets and tree on small scenes, in ns per ray.
+/// Packets and tree on small scenes, in ns per ray. Each round repeats the rays, since CPU time counts in steps of some ms.
 fn crossover() {
-    for size in [12, 48, 96, 192, 384, 768] {
+    const TIMES: usize = 20;
+    for size in [12, 96, 240, 480] {
         let scene = Scene::new(&room(size));
         let shapes = triangles(&scene).len();
-        for set in &sets(&scene, 100_000) {
+        for set in &sets(&scene, 50_000) {
             let mut all = [batches(&set.rays), batches(&set.rays)];
             let [packets, tree] = &mut all;
             let mut works: Vec<Work<'_>> = vec![
-                ("packets".into(), Box::new(|| trace(&scene, packets, set.any, Way::Packets))),
-                ("tree".into(), Box::new(|| trace(&scene, tree, set.any, Way::Tree))),
+                ("packets".into(), Box::new(|| (0..TIMES).for_each(|_| trace(&scene, packets, set.any, Way::Packets)))),
+                ("tree".into(), Box::new(|| (0..TIMES).for_each(|_| trace(&scene, tree, set.any, Way::Tree)))),
             ];
-            let found = medians(ROUNDS, &mut works).into_iter().map(|[t, _]| t * 1e9 / set.rays.len() as f64);
+            let found = medians(ROUNDS, &mut works).into_iter().map(|[t, _]| t * 1e9 / (TIMES * set.rays.len()) as f64);
             let [p, t] = found.collect::<Vec<f64>>()[..] else { unreachable!() };
             println!("{shapes:5} triangles, {:10} packets {p:7.1} ns, tree {t:7.1} ns", set.name);
         }

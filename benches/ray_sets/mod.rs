@@ -159,7 +159,7 @@ pub(crate) fn medians(rounds: usize, works: &mut [Work<'_>]) -> Vec<[f64; 2]> {
     times.iter().map(|v| [median(v.clone()), ratios(v)]).collect()
 }
 
-/// CPU seconds of this thread so far.
+/// CPU seconds of this thread so far. The system counts in steps of some ms, so a round should take 0.1 s or more.
 pub(crate) fn cpu_seconds() -> f64 {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("Linux counts CPU time");
     let ns = text.split_whitespace().next().and_then(|w| w.parse::<f64>().ok());
