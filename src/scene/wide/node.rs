@@ -11,9 +11,9 @@
 //! | p_a, q_a | the planes of the box that the ray meets first and last on axis a | [`Node::planes`] |
 //! | t_max | how far to look | [`FARTHEST`] at first |
 //!
-//! **No hit is lost.** The boxes are enlarged ([`widened`](super::super::accel::widened)), and `far` is enlarged by more than the rounding of both sides: each
-//! quotient is rounded three times. A component of d that is almost zero is replaced by [`LEAST`]. Then no quotient is 0 · ∞,
-//! and the ray moves less than the margin of a box by it.
+//! **No hit is lost.** The boxes are enlarged (`accel::widened`), and `far` is enlarged by more than the rounding of both
+//! sides: each quotient is rounded three times. A component of d that is almost zero is replaced by [`LEAST`]. Then no
+//! quotient is 0 · ∞, and the ray moves by less than the margin of a box.
 //!
 //! Reference: Ize, *Robust BVH Ray Traversal* (2013).
 
