@@ -1,18 +1,22 @@
 //! Ray tracing with a tree of boxes: the first surface on a ray, and a test whether a segment is free.
 //!
-//! The module wraps the two-wide BVH of the crate `obvhs` over [`Shape`](super::shape::Shape)s. The crate's compressed wide
-//! BVH is faster on large meshes but loses hits on axis-aligned boxes, so it is not used. If two primitives are hit at the
-//! same distance, the one with the lower number is returned, whatever the order of traversal.
+//! The tree is [`wide`](super::wide). If two primitives are hit at the same distance, the one with the lower number is
+//! returned, whatever the order of traversal. A wave of rays shares one choice of the instruction set and one stack.
 
 use super::rounding::{EPSILON, WIDER};
 use super::shape::{Hit, Shape};
+use super::vertex::Rays;
+use super::wide::{InstructionSet, Lanes, Task, Wide};
 use glam::{DVec3, Vec3};
-use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2, ray::Ray};
 
 pub(crate) struct Accel {
     pub(crate) shapes: Vec<Shape>,
-    bvh: Bvh2,
+    wide: Wide,
+    best: InstructionSet,
 }
+
+/// Room for the stack of a single ray on the stack of the program: enough for trees of millions of primitives.
+const ROOM: usize = 96;
 
 /// The bounding box of a primitive, enlarged so that the rounding of the box test never loses a hit. The margin is 4 ε times
 /// the largest coordinate from which a ray may start, plus the distance by which hits may lie beyond the edges of the
@@ -27,46 +31,112 @@ pub(crate) fn widened([low, high]: [DVec3; 2], farthest: f64, touch: f64) -> [Ve
 impl Accel {
     /// Builds the tree; `bounds` are the [`widened`] boxes of the shapes.
     pub(crate) fn new(shapes: Vec<Shape>, bounds: &[[Vec3; 2]]) -> Self {
-        let boxes: Vec<Aabb> = bounds.iter().map(|b| Aabb::new(b[0].into(), b[1].into())).collect();
-        let bvh = obvhs::bvh2::builder::build_bvh2(
-            &boxes,
-            BvhBuildParams::medium_build(),
-            &mut std::time::Duration::default(),
-        );
-        Self { shapes, bvh }
+        let wide = Wide::new(&shapes, bounds);
+        Self { shapes, wide, best: InstructionSet::best() }
     }
 
     /// The nearest hit with t > 0 on the ray `o + t·d`.
-    #[inline(always)]
     pub(crate) fn closest(&self, o: Vec3, d: Vec3) -> Hit {
-        let mut best = Hit::NONE;
-        let mut scratch = obvhs::ray::RayHit::none();
-        self.bvh.ray_traverse(Ray::new(o.into(), d.into(), 0.0, f32::INFINITY), &mut scratch, |_, i| {
-            let prim = self.bvh.primitive_indices[i];
-            let (t, met) = self.shapes[prim as usize].meet(o, d);
-            if met && (t < best.t || (t == best.t && prim < best.prim)) {
-                best = Hit { t, prim };
-                // slightly more than t, so that a hit at the same t with a lower number is still visited
-                return t * (1.0 + 1e-6);
-            }
-            f32::INFINITY
-        });
-        best
-    }
-
-    pub(crate) fn closest_wave(&self, rays: &mut super::Rays, n: usize) {
-        for i in 0..n {
-            let hit = self.closest(rays.o.get(i), rays.d.get(i));
-            (rays.t[i], rays.prim[i]) = (hit.t, hit.prim);
-        }
+        self.best.run(Closest { accel: self, o, d })
     }
 
     /// Returns true if a primitive lies on `o + t·d` with 0 < t < 1.
-    #[inline(always)]
     pub(crate) fn occluded(&self, o: Vec3, d: Vec3) -> bool {
-        !self.bvh.ray_traverse_miss(Ray::new(o.into(), d.into(), 0.0, 1.0), |_, i| {
-            let (t, met) = self.shapes[self.bvh.primitive_indices[i] as usize].meet(o, d);
-            if met && t < 1.0 { t } else { f32::INFINITY }
-        })
+        self.best.run(Occluded { accel: self, o, d })
+    }
+
+    /// The nearest hits of the first `n` rays: writes `rays.t` and `rays.prim`, which is `u32::MAX` if there is none.
+    pub(crate) fn closest_wave(&self, rays: &mut Rays, n: usize) {
+        self.closest_wave_by(self.best, rays, n);
+    }
+
+    /// The same with the instructions of `set`.
+    pub(crate) fn closest_wave_by(&self, set: InstructionSet, rays: &mut Rays, n: usize) {
+        set.run(ClosestWave { accel: self, rays, n });
+    }
+
+    /// For each ray in the first `n` entries of `rays.list`: sets `rays.prim[ray]` to 1 if a primitive lies on `o + t·d` with
+    /// 0 < t < 1, else to 0.
+    pub(crate) fn occluded_wave(&self, rays: &mut Rays, n: usize) {
+        self.occluded_wave_by(self.best, rays, n);
+    }
+
+    /// The same with the instructions of `set`.
+    pub(crate) fn occluded_wave_by(&self, set: InstructionSet, rays: &mut Rays, n: usize) {
+        set.run(OccludedWave { accel: self, rays, n });
+    }
+}
+
+struct Closest<'a> {
+    accel: &'a Accel,
+    o: Vec3,
+    d: Vec3,
+}
+
+impl Task for Closest<'_> {
+    type Output = Hit;
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> Hit {
+        let Self { accel: Accel { shapes, wide, .. }, o, d } = self;
+        if wide.waiting <= ROOM {
+            return wide.closest(l, shapes, o, d, &mut [0; ROOM]);
+        }
+        wide.closest(l, shapes, o, d, &mut vec![0; wide.waiting])
+    }
+}
+
+struct Occluded<'a> {
+    accel: &'a Accel,
+    o: Vec3,
+    d: Vec3,
+}
+
+impl Task for Occluded<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> bool {
+        let Self { accel: Accel { shapes, wide, .. }, o, d } = self;
+        if wide.waiting <= ROOM {
+            return wide.occluded(l, shapes, o, d, &mut [0; ROOM]);
+        }
+        wide.occluded(l, shapes, o, d, &mut vec![0; wide.waiting])
+    }
+}
+
+struct ClosestWave<'a> {
+    accel: &'a Accel,
+    rays: &'a mut Rays,
+    n: usize,
+}
+
+impl Task for ClosestWave<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) {
+        let Self { accel: Accel { shapes, wide, .. }, rays, n } = self;
+        let mut stack = vec![0; wide.waiting];
+        for i in 0..n {
+            let hit = wide.closest(l, shapes, rays.o.get(i), rays.d.get(i), &mut stack);
+            (rays.t[i], rays.prim[i]) = (hit.t, hit.prim);
+        }
+    }
+}
+
+struct OccludedWave<'a> {
+    accel: &'a Accel,
+    rays: &'a mut Rays,
+    n: usize,
+}
+
+impl Task for OccludedWave<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) {
+        let Self { accel: Accel { shapes, wide, .. }, rays, n } = self;
+        let mut stack = vec![0; wide.waiting];
+        for &ray in &rays.list[..n] {
+            let ray = ray as usize;
+            rays.prim[ray] = u32::from(wide.occluded(l, shapes, rays.o.get(ray), rays.d.get(ray), &mut stack));
+        }
     }
 }

@@ -36,8 +36,14 @@ impl Scene {
     /// Traces the first `n` rays of a wave in packets. `at(i, vertex)` is called, in ascending order of i, for every ray
     /// that hits a surface.
     #[inline(always)]
-    pub(crate) fn trace_packets(&self, rays: &mut Rays, n: usize, mut at: impl FnMut(usize, Vertex)) {
+    pub(crate) fn trace_packets(&self, rays: &mut Rays, n: usize, at: impl FnMut(usize, Vertex)) {
         packets::closest(&self.accel.shapes, rays, n);
+        self.arrivals(rays, n, at);
+    }
+
+    /// The vertices of the first `n` rays of a wave, from their hits.
+    #[inline(always)]
+    fn arrivals(&self, rays: &Rays, n: usize, mut at: impl FnMut(usize, Vertex)) {
         for i in 0..n {
             if rays.prim[i] != u32::MAX {
                 at(i, self.arrive(rays.o.get(i), rays.d.get(i), shape::Hit { t: rays.t[i], prim: rays.prim[i] }));
@@ -52,27 +58,21 @@ impl Scene {
         packets::occluded(&self.accel.shapes, rays, n);
     }
 
-    /// The same as [`Scene::trace_packets`], but traces rays one by one if the scene is not traced in packets.
-    pub(crate) fn trace_wave(&self, rays: &mut Rays, n: usize, mut at: impl FnMut(usize, Vertex)) {
+    /// The same as [`Scene::trace_packets`], but goes through the tree if the scene is not traced in packets.
+    pub(crate) fn trace_wave(&self, rays: &mut Rays, n: usize, at: impl FnMut(usize, Vertex)) {
         if self.flats.is_some() {
             return self.trace_packets(rays, n, at);
         }
-        for i in 0..n {
-            if let Some(v) = self.trace(rays.o.get(i), rays.d.get(i)) {
-                at(i, v);
-            }
-        }
+        self.accel.closest_wave(rays, n);
+        self.arrivals(rays, n, at);
     }
 
-    /// The same as [`Scene::block_packets`], but tests segments one by one if the scene is not traced in packets.
+    /// The same as [`Scene::block_packets`], but goes through the tree if the scene is not traced in packets.
     pub(crate) fn block_wave(&self, rays: &mut Rays, n: usize) {
         if self.flats.is_some() {
             return self.block_packets(rays, n);
         }
-        for &ray in &rays.list[..n] {
-            let ray = ray as usize;
-            rays.prim[ray] = u32::from(self.accel.occluded(rays.o.get(ray), rays.d.get(ray)));
-        }
+        self.accel.occluded_wave(rays, n);
     }
 
     #[inline(always)]

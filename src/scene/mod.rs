@@ -5,13 +5,15 @@
 //! | notation | type | place |
 //! |---|---|---|
 //! | x, ω | [`Vertex`] | [`vertex`] |
-//! | ray(x, ω) | [`Scene::trace`] | `accel`, `packets`, `shape` |
+//! | ray(x, ω) | [`Scene::trace`] | `accel`, `wide`, `packets`, `shape` |
 //! | f(ω_o, ω_i) | [`Bsdf`] | [`bsdf`] |
 //! | E(x, ω) | [`Scene::emission`], [`Scene::light`] | [`emitter`] |
 //! | W(x, ω) | [`Camera`], [`SurfaceSensor`] | [`sensor`] |
 
 mod accel;
 mod arrive;
+#[doc(hidden)]
+pub mod batch;
 pub mod bsdf;
 pub mod builtin;
 mod cast;
@@ -25,6 +27,7 @@ mod groups;
 mod lighting;
 pub mod load;
 mod packets;
+mod plucker;
 pub mod primitive;
 pub mod raster;
 mod rounding;
@@ -33,6 +36,7 @@ mod shape;
 mod stand_in;
 mod textures;
 pub mod vertex;
+mod wide;
 
 pub use description::{Description, Expect};
 pub use error::SceneError;

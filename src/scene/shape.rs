@@ -15,6 +15,7 @@
 //! cannot leave through a corner. If primitives share corners, the edge test leaves no gap between them, however narrow they
 //! are. No primitive extends beyond its edges, because there it would catch rays that have just left its neighbour.
 
+use super::plucker;
 use super::primitive::Primitive;
 pub(crate) use super::rounding::dot;
 use super::rounding::{KEEP, MOST_KEEP, UNSURE, across, onto};
@@ -29,6 +30,14 @@ pub(crate) struct Hit {
 
 impl Hit {
     pub(crate) const NONE: Self = Self { t: f32::INFINITY, prim: u32::MAX };
+
+    /// Replaces this hit by `new` if that is nearer; of two at the same distance the one with the lower number is kept.
+    #[inline(always)]
+    pub(crate) fn take(&mut self, new: Self) {
+        if new.t < self.t || (new.t == self.t && new.prim < self.prim) {
+            *self = new;
+        }
+    }
 }
 
 #[inline(always)]
@@ -40,7 +49,7 @@ pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
 /// the ends are exchanged.
 #[inline(always)]
 fn edge(a: Vec3, b: Vec3, d: Vec3) -> f32 {
-    dot(cross(a - b, a + b), d)
+    plucker::edge(a.to_array(), b.to_array(), d.to_array())
 }
 
 /// A parallelogram, ready for rays, in the plane `n·p = h`. The coordinates `a·p + a0` and `b·p + b0` run from −1/s to 1/s
@@ -196,9 +205,9 @@ impl Flat {
 /// A triangle with its corners and its plane `n·p = h`, ready for rays.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle {
-    p: [Vec3; 3],
-    n: Vec3,
-    h: f32,
+    pub(crate) p: [Vec3; 3],
+    pub(crate) n: Vec3,
+    pub(crate) h: f32,
     /// M (m) for the edge opposite to each corner.
     keep: [f32; 3],
 }
@@ -219,12 +228,12 @@ impl Triangle {
 
     #[inline(always)]
     pub(crate) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
-        let v = self.p.map(|p| p - o);
-        let w = Vec3::new(edge(v[2], v[1], d), edge(v[0], v[2], d), edge(v[1], v[0], d));
-        let same = ((w.x >= 0.0) & (w.y >= 0.0) & (w.z >= 0.0)) | ((w.x <= 0.0) & (w.y <= 0.0) & (w.z <= 0.0));
+        let ([p, q, r], o, d) = (self.p, o.to_array(), d.to_array());
+        let [u, v, w] = plucker::edges([p.to_array(), q.to_array(), r.to_array()], o, d);
+        let same = ((u >= 0.0) & (v >= 0.0) & (w >= 0.0)) | ((u <= 0.0) & (v <= 0.0) & (w <= 0.0));
         // a triangle that rounding has reduced to a line or a point has no inside
-        let some = (w.x != 0.0) | (w.y != 0.0) | (w.z != 0.0);
-        let t = (self.h - dot(self.n, o)) / dot(self.n, d);
+        let some = (u != 0.0) | (v != 0.0) | (w != 0.0);
+        let t = plucker::distance(self.n.to_array(), self.h, o, d);
         (t, same & some & (t > 0.0) & (t < f32::INFINITY))
     }
 

@@ -1,0 +1,20 @@
+//! A tree of boxes with eight children per node: one ray against eight boxes or eight triangles at once.
+//!
+//! | what | file |
+//! |---|---|
+//! | operations on lanes, and the choice of the instruction set | `lanes` |
+//! | a node: eight boxes | `node` |
+//! | a leaf: eight triangles | `block` |
+//! | how a ray goes through the tree | `tree` |
+//! | building | `build` |
+//!
+//! Shapes that are not triangles are leaves of their own, tested by [`Shape::meet`](super::shape::Shape::meet).
+
+mod block;
+mod build;
+mod lanes;
+mod node;
+mod tree;
+
+pub(crate) use lanes::{InstructionSet, Lanes, Task};
+pub(crate) use tree::Wide;
