@@ -1,7 +1,7 @@
-//! Cost of a path: `cargo bench --bench paths [-- SPP]`, one thread, Cornell box 256×256, k = 0..=8, MIS.
+//! Cost of a path: `cargo bench --bench paths [-- SPP] [NAME]`, one thread, Cornell box 256×256, k = 0..=8, MIS.
 //!
 //! Prints nanoseconds per path, as medians of five interleaved rounds, and the cost of keeping all terms relative to keeping
-//! only their sum.
+//! only their sum. With a name, only the estimators whose names contain it are measured.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
 use fredholm::estimator::render::{Amount, render};
@@ -65,9 +65,12 @@ fn main() {
         "light",
         "bidirectional",
     ];
-    let mut times = names.map(|_| vec![]);
+    let wanted = std::env::args().skip(1).find(|a| !a.starts_with('-') && a.parse::<u32>().is_err());
+    let names = names.into_iter().filter(|name| wanted.as_ref().is_none_or(|w| name.contains(w.as_str())));
+    let names: Vec<&str> = names.collect();
+    let mut times = vec![vec![]; names.len()];
     for _ in 0..5 {
-        for (name, times) in names.iter().zip(&mut times) {
+        for (&name, times) in names.iter().zip(&mut times) {
             times.push(time(name));
         }
     }
@@ -75,10 +78,12 @@ fn main() {
         v.sort_by(f64::total_cmp);
         v[v.len() / 2]
     };
-    let medians = times.each_mut().map(median);
-    for (name, ns) in names.iter().zip(medians) {
+    let medians: Vec<f64> = times.iter_mut().map(median).collect();
+    for (name, ns) in names.iter().zip(&medians) {
         println!("{name:28} {ns:7.0} ns per path");
     }
-    println!("all terms / sum only         {:7.2}", medians[0] / medians[1]);
-    println!("all terms / path tracer      {:7.2}", medians[0] / medians[3]);
+    if wanted.is_none() {
+        println!("all terms / sum only         {:7.2}", medians[0] / medians[1]);
+        println!("all terms / path tracer      {:7.2}", medians[0] / medians[3]);
+    }
 }

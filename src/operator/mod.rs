@@ -22,10 +22,11 @@ pub mod rays;
 mod scene_adjoint;
 mod scene_kernel;
 pub mod scene_transport;
+mod scene_view;
 pub mod surface_strip;
 pub mod transport;
 
-pub use adjoint::{Adjoint, Role};
+pub use adjoint::{Adjoint, Role, Steps};
 pub use kernel::{Factors, Kernel};
 pub use matrix_walk::MatrixWalk;
 pub use scene_transport::SceneTransport;
