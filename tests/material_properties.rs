@@ -14,15 +14,19 @@ mod common;
 mod means;
 #[path = "material_properties/one_path.rs"]
 mod one_path;
+#[path = "material_properties/plain.rs"]
+mod plain;
 
 use common::judge::Jury;
 use common::ledger;
 use common::random::{cases, draw, glass, items, opaque, schedule, world};
 use common::sampling::{Start, Starts, collect, plan};
 use common::scenes::{description, quad, room, sphere};
-use fredholm::estimator::densities::{Node, PathDensities, walk};
+use fredholm::estimator::bidirectional::Found;
 use fredholm::estimator::render::{Amount, render};
-use fredholm::estimator::{Bidirectional, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm, Technique};
+use fredholm::estimator::{
+    Batch, Bidirectional, Job, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm, Technique,
+};
 use fredholm::math::direction::Frame;
 use fredholm::math::{Key, Purpose, Rgb, Rng};
 use fredholm::operator::SurfaceStrip;

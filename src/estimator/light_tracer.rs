@@ -14,62 +14,63 @@
 //! in a mirror or through glass, because a delta vertex cannot be connected to the eye: see `engine::known::unsampled`.
 //! Reference: Arvo, *Backward Ray Tracing* (1986); Dutré, Lafortune, Willems, *Monte Carlo Light Tracing* (1993).
 
+use super::view::Views;
+use super::walk::{LIGHT_STREAM, Walk, names};
 use super::{Job, Paths, Plan, TermEstimator, TermSink};
-use crate::math::{Columns, Key, Purpose, Rgb, Rng};
-use crate::operator::{Adjoint, Role, Sensor};
+use crate::math::{Columns, Key};
+use crate::operator::{Adjoint, Role, Sensor, Wave};
 
 /// The light tracer. It ignores [`Plan::technique`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightTracer(pub Plan);
 
-/// Index of the random stream for walks from the light.
-pub(super) const LIGHT_STREAM: u32 = 0x4c49_4748;
+/// Particles that are followed together.
+const WAVE: usize = 1024;
 
 impl LightTracer {
-    /// Follows one particle. Calls `splat` with the slot, pixel and value of each splat, and `rays` with the slot of each
-    /// ray.
-    fn particle<T: Adjoint>(
+    /// Follows a wave of particles until all have ended. `relative[i]` is the throughput of particle i relative to its first
+    /// step, which the schedule of termination uses.
+    fn follow<T: Adjoint, S: Sensor<T>>(
         &self,
-        t: &T,
-        sensor: &impl Sensor<T>,
-        (key, pixel, sample): (Key, u32, u32),
-        mut splat: impl FnMut(usize, u32, Rgb),
-        mut rays: impl FnMut(usize),
+        job: &Job<'_, T, S>,
+        key: Key,
+        walk: &mut Walk<T::Wave>,
+        (relative, views): (&mut Columns, &mut Views<T::Wave>),
+        sink: &mut impl TermSink,
     ) {
         let Plan { max_bounces, ref roulette, .. } = self.0;
-        let numbers = |vertex: usize, purpose: Purpose| Rng::at(key, pixel, sample, vertex, purpose);
-        let Some((mut y, density)) = t.emit(&mut numbers(0, Purpose::Start)) else { return };
-        let (mut throughput, mut relative, mut role) = (Rgb::splat(1.0 / density), t.lit(), Role::Emission);
+        let t = job.t;
+        relative.fill(walk.n, t.lit());
+        let mut role = Role::Emission;
         for v in 0.. {
+            if walk.n == 0 {
+                break;
+            }
             // connect vertex v to the eye: term v
             let slot = v.min(max_bounces + 1);
-            if let Some(seen) = sensor.project(t, &y) {
-                let value = t.toward(&y, &seen.eye, role).value;
-                if value != Rgb::ZERO {
-                    rays(slot);
-                    if sensor.sees(t, &y) {
-                        splat(slot, seen.pixel, throughput * value * seen.importance);
-                    }
-                }
-            }
+            sink.rays(slot, views.connect(t, job.sensor, walk, role));
+            views.add(&walk.sample, slot, sink);
             if v == max_bounces && !roulette.ends() {
                 break;
             }
             // roulette, once vertex v has been scored; a particle never ends at its start
-            let q = if v == 0 { 0.0 } else { roulette.termination(v, relative, t.albedo(&y)) };
-            if q > 0.0 {
-                if numbers(v, Purpose::Roulette).one() < q {
-                    break;
-                }
-                (throughput, relative) = (throughput / (1.0 - q), relative / (1.0 - q));
+            if v > 0 && !roulette.sleeps(v) {
+                walk.roulette(key, v, |state, i, place| {
+                    let q = roulette.termination(v, relative.get(place), t.albedo(&state.get(i)));
+                    relative.set(place, relative.get(place) / (1.0 - q));
+                    q
+                });
             }
             // y_v → y_{v+1}
-            rays((v + 1).min(max_bounces + 1));
-            let Some(step) = t.walk(&y, role, &mut numbers(v, Purpose::Scatter)) else { break };
-            if role == Role::Flux {
-                relative *= step.weight;
+            sink.rays((v + 1).min(max_bounces + 1), walk.n);
+            walk.step(t, key, role, v);
+            if role == Role::Flux && roulette.ends() {
+                for (i, &place) in walk.place[..walk.n].iter().enumerate() {
+                    let place = place as usize;
+                    relative.set(place, relative.get(place) * walk.steps.weight.get(i));
+                }
             }
-            (throughput, y, role) = (throughput * step.weight, step.state, Role::Flux);
+            role = Role::Flux;
         }
     }
 }
@@ -84,21 +85,14 @@ impl<T: Adjoint> TermEstimator<T> for LightTracer {
     }
 
     fn sample<S: Sensor<T>>(&self, job: &Job<'_, T, S>, _: &mut Paths<T::Wave>, sink: &mut impl TermSink) {
-        let &Job { t, sensor, batch } = job;
-        let [w, h] = sensor.size();
-        let share = 1.0 / (w * h) as f32;
-        let key = batch.key.branch(LIGHT_STREAM);
-        let mut value = Columns::new(1);
-        let mut count = vec![0; self.0.max_bounces + 2];
-        for sample in batch.samples.clone() {
-            for pixel in batch.pixels.clone() {
-                let splat = |slot: usize, seen: u32, v: Rgb| {
-                    value.set(0, v * share);
-                    sink.add(slot, &[seen], &[sample], &value);
-                };
-                self.particle(t, sensor, (key, pixel, sample), splat, |slot| count[slot] += 1);
-            }
+        let key = job.batch.key.branch(LIGHT_STREAM);
+        let (pixel, sample) = names(job.batch);
+        let most = WAVE.min(pixel.len());
+        let (mut walk, mut relative, mut views) = (Walk::new(most), Columns::new(most), Views::new(most));
+        walk.steps.wanted = false;
+        for names in pixel.chunks(WAVE).zip(sample.chunks(WAVE)) {
+            walk.start_at_lights(job.t, key, names);
+            self.follow(job, key, &mut walk, (&mut relative, &mut views), sink);
         }
-        count.iter().enumerate().for_each(|(slot, &n)| sink.rays(slot, n));
     }
 }

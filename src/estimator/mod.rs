@@ -10,6 +10,7 @@
 //! | vertices | as prefix, with separate slots for the hit and the connection of each vertex | [`vertices`] |
 //! | light | all X_k from one particle that starts at a light | [`light_tracer`] |
 //! | bidirectional | every strategy that finds a path from both ends, weighted | [`bidirectional`] |
+//! | pyramid | as bidirectional, with separate slots for each strategy | [`pyramid`] |
 //! | branching | a tree of paths, N children at every vertex | [`branching`] |
 //! | path tracer | only the sum of all terms, by independent code | [`path_tracer`] |
 //! | absorption | one term per path: term k, if the path ends at vertex k | [`absorption`] |
@@ -21,7 +22,7 @@
 pub mod absorption;
 pub mod bidirectional;
 pub mod branching;
-pub mod densities;
+mod densities;
 pub mod equilibrium;
 #[cfg(test)]
 mod example;
@@ -30,15 +31,20 @@ pub mod light_tracer;
 pub mod path_tracer;
 pub mod paths;
 pub mod prefix;
+pub mod pyramid;
 pub mod record;
 pub mod render;
 pub mod roulette;
 pub mod single_term;
+mod splats;
 pub mod technique;
+mod totals;
 pub mod vertices;
+mod view;
+mod walk;
 
 pub use absorption::Absorption;
-pub use bidirectional::{Bidirectional, Pyramid};
+pub use bidirectional::Bidirectional;
 pub use branching::Branching;
 pub use equilibrium::Equilibrium;
 pub use gather::Gather;
@@ -46,6 +52,7 @@ pub use light_tracer::LightTracer;
 pub use path_tracer::PathTracer;
 pub use paths::{Batch, Paths};
 pub use prefix::Prefix;
+pub use pyramid::Pyramid;
 pub use roulette::Roulette;
 pub use single_term::{OneTerm, SingleTerm};
 pub use technique::Technique;

@@ -5,8 +5,9 @@
 //! independent jobs. The samples of a pixel are added in order by one thread, so the sums have the same bits for any number
 //! of threads.
 
-use super::{Batch, Job, Paths, TermEstimator, TermSink};
-use crate::math::{Columns, Key, Rgb};
+use super::totals::Totals;
+use super::{Batch, Job, Paths, TermEstimator, TermSink, splats};
+use crate::math::{Columns, Key};
 use crate::operator::{Sensor, Transport};
 use crate::progress::Progress;
 use crate::terms::film::{BLOCK, FilmBlock, Shape, TermFilm};
@@ -126,97 +127,9 @@ fn pass<T: Transport>(
     };
     if estimator.splats() {
         film.shared = true;
-        return splat(t, sensor, estimator, key, samples, film, progress);
+        return splats::pass(t, sensor, estimator, key, samples, film, progress);
     }
     let parts = sums.zip(squares).zip(counts).enumerate().map_init(Paths::default, job);
     let totals = parts.reduce(|| Totals::new(shape.slots), Totals::plus);
-    film.rays.iter_mut().zip(&totals.rays).for_each(|(all, more)| *all += more);
-    film.largest.iter_mut().zip(&totals.largest).for_each(|(all, more)| all.merge(more));
-    film.non_finite += totals.non_finite;
-}
-
-/// Totals that a job counts besides the part of the film that it fills.
-struct Totals {
-    rays: Vec<u64>,
-    non_finite: u64,
-    largest: Vec<Largest>,
-}
-
-impl Totals {
-    fn new(slots: usize) -> Self {
-        Self { rays: vec![0; slots], non_finite: 0, largest: vec![Largest::default(); slots] }
-    }
-
-    /// Adds two totals. The result does not depend on the order.
-    fn plus(mut self, other: Self) -> Self {
-        self.rays.iter_mut().zip(&other.rays).for_each(|(a, b)| *a += b);
-        self.largest.iter_mut().zip(&other.largest).for_each(|(a, b)| a.merge(b));
-        self.non_finite += other.non_finite;
-        self
-    }
-}
-
-/// Contributions of one job to pixels anywhere on the film.
-#[derive(Default)]
-struct Splats {
-    /// Slot, pixel, sample, value.
-    list: Vec<(u32, u32, u32, Rgb)>,
-    rays: Vec<u64>,
-}
-
-impl TermSink for Splats {
-    fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
-        for i in 0..pixel.len() {
-            let v = value.get(i);
-            if v != Rgb::ZERO {
-                self.list.push((slot as u32, pixel[i], sample[i], v));
-            }
-        }
-    }
-    fn rays(&mut self, slot: usize, rays: usize) {
-        self.rays[slot] += rays as u64;
-    }
-}
-
-/// Blocks whose splats are held in memory at once.
-const AT_ONCE: usize = 32;
-
-/// A pass of an estimator that adds to any pixel. Blocks run in parallel, and their splats are added in the order of the
-/// blocks.
-#[allow(clippy::too_many_arguments)] // for the same reason as `pass`
-fn splat<T: Transport>(
-    t: &T,
-    sensor: &impl Sensor<T>,
-    estimator: &impl TermEstimator<T>,
-    key: Key,
-    samples: std::ops::Range<u32>,
-    film: &mut TermFilm,
-    progress: Progress<'_>,
-) {
-    let (shape, pixels) = (film.shape, film.shape.pixels() as u32);
-    let blocks: Vec<u32> = (0..pixels).step_by(BLOCK).collect();
-    // a half-finished sample would darken every pixel, so each sample is done completely or not at all; the first pass
-    // always finishes, because replicates without samples would give errors of 0
-    let may_stop = samples.start > 0;
-    for sample in samples {
-        if may_stop && progress.stopped() {
-            return;
-        }
-        for some in blocks.chunks(AT_ONCE) {
-            let job = |paths: &mut Paths<T::Wave>, &first: &u32| {
-                let mut splats = Splats { rays: vec![0; shape.slots], ..Splats::default() };
-                let pixels = first..(first + BLOCK as u32).min(pixels);
-                progress.advance(u64::from(pixels.end - pixels.start));
-                let batch = &Batch { key, pixels, samples: sample..sample + 1 };
-                estimator.sample(&Job { t, sensor, batch }, paths, &mut splats);
-                splats
-            };
-            let done: Vec<Splats> = some.par_iter().map_init(Paths::default, job).collect();
-            for splats in done {
-                splats.list.iter().for_each(|&(slot, pixel, sample, v)| film.splat(slot, pixel, sample, v));
-                film.rays.iter_mut().zip(&splats.rays).for_each(|(all, more)| *all += more);
-            }
-        }
-        film.samples.iter_mut().for_each(|n| *n += 1);
-    }
+    totals.add_to(film);
 }

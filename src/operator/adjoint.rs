@@ -19,8 +19,8 @@
 //! Densities are per unit of the state's own measure: area on a surface, solid angle for the sky, probability for a point
 //! light, for a direction light or for a row of a matrix. Reference: Veach (1997), ch. 8 and 10; Arvo (1995), ch. 6.
 
-use super::Transport;
-use crate::math::{Rgb, Rng};
+use super::{Transport, Wave};
+use crate::math::{Columns, Rgb, Rng, Streams, columns};
 
 /// The quantity that a walk transports when it leaves a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +55,33 @@ pub struct Toward {
     pub density: f32,
 }
 
+/// The steps of a wave of walks: [`AdjointStep`] in columns, without the states.
+#[derive(Clone, Debug, Default)]
+pub struct Steps {
+    /// Kernel divided by density.
+    pub weight: Columns,
+    /// Density of the step; for a start at a light, the density of the start.
+    pub density: Vec<f32>,
+    /// For a delta step, the probability with which it was chosen; 0 for every other step.
+    pub choice: Vec<f32>,
+    /// False if the densities of steps are not needed, so that they need not be computed.
+    pub wanted: bool,
+}
+
+impl Steps {
+    /// Room for the steps of `n` walks.
+    pub fn new(n: usize) -> Self {
+        Self { weight: Columns::new(n), density: vec![0.0; n], choice: vec![0.0; n], wanted: true }
+    }
+
+    /// Keeps only the steps listed in `indices` (ascending).
+    pub fn keep(&mut self, indices: &[u32]) {
+        self.weight.keep(indices);
+        columns::keep(&mut self.density, indices);
+        columns::keep(&mut self.choice, indices);
+    }
+}
+
 /// A transport that can also be walked from the lights.
 pub trait Adjoint: Transport {
     /// Samples a state where light starts, and returns it with its density.
@@ -78,7 +105,83 @@ pub trait Adjoint: Transport {
     fn link(&self, eye: &Self::State, light: &Self::State) -> f32;
 
     /// Density of the step from `at` to `to` on a walk that came from `from`.
+    #[inline(always)]
     fn density(&self, from: &Self::State, at: &Self::State, to: &Self::State, role: Role) -> f32 {
         self.toward(&self.facing(at, from), to, role).density
+    }
+
+    /// [`Adjoint::toward`] between the last states of two walks: from the eye's to the light's, and back.
+    #[inline(always)]
+    fn both_ways(&self, eye: &Self::State, light: &Self::State) -> (Toward, Toward) {
+        (self.toward(eye, light, Role::Radiance), self.toward(light, eye, Role::Flux))
+    }
+
+    /// Returns true if scattering at this state does not depend on where the walk came from, as on a Lambertian surface: then
+    /// [`Adjoint::density`] is the same for every `from` on the side of the state.
+    fn forgets(&self, _at: &Self::State) -> bool {
+        false
+    }
+
+    /// Samples a start at a light for every walk i of a wave, and its density. The indices of the walks that have one are
+    /// pushed to `alive` in ascending order. An override of this method or of the next three must return the same bits as the
+    /// default, which handles one walk after the other.
+    fn emit_wave(&self, wave: &mut Self::Wave, streams: Streams, out: &mut Steps, alive: &mut Vec<u32>) {
+        for i in 0..streams.len() {
+            if let Some((state, density)) = self.emit(&mut streams.rng(i)) {
+                wave.set(i, state);
+                out.density[i] = density;
+                alive.push(i as u32);
+            }
+        }
+    }
+
+    /// One step of every walk i: the new state replaces the old one. Densities are set where `out.wanted` is true. The indices of the walks that continue are pushed to
+    /// `alive` in ascending order.
+    fn walk_wave(&self, wave: &mut Self::Wave, role: Role, streams: Streams, out: &mut Steps, alive: &mut Vec<u32>) {
+        for i in 0..streams.len() {
+            if let Some(s) = self.walk(&wave.get(i), role, &mut streams.rng(i)) {
+                wave.set(i, s.state);
+                out.weight.set(i, s.weight);
+                (out.density[i], out.choice[i]) = (s.density, s.delta.unwrap_or(0.0));
+                alive.push(i as u32);
+            }
+        }
+    }
+
+    /// Connects every state i to a newly chosen state on a light, as [`Transport::connect`] does: the state is stored in
+    /// `found`, and the weight of the step in `weight`. The indices of the connections are pushed to `alive` in ascending
+    /// order.
+    fn choose_wave(
+        &self,
+        wave: &mut Self::Wave,
+        streams: Streams,
+        found: &mut Self::Wave,
+        weight: &mut Columns,
+        alive: &mut Vec<u32>,
+    ) {
+        for i in 0..streams.len() {
+            if let Some(s) = self.connect(&wave.get(i), &mut streams.rng(i)) {
+                found.set(i, s.state);
+                weight.set(i, s.weight);
+                alive.push(i as u32);
+            }
+        }
+    }
+
+    /// Sets `factor[i]` to [`Adjoint::link`] of the pair (eye i, light i) for every i in `list`, and removes the pairs that
+    /// do not see each other from the list. `scratch` is a wave whose states are not used.
+    fn link_wave(
+        &self,
+        eye: &Self::Wave,
+        light: &Self::Wave,
+        _scratch: &mut Self::Wave,
+        list: &mut Vec<u32>,
+        factor: &mut [f32],
+    ) {
+        list.retain(|&i| {
+            let i = i as usize;
+            factor[i] = self.link(&eye.get(i), &light.get(i));
+            factor[i] > 0.0
+        });
     }
 }

@@ -22,11 +22,12 @@ pub mod rays;
 mod scene_adjoint;
 mod scene_kernel;
 pub mod scene_transport;
+mod scene_view;
 mod scene_waves;
 pub mod surface_strip;
 pub mod transport;
 
-pub use adjoint::{Adjoint, Role};
+pub use adjoint::{Adjoint, Role, Steps};
 pub use kernel::{Factors, Kernel};
 pub use matrix_walk::MatrixWalk;
 pub use scene_transport::SceneTransport;

@@ -9,15 +9,14 @@
 //!
 //! Reference: Veach (1997), ch. 8; Pharr, Jakob, Humphreys, *Physically Based Rendering* (3rd ed. 2016), ch. 16.
 
-use super::adjoint::{Adjoint, AdjointStep, Role, Toward};
+use super::adjoint::{Adjoint, AdjointStep, Role, Steps, Toward};
 use super::scene_transport::SceneTransport;
-use super::transport::Seen;
 use crate::math::direction::{about, cos_sin_turn, cosine_hemisphere, uniform_sphere};
-use crate::math::{Rgb, Rng};
+use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::scene::bsdf::dielectric::Dielectric;
-use crate::scene::bsdf::{Bsdf, TransportMode};
-use crate::scene::{Camera, ESCAPED, Vertex, emitter::Light, offset_origin};
-use glam::{DVec3, Vec3};
+use crate::scene::bsdf::{Bsdf, Departure, Sampling, TransportMode, diffuse::Diffuse};
+use crate::scene::{ESCAPED, Vertex, VertexWave, cosine_directions, emitter::Light, numbers, offset_origin, segment};
+use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 impl Role {
@@ -28,11 +27,13 @@ impl Role {
 
 impl SceneTransport<'_> {
     /// Returns true if light from this state arrives in parallel: a direction light or the sky.
-    fn parallel(&self, at: &Vertex) -> bool {
+    #[inline(always)]
+    pub(super) fn parallel(&self, at: &Vertex) -> bool {
         !at.on_surface() && !matches!(self.scene.light_of(at), Some(Light::Point { .. }))
     }
 
     /// Unit direction from `at` to `to`.
+    #[inline(always)]
     fn direction(&self, at: &Vertex, to: &Vertex) -> Vec3 {
         if self.parallel(to) {
             -to.omega
@@ -44,6 +45,7 @@ impl SceneTransport<'_> {
     }
 
     /// Solid angle at `at` per unit of the measure of `to`; 0 for a light that no ray can hit.
+    #[inline(always)]
     fn angle(&self, at: &Vertex, to: &Vertex, direction: Vec3) -> f32 {
         match to.side {
             ESCAPED => 1.0,
@@ -58,10 +60,12 @@ impl Adjoint for SceneTransport<'_> {
         self.scene.emit(rng.four())
     }
 
+    #[inline(always)]
     fn emit_density(&self, at: &Vertex) -> f32 {
         self.scene.emit_density(at)
     }
 
+    #[inline(always)]
     fn connect_density(&self, from: &Vertex, at: &Vertex) -> f32 {
         match self.scene.cone_pdf(from.p, at) {
             Some(pdf) => pdf * self.angle(from, at, self.direction(from, at)),
@@ -71,26 +75,14 @@ impl Adjoint for SceneTransport<'_> {
 
     fn walk(&self, at: &Vertex, role: Role, rng: &mut Rng) -> Option<AdjointStep<Vertex>> {
         let u = rng.four();
-        if role == Role::Emission {
-            return self.shine(at, u);
-        }
-        let d = self.depart(at, role.mode(), u)?;
-        let o = offset_origin(at.p, d.normal);
-        let seen =
-            if role == Role::Radiance { self.scene.look(o, d.direction) } else { self.scene.trace(o, d.direction) };
+        let d = self.leave(at, role, u)?;
+        let seen = if role == Role::Radiance { self.scene.look(d.o, d.d) } else { self.scene.trace(d.o, d.d) };
         let state = seen?;
-        let delta = d.delta.then_some(d.pdf);
-        let density = match delta {
-            Some(choice) => self.delta_density(at, &state, choice),
-            // take the density for the pair of points, as every other strategy does; if rounding makes it zero, take the
-            // density of the sampled direction
-            None => Some(self.toward(at, &state, role).density)
-                .filter(|density| *density > 0.0)
-                .unwrap_or_else(|| d.pdf * self.angle(at, &state, d.direction)),
-        };
-        Some(AdjointStep { state, weight: d.weight, density, delta })
+        let density = self.arrived(at, &state, role, &d);
+        Some(AdjointStep { state, weight: d.weight, density, delta: d.delta.then_some(d.pdf) })
     }
 
+    #[inline(always)]
     fn toward(&self, at: &Vertex, to: &Vertex, role: Role) -> Toward {
         let direction = self.direction(at, to);
         if role == Role::Emission {
@@ -115,6 +107,7 @@ impl Adjoint for SceneTransport<'_> {
         }
     }
 
+    #[inline(always)]
     fn delta_density(&self, at: &Vertex, to: &Vertex, choice: f32) -> f32 {
         let direction = self.direction(at, to);
         let cos = at.n.dot(direction);
@@ -127,6 +120,7 @@ impl Adjoint for SceneTransport<'_> {
         choice * relative * cos.abs() * self.angle(at, to, direction)
     }
 
+    #[inline(always)]
     fn facing(&self, at: &Vertex, other: &Vertex) -> Vertex {
         if !at.on_surface() {
             return *at;
@@ -139,27 +133,160 @@ impl Adjoint for SceneTransport<'_> {
         }
     }
 
-    fn link(&self, eye: &Vertex, light: &Vertex) -> f32 {
-        let to = self.direction(eye, light);
-        let side = |v: &Vertex, d: Vec3| if v.n.dot(d) < 0.0 { -v.n } else { v.n };
-        let (q, r2) = if self.parallel(light) {
-            (self.scene.beyond(eye.p, to), 1.0)
-        } else {
-            (light.p, (light.p - eye.p).length_squared())
+    /// Both ways share the distance and the cosines.
+    #[inline(always)]
+    fn both_ways(&self, eye: &Vertex, light: &Vertex) -> (Toward, Toward) {
+        if !eye.on_surface() || !light.on_surface() {
+            return (self.toward(eye, light, Role::Radiance), self.toward(light, eye, Role::Flux));
+        }
+        let between = light.p - eye.p;
+        let (direction, r2) = (between.normalize(), between.length_squared());
+        let one = |at: &Vertex, to: &Vertex, direction: Vec3, mode| match self.towards(at, direction, mode) {
+            Some(t) => Toward { value: t.value, density: t.pdf * (to.n.dot(direction).abs() / r2) },
+            None => Toward::default(),
         };
-        if self.scene.blocked(eye.p, side(eye, to), q, side(light, -to)) { 0.0 } else { 1.0 / r2 }
+        (one(eye, light, direction, TransportMode::Radiance), one(light, eye, -direction, TransportMode::Flux))
+    }
+
+    #[inline(always)]
+    fn forgets(&self, at: &Vertex) -> bool {
+        matches!(self.scene.bsdf(at), Bsdf::Diffuse(_))
+    }
+
+    fn link(&self, eye: &Vertex, light: &Vertex) -> f32 {
+        let (p, n, q, m, r2) = self.between(eye, light);
+        if self.scene.blocked(p, n, q, m) { 0.0 } else { 1.0 / r2 }
+    }
+
+    /// All rays of the wave are traced together.
+    fn walk_wave(&self, wave: &mut VertexWave, role: Role, streams: Streams, out: &mut Steps, alive: &mut Vec<u32>) {
+        numbers(streams, &mut wave.rays.u);
+        let VertexWave { p, n, omega, side, rays } = wave;
+        let mut leaves = Vec::with_capacity(streams.len());
+        // the directions of Lambertian surfaces in lanes; the others draw again from the same numbers
+        cosine_directions(n, &rays.u, &mut rays.d, &mut rays.cosine, streams.len());
+        for i in 0..streams.len() {
+            let at = Vertex { p: p.get(i), n: n.get(i), omega: omega.get(i), side: side[i] };
+            let drawn = (rays.d.get(i), rays.cosine[i]);
+            if let Some(d) = self.leave_along(&at, role, drawn, rays.u.each_ref().map(|u| u[i])) {
+                rays.o.set(leaves.len(), d.o);
+                rays.d.set(leaves.len(), d.d);
+                leaves.push((i as u32, d));
+            }
+        }
+        let mut missed = vec![role == Role::Radiance && self.scene.has_environment(); leaves.len()];
+        let mut arrive = |j: usize, state: Vertex| {
+            let (i, d) = (leaves[j].0 as usize, &leaves[j].1);
+            let at = Vertex { p: p.get(i), n: n.get(i), omega: omega.get(i), side: side[i] };
+            out.weight.set(i, d.weight);
+            if out.wanted {
+                out.density[i] = self.arrived(&at, &state, role, d);
+            }
+            out.choice[i] = if d.delta { d.pdf } else { 0.0 };
+            p.set(i, state.p);
+            n.set(i, state.n);
+            omega.set(i, state.omega);
+            side[i] = state.side;
+        };
+        self.scene.trace_wave(rays, leaves.len(), |j, state| {
+            arrive(j, state);
+            missed[j] = false;
+            alive.push(leaves[j].0);
+        });
+        // rays into the sky
+        if missed.contains(&true) {
+            for j in (0..leaves.len()).filter(|&j| missed[j]) {
+                let (o, d) = (rays.o.get(j), rays.d.get(j));
+                arrive(j, Vertex::escaped(self.scene.beyond(o, d), d));
+                alive.push(leaves[j].0);
+            }
+            alive.sort_unstable();
+        }
+    }
+
+    /// All shadow segments of the wave are tested together.
+    fn choose_wave(
+        &self,
+        wave: &mut VertexWave,
+        streams: Streams,
+        found: &mut VertexWave,
+        weight: &mut Columns,
+        alive: &mut Vec<u32>,
+    ) {
+        numbers(streams, &mut wave.rays.u);
+        for i in 0..streams.len() {
+            let at = wave.get(i);
+            if let Some((step, normal)) = self.propose(&at, wave.rays.u.each_ref().map(|u| u[i])) {
+                let (o, d) = segment(at.p, normal, step.state.p, step.state.n);
+                wave.rays.o.set(i, o);
+                wave.rays.d.set(i, d);
+                wave.rays.list[alive.len()] = i as u32;
+                found.set(i, step.state);
+                weight.set(i, step.weight);
+                alive.push(i as u32);
+            }
+        }
+        self.scene.block_wave(&mut wave.rays, alive.len());
+        alive.retain(|&i| wave.rays.prim[i as usize] == 0);
+    }
+
+    /// All segments are tested together.
+    fn link_wave(
+        &self,
+        eye: &VertexWave,
+        light: &VertexWave,
+        scratch: &mut VertexWave,
+        list: &mut Vec<u32>,
+        factor: &mut [f32],
+    ) {
+        let rays = &mut scratch.rays;
+        for (j, &i) in list.iter().enumerate() {
+            let i = i as usize;
+            let (p, n, q, m, r2) = self.between(&eye.get(i), &light.get(i));
+            let (o, d) = segment(p, n, q, m);
+            rays.o.set(i, o);
+            rays.d.set(i, d);
+            rays.list[j] = i as u32;
+            factor[i] = 1.0 / r2;
+        }
+        self.scene.block_wave(rays, list.len());
+        list.retain(|&i| rays.prim[i as usize] == 0);
     }
 }
 
 impl SceneTransport<'_> {
     /// Area of the disk from which parallel light starts.
+    #[inline(always)]
     fn disk(&self) -> f32 {
         PI * self.scene.radius() * self.scene.radius()
     }
 
-    /// The first step of light from its source. The weight E cos θ/p is π E for a surface, 4π I for a point light of
+    /// The ray of one step of a walk; `None` if the step is zero.
+    #[inline(always)]
+    fn leave(&self, at: &Vertex, role: Role, u: [f32; 4]) -> Option<Leave> {
+        if role == Role::Emission {
+            return self.shine(at, u);
+        }
+        let Departure { direction, normal, weight, pdf, delta } = self.depart(at, role.mode(), u)?;
+        Some(Leave { o: offset_origin(at.p, normal), d: direction, weight, pdf, delta })
+    }
+
+    /// The same, if a cosine-distributed direction with its cosine has already been drawn from these numbers.
+    #[inline(always)]
+    fn leave_along(&self, at: &Vertex, role: Role, (d, cosine): (Vec3, f32), u: [f32; 4]) -> Option<Leave> {
+        match self.scene.bsdf(at) {
+            Bsdf::Diffuse(Diffuse { reflectance }) if role != Role::Emission && self.sampling == Sampling::Bsdf => {
+                let pdf = self.sampling.pdf(cosine);
+                let o = offset_origin(at.p, at.n);
+                (reflectance != Rgb::ZERO).then_some(Leave { o, d, weight: reflectance, pdf, delta: false })
+            }
+            _ => self.leave(at, role, u),
+        }
+    }
+
+    /// The first ray of light from its source. The weight E cos θ/p is π E for a surface, 4π I for a point light of
     /// intensity I, and πR² times the emission of parallel light.
-    fn shine(&self, at: &Vertex, u: [f32; 4]) -> Option<AdjointStep<Vertex>> {
+    fn shine(&self, at: &Vertex, u: [f32; 4]) -> Option<Leave> {
         let light = self.scene.light(at);
         let (o, d, weight) = match self.scene.light_of(at) {
             None if at.on_surface() => {
@@ -174,64 +301,42 @@ impl SceneTransport<'_> {
                 (o - at.omega * (2.0 * self.scene.radius()), at.omega, light * self.disk())
             }
         };
-        let state = self.scene.trace(o, d)?;
-        let density = self.toward(&Vertex { omega: at.omega, ..*at }, &state, Role::Emission).density;
-        (weight != Rgb::ZERO).then_some(AdjointStep { state, weight, density, delta: None })
-    }
-}
-
-impl Camera {
-    /// The vector from the pinhole to a state, in `f64`; for the sky, a unit direction.
-    fn toward(&self, t: &SceneTransport, at: &Vertex) -> DVec3 {
-        if t.parallel(at) { -at.omega.as_dvec3() } else { at.p.as_dvec3() - self.origin }
+        (weight != Rgb::ZERO).then_some(Leave { o, d, weight, pdf: 0.0, delta: false })
     }
 
-    /// The pixel that sees a state if nothing blocks the view.
-    pub(crate) fn see(&self, t: &SceneTransport, at: &Vertex) -> Option<Seen<Vertex>> {
-        // a camera never sees a point light or a direction light
-        if !at.on_surface() && at.side != ESCAPED {
-            return None;
+    /// The density of the step from `at` to the state where its ray arrived.
+    #[inline(always)]
+    fn arrived(&self, at: &Vertex, state: &Vertex, role: Role, ray: &Leave) -> f32 {
+        if ray.delta {
+            return self.delta_density(at, state, ray.pdf);
         }
-        let d = self.toward(t, at);
-        let (pixel, per_angle) = self.pixel(d)?;
-        let pixel = pixel?;
-        let r2 = if at.on_surface() { d.length_squared() as f32 } else { 1.0 };
-        Some(Seen { pixel, eye: self.eye(), importance: per_angle / r2, density: per_angle * angle(at, d) })
+        // take the density for the pair of points, as every other strategy does; if rounding makes it zero, take the density
+        // of the sampled direction
+        let density = self.toward(at, state, role).density;
+        if density > 0.0 || role == Role::Emission { density } else { ray.pdf * self.angle(at, state, ray.d) }
     }
 
-    fn eye(&self) -> Vertex {
-        Vertex { p: self.origin.as_vec3(), n: Vec3::ZERO, ..Vertex::default() }
-    }
-
-    /// Density with which a path starts at a state that some pixel sees. It is also valid if rounding puts the state just
-    /// outside the picture.
-    pub(crate) fn start_density(&self, t: &SceneTransport, at: &Vertex) -> f32 {
-        let d = self.toward(t, at);
-        self.pixel(d).map_or(0.0, |(_, per_angle)| per_angle * angle(at, d))
-    }
-
-    /// Returns true if nothing blocks the view from the eye to the state.
-    pub(crate) fn unhidden(&self, t: &SceneTransport, at: &Vertex) -> bool {
-        let start = self.enter(self.toward(t, at).normalize());
-        let (p, n) = if at.on_surface() {
-            let toward_eye = if at.n.dot(start - at.p) < 0.0 { -at.n } else { at.n };
-            (at.p, toward_eye)
+    /// The ends of the segment between two states, each with the normal on its side, and the squared distance; 1 instead of
+    /// the squared distance if the light is parallel.
+    #[inline(always)]
+    fn between(&self, eye: &Vertex, light: &Vertex) -> (Vec3, Vec3, Vec3, Vec3, f32) {
+        let to = self.direction(eye, light);
+        let side = |v: &Vertex, d: Vec3| if v.n.dot(d) < 0.0 { -v.n } else { v.n };
+        let (q, r2) = if self.parallel(light) {
+            (self.scene.beyond(eye.p, to), 1.0)
         } else {
-            (t.scene.beyond(start, -at.omega), Vec3::ZERO)
+            (light.p, (light.p - eye.p).length_squared())
         };
-        !t.scene.blocked(p, n, start, Vec3::ZERO)
+        (eye.p, side(eye, to), q, side(light, -to), r2)
     }
 }
 
-/// Solid angle at the eye per unit of the measure of a state in direction `d` from the eye; 0 for a light that no ray can
-/// hit.
-fn angle(at: &Vertex, d: DVec3) -> f32 {
-    match at.side {
-        ESCAPED => 1.0,
-        _ if at.on_surface() => {
-            let r2 = d.length_squared();
-            (at.n.as_dvec3().dot(d).abs() / (r2 * r2.sqrt())) as f32
-        }
-        _ => 0.0,
-    }
+/// The ray of one step of a walk, before it is traced.
+struct Leave {
+    o: Vec3,
+    d: Vec3,
+    weight: Rgb,
+    /// Density of the direction per solid angle; for a delta step, the probability of choosing it.
+    pdf: f32,
+    delta: bool,
 }

@@ -184,6 +184,7 @@ impl Sensor<SceneTransport<'_>> for Camera {
         let (o, d) = self.ray(pixel, [u[0], u[1]]);
         t.scene.look(o, d)
     }
+    #[inline(always)]
     fn project(&self, t: &SceneTransport, at: &Vertex) -> Option<Seen<Vertex>> {
         self.see(t, at)
     }
@@ -192,6 +193,9 @@ impl Sensor<SceneTransport<'_>> for Camera {
     }
     fn sees(&self, t: &SceneTransport, at: &Vertex) -> bool {
         self.unhidden(t, at)
+    }
+    fn sees_wave(&self, t: &SceneTransport, wave: &mut VertexWave, list: &mut Vec<u32>) {
+        self.all_unhidden(t, wave, list);
     }
     fn start_wave(&self, t: &SceneTransport, wave: &mut VertexWave, streams: Streams, alive: &mut Vec<u32>) {
         if !t.scene.in_waves() {

@@ -211,6 +211,11 @@ pub trait Sensor<T: Transport>: Sync {
     fn sees(&self, _t: &T, _at: &T::State) -> bool {
         true
     }
+    /// Removes from `list` every state of a wave that is hidden from the sensor. The result must be that of
+    /// [`Sensor::sees`].
+    fn sees_wave(&self, t: &T, wave: &mut T::Wave, list: &mut Vec<u32>) {
+        list.retain(|&i| self.sees(t, &wave.get(i as usize)));
+    }
     /// Samples the first states of a wave. The indices of the paths that have one are pushed to `alive` in ascending order, and
     /// their states move to the front of the wave in this order.
     fn start_wave(&self, t: &T, wave: &mut T::Wave, streams: Streams, alive: &mut Vec<u32>) {

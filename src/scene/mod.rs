@@ -63,7 +63,7 @@ use shape::Shape;
 use textures::Textures;
 pub(crate) use vertex::Rays;
 
-pub(crate) use packets::numbers;
+pub(crate) use packets::{cosine_directions, numbers};
 
 /// Change of measure: converts a density per area at a point y to one per solid angle at a point at distance r, with `r2` =
 /// r².

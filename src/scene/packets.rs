@@ -172,6 +172,26 @@ pub(crate) fn numbers_with_simd<'a, S: Simd>(_simd: S, streams: Streams<'a>, u: 
     }
 }
 
+/// Cosine-distributed directions about the normals, computed from the first two columns of random numbers.
+#[pulp::with_simd(cosine_directions = Arch::new())]
+#[inline(always)]
+pub(crate) fn cosine_directions_with_simd<'a, S: Simd>(
+    _simd: S,
+    normals: &'a Columns,
+    u: &'a [Vec<f32>; 4],
+    d: &'a mut Columns,
+    cosine: &'a mut [f32],
+    n: usize,
+) {
+    let (nx, ny, nz) = (&normals.x[..n], &normals.y[..n], &normals.z[..n]);
+    let (dx, dy, dz, cosine) = (&mut d.x[..n], &mut d.y[..n], &mut d.z[..n], &mut cosine[..n]);
+    let (u0, u1) = (&u[0][..n], &u[1][..n]);
+    for i in 0..n {
+        let (v, z) = crate::math::direction::cosine_hemisphere(Vec3::new(nx[i], ny[i], nz[i]), [u0[i], u1[i]]);
+        (dx[i], dy[i], dz[i], cosine[i]) = (v.x, v.y, v.z, z);
+    }
+}
+
 /// Uniform points of a lamp of one primitive, for the first `m` places of a sorted wave with the points `x`, from the last two
 /// columns of random numbers: direction, density per solid angle, position and normal, by place.
 #[pulp::with_simd(lamp_points = Arch::new())]

@@ -61,6 +61,7 @@ impl Camera {
     /// direction. The pixel is `None` if `d` is outside the image; the result is `None` if `d` points backwards. The density
     /// is the inverse of the pixel's solid angle in this direction: `l³/|pixel|²`, with l the length of `d` up to the plane
     /// at distance 1.
+    #[inline(always)]
     pub(crate) fn pixel(&self, d: DVec3) -> Option<(Option<u32>, f32)> {
         let [right, down, forward] = self.axes;
         let along = d.dot(forward);

@@ -18,7 +18,7 @@
 //! in the sums.
 
 use super::largest::Largest;
-use crate::math::{Columns, Rgb};
+use crate::math::Columns;
 use glam::DVec3;
 
 /// Size of a film: pixels, slots and replicates.
@@ -148,7 +148,8 @@ impl TermFilm {
     }
 
     /// Adds a value to any pixel; `sample` is the number of the sample that it belongs to.
-    pub(crate) fn splat(&mut self, slot: u32, pixel: u32, sample: u32, value: Rgb) {
+    #[cfg(test)]
+    pub(crate) fn splat(&mut self, slot: u32, pixel: u32, sample: u32, value: crate::math::Rgb) {
         let at = self.at(pixel as usize, sample as usize % self.shape.replicates, slot as usize);
         let first = pixel as usize / BLOCK * BLOCK;
         let pixels = BLOCK.min(self.samples.len() - first);

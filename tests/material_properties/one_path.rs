@@ -1,5 +1,6 @@
 //! One path, every way to find it: `value · p_s = F` and `weight = p_s / Σ p_r`, with the right-hand sides written down once more.
 
+use super::plain::{Node, PathDensities, walk};
 use super::*;
 
 /// A path and its scene, for the plain formulas: positions, unit normals (either side), where it is.
@@ -204,7 +205,7 @@ struct Find {
 /// The stream that light is followed with, as the estimators have it.
 const LIGHT_STREAM: u32 = 0x4c49_4748;
 
-/// Everything one pair of walks finds, with the paths themselves: the loops of `Bidirectional::find` once more.
+/// Everything one pair of walks finds, with the paths themselves: the strategies of `Bidirectional` once more, one path at a time.
 fn finds(t: &SceneTransport, key: Key, pixel: u32, sample: u32, last: usize) -> Vec<Find> {
     let sensor = &t.scene.camera;
     let share = 1.0 / (sensor.size[0] * sensor.size[1]) as f32;
@@ -285,20 +286,27 @@ fn compare_paths(d: &Description, seed: u64, samples: u32, seen: &mut Compared) 
     let bidirectional = Bidirectional(plan(LAST, Technique::Mis, &Roulette::Never));
     for (pixel, sample) in (0..pixels).flat_map(|p| (0..samples).map(move |s| (p, s))) {
         let finds = finds(&t, key, pixel, sample, LAST);
-        // the estimator finds just these
+        // the estimator finds just these, with weights that are equal to rounding
         let mut theirs = vec![];
-        bidirectional.find(
-            &t,
-            &scene.camera,
-            (key, pixel, sample),
-            |f| theirs.push((f.s, f.k, f.value, f.weight)),
-            |_| (),
-        );
+        let batch = &Batch { key, pixels: pixel..pixel + 1, samples: sample..sample + 1 };
+        let job = Job { t: &t, sensor: &scene.camera, batch };
+        let mut add = |f: &mut Found| {
+            for i in 0..f.pixel.len() {
+                theirs.push((f.s, f.k, f.value.get(i), f.weight[i]));
+            }
+        };
+        bidirectional.find(&job, &mut add, |_, _| ());
         theirs.retain(|f| f.2 != Rgb::ZERO);
+        theirs.sort_by_key(|f| (f.0, f.1));
         let ours = finds.iter().filter(|f| f.value != Rgb::ZERO);
-        let ours: Vec<_> = ours.map(|f| (f.s, f.path.len() - 1, f.value, f.weight)).collect();
+        let mut ours: Vec<_> = ours.map(|f| (f.s, f.path.len() - 1, f.value, f.weight)).collect();
+        ours.sort_by_key(|f| (f.0, f.1));
         assert!(ours.iter().all(|f| f.2.is_finite() && f.3.is_finite()), "scene {seed}: {ours:?}");
-        assert_eq!(ours, theirs);
+        assert_eq!(ours.len(), theirs.len());
+        for (a, b) in ours.iter().zip(&theirs) {
+            assert_eq!((a.0, a.1, a.2), (b.0, b.1, b.2));
+            assert!((a.3 - b.3).abs() <= 1e-6 * a.3, "scene {seed}, s = {}, k = {}: weights {} {}", a.0, a.1, a.3, b.3);
+        }
 
         for f in finds.iter().filter(|f| f.value.min_element() > 1e-20) {
             let Some((contribution, densities)) = reference.path(&f.path, &f.delta) else { continue };
