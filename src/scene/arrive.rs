@@ -13,8 +13,7 @@
 //! call the functions of [`shape`](super::shape), so that the bits are those of single rays.
 
 use super::shape::{self, Flat, Hit, Shape};
-use super::vertex::{ESCAPED, NOWHERE, Rays, Vertex};
-use super::{Scene, packets};
+use super::vertex::{NOWHERE, Rays, Vertex};
 use glam::Vec3;
 use pulp::{Arch, Simd};
 
@@ -58,7 +57,7 @@ impl Flats {
 /// What the first `n` rays see. Rays that hit nothing get arbitrary points and the side [`NOWHERE`].
 #[pulp::with_simd(arrive_in_lanes = Arch::new())]
 #[inline(always)]
-fn arrive_in_lanes_with_simd<'a, S: Simd>(
+pub(crate) fn arrive_in_lanes_with_simd<'a, S: Simd>(
     _simd: S,
     flats: &'a Flats,
     shapes: &'a [Shape],
@@ -114,41 +113,4 @@ pub(crate) fn arrive(shapes: &[Shape], o: Vec3, d: Vec3, hit: Hit) -> Vertex {
     let n = shape.normal(p);
     let back = shape::dot(n, d) > 0.0;
     Vertex { p, n: if back { -n } else { n }, omega: -d, side: 2 * hit.prim + u32::from(back) }
-}
-
-impl Scene {
-    /// What the first `n` rays of a wave see: points, normals and sides in `rays.q`, `rays.m` and `rays.side`. A ray that
-    /// leaves the scene sees the sky, if there is one, or [`NOWHERE`].
-    pub(crate) fn look_wave(&self, rays: &mut Rays, n: usize) {
-        match &self.flats {
-            Some(flats) => {
-                packets::closest(&self.accel.shapes, rays, n);
-                arrive_in_lanes(flats, &self.accel.shapes, rays, n);
-            }
-            None => {
-                self.accel.closest_wave(rays, n);
-                for i in 0..n {
-                    if rays.prim[i] != u32::MAX {
-                        let hit = Hit { t: rays.t[i], prim: rays.prim[i] };
-                        let v = arrive(&self.accel.shapes, rays.o.get(i), rays.d.get(i), hit);
-                        rays.q.set(i, v.p);
-                        rays.m.set(i, v.n);
-                        rays.side[i] = v.side;
-                    } else {
-                        rays.side[i] = NOWHERE;
-                    }
-                }
-            }
-        }
-        if self.has_environment() {
-            for i in 0..n {
-                if rays.side[i] == NOWHERE {
-                    let d = rays.d.get(i);
-                    rays.q.set(i, self.beyond(rays.o.get(i), d));
-                    rays.m.set(i, -d);
-                    rays.side[i] = ESCAPED;
-                }
-            }
-        }
-    }
 }

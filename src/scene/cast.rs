@@ -1,7 +1,7 @@
 //! Rays in a scene: the operator G of T = K G, for single rays, packets and waves. A ray gives the first visible surface; a
 //! segment is tested for occlusion.
 
-use super::vertex::{Rays, Vertex};
+use super::vertex::{ESCAPED, NOWHERE, Rays, Vertex};
 use super::{Scene, arrive, packets, rounding::offset_origin, rounding::segment, shape};
 use glam::Vec3;
 
@@ -47,6 +47,41 @@ impl Scene {
         for i in 0..n {
             if rays.prim[i] != u32::MAX {
                 at(i, self.arrive(rays.o.get(i), rays.d.get(i), shape::Hit { t: rays.t[i], prim: rays.prim[i] }));
+            }
+        }
+    }
+
+    /// What the first `n` rays of a wave see: points, normals and sides in `rays.q`, `rays.m` and `rays.side`. A ray that
+    /// leaves the scene sees the sky, if there is one, or [`NOWHERE`].
+    pub(crate) fn look_wave(&self, rays: &mut Rays, n: usize) {
+        match &self.flats {
+            Some(flats) => {
+                packets::closest(&self.accel.shapes, rays, n);
+                arrive::arrive_in_lanes(flats, &self.accel.shapes, rays, n);
+            }
+            None => {
+                self.accel.closest_wave(rays, n);
+                for i in 0..n {
+                    if rays.prim[i] != u32::MAX {
+                        let hit = shape::Hit { t: rays.t[i], prim: rays.prim[i] };
+                        let v = self.arrive(rays.o.get(i), rays.d.get(i), hit);
+                        rays.q.set(i, v.p);
+                        rays.m.set(i, v.n);
+                        rays.side[i] = v.side;
+                    } else {
+                        rays.side[i] = NOWHERE;
+                    }
+                }
+            }
+        }
+        if self.has_environment() {
+            for i in 0..n {
+                if rays.side[i] == NOWHERE {
+                    let d = rays.d.get(i);
+                    rays.q.set(i, self.beyond(rays.o.get(i), d));
+                    rays.m.set(i, -d);
+                    rays.side[i] = ESCAPED;
+                }
             }
         }
     }

@@ -13,7 +13,7 @@
 
 use super::bsdf::{Bsdf, Model, Sampling, TransportMode, Visitor};
 use super::rounding::{offset_origin, segment};
-use super::vertex::{Rays, Side};
+use super::vertex::{DELTA, NOTHING, Rays, SOME, Side};
 use super::{Scene, Vertex};
 use crate::math::{Columns, Rgb};
 use glam::Vec3;
@@ -25,13 +25,6 @@ const LANES: usize = 16;
 
 type Lane = [f32; LANES];
 type Lane3 = [Lane; 3];
-
-/// A sample that is zero.
-pub(crate) const NOTHING: u32 = 0;
-/// A sample that is not zero.
-pub(crate) const SOME: u32 = 1;
-/// The same, from a delta part.
-pub(crate) const DELTA: u32 = 2;
 
 /// The columns of a wave of vertices.
 #[derive(Clone, Copy)]

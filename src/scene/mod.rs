@@ -44,7 +44,7 @@ pub use lighting::LightSample;
 pub use primitive::Primitive;
 pub use sensor::{Camera, SurfaceSensor};
 pub use stand_in::stand_in;
-pub(crate) use vertex::NOWHERE;
+pub(crate) use vertex::{DELTA, NOTHING, NOWHERE};
 pub use vertex::{ESCAPED, LIGHT, Side, Vertex, VertexWave};
 
 use crate::math::Rgb;
@@ -57,7 +57,7 @@ pub use emitter::Selection;
 use emitter::{Light, Lights};
 use faces::Faces;
 use glam::{DVec3, Vec3};
-pub(crate) use groups::{DELTA, NOTHING, Vertices};
+pub(crate) use groups::Vertices;
 pub(crate) use rounding::{error, offset_origin, segment};
 use shape::Shape;
 use textures::Textures;

@@ -7,7 +7,6 @@
 
 use super::shape::{Flat, Shape};
 use super::vertex::Rays;
-use super::{connection, solid_angle};
 use crate::math::{Columns, Points, Streams};
 use glam::Vec3;
 use pulp::{Arch, Simd};
@@ -189,69 +188,5 @@ pub(crate) fn cosine_directions_with_simd<'a, S: Simd>(
     for i in 0..n {
         let (v, z) = crate::math::direction::cosine_hemisphere(Vec3::new(nx[i], ny[i], nz[i]), [u0[i], u1[i]]);
         (dx[i], dy[i], dz[i], cosine[i]) = (v.x, v.y, v.z, z);
-    }
-}
-
-/// Uniform points of a lamp of one primitive, for the first `m` places of a sorted wave with the points `x`, from the last two
-/// columns of random numbers: direction, density per solid angle, position and normal, by place.
-#[pulp::with_simd(lamp_points = Arch::new())]
-#[inline(always)]
-pub(crate) fn lamp_points_with_simd<'a, S: Simd>(
-    _simd: S,
-    shape: &'a Shape,
-    density: f32,
-    x: &'a Columns,
-    rays: &'a mut Rays,
-    m: usize,
-) {
-    // the kind is chosen here and not for each point, so that the loops inside have no branch
-    match shape {
-        Shape::Flat(s) => points(
-            #[inline(always)]
-            |u| (s.point(u), s.normal()),
-            density,
-            x,
-            rays,
-            m,
-        ),
-        other => points(
-            #[inline(always)]
-            |u| {
-                let p = other.point(u);
-                (p, other.normal(p))
-            },
-            density,
-            x,
-            rays,
-            m,
-        ),
-    }
-}
-
-#[inline(always)]
-fn points(point: impl Fn([f32; 2]) -> (Vec3, Vec3), density: f32, x: &Columns, rays: &mut Rays, m: usize) {
-    for place in (0..m).step_by(LANES) {
-        let mut to = [[0.0; LANES]; 3];
-        let (mut q, mut n, mut at, mut pdf) = (to, to, to, [0.0; LANES]);
-        let mut u = [[0.0; LANES]; 2];
-        for lane in 0..LANES.min(m - place) {
-            let i = rays.order[place + lane] as usize;
-            (at[0][lane], at[1][lane], at[2][lane]) = (x.x[i], x.y[i], x.z[i]);
-            (u[0][lane], u[1][lane]) = (rays.u[2][i], rays.u[3][i]);
-        }
-        for lane in 0..LANES {
-            let (p, normal) = point([u[0][lane], u[1][lane]]);
-            let (d, r2, _, cos) = connection(Vec3::new(at[0][lane], at[1][lane], at[2][lane]), Vec3::ZERO, p, normal);
-            pdf[lane] = solid_angle(density, r2, cos);
-            (to[0][lane], to[1][lane], to[2][lane]) = (d.x, d.y, d.z);
-            (q[0][lane], q[1][lane], q[2][lane]) = (p.x, p.y, p.z);
-            (n[0][lane], n[1][lane], n[2][lane]) = (normal.x, normal.y, normal.z);
-        }
-        for (c, lanes) in [(&mut rays.to, &to), (&mut rays.q, &q), (&mut rays.m, &n)] {
-            c.x[place..place + LANES].copy_from_slice(&lanes[0]);
-            c.y[place..place + LANES].copy_from_slice(&lanes[1]);
-            c.z[place..place + LANES].copy_from_slice(&lanes[2]);
-        }
-        rays.t[place..place + LANES].copy_from_slice(&pdf);
     }
 }

@@ -50,6 +50,13 @@ pub struct VertexWave {
     pub(crate) rays: Rays,
 }
 
+/// A sample that is zero.
+pub(crate) const NOTHING: u32 = 0;
+/// A sample that is not zero.
+pub(crate) const SOME: u32 = 1;
+/// The same, from a delta part.
+pub(crate) const DELTA: u32 = 2;
+
 /// Buffers for the rays of a wave. Columns are by path, or by place in the order in which [`groups`](super::groups) sorts
 /// the paths.
 #[derive(Clone, Debug, Default)]
@@ -104,11 +111,10 @@ impl Rays {
 
     /// Removes the places without a sample from the first `n`, in the same order. Returns their new number.
     pub(crate) fn keep_samples(&mut self, n: usize) -> usize {
-        let none = super::NOTHING;
-        let Some(first) = self.flag[..n].iter().position(|&f| f == none) else { return n };
+        let Some(first) = self.flag[..n].iter().position(|&f| f == NOTHING) else { return n };
         let mut to = first;
         for from in first..n {
-            if self.flag[from] != none {
+            if self.flag[from] != NOTHING {
                 self.o.set(to, self.o.get(from));
                 self.d.set(to, self.d.get(from));
                 self.value.set(to, self.value.get(from));
