@@ -107,6 +107,11 @@ impl<'a> Progress<'a> {
         }
     }
 
+    /// The flag that ends the work, if there is one.
+    pub fn stop_flag(&self) -> Option<&'a AtomicBool> {
+        self.stop
+    }
+
     /// Returns true if the work should end now.
     pub fn stopped(&self) -> bool {
         self.stop.is_some_and(|flag| flag.load(Relaxed))

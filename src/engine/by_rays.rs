@@ -14,9 +14,9 @@ use crate::math::Points;
 use crate::operator::{Adjoint, SceneTransport, Sensor, Transport};
 use crate::progress::{Clock, Progress};
 use crate::scene::Scene;
-use crate::terms::functional::{Replicates, functionals, image_replicates};
-use crate::terms::image::events_of_pixels;
-use crate::terms::norms::{SquaredNorm, squared_norm};
+use crate::terms::functional::Replicates;
+use crate::terms::norms::SquaredNorm;
+use crate::terms::statistics::Statistics;
 use crate::terms::variance::{Snapshot, snapshot};
 use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, Variance, World};
 use std::time::{Duration, Instant};
@@ -222,16 +222,21 @@ pub(crate) fn sample<T: Transport>(
 pub(crate) struct Passes<'a, 'l> {
     progress: Progress<'a>,
     started: Instant,
+    /// True if [`Passes::finish`] will be called: films are then read after each pass.
+    read: bool,
     snapshots: Vec<Snapshot>,
+    /// The seconds of the render, and the statistics of the film after the last pass.
+    last: Option<(f64, Statistics)>,
     clock: Option<&'a Clock>,
     /// The caller's callback.
     look_on: Option<Look<'l>>,
 }
 
 impl<'a, 'l> Passes<'a, 'l> {
-    /// Passes that double, without a clock and without a callback.
+    /// Passes that double, without a clock and without a callback, for callers that use the film itself.
     pub(crate) fn of(progress: Progress<'a>) -> Self {
-        Self { progress, started: Instant::now(), snapshots: vec![], clock: None, look_on: None }
+        let started = Instant::now();
+        Self { progress, started, read: false, snapshots: vec![], last: None, clock: None, look_on: None }
     }
 
     /// The same with a callback after each pass.
@@ -250,24 +255,30 @@ impl<'a, 'l> Passes<'a, 'l> {
         let paths = u64::from(size[0]) * u64::from(size[1]) * u64::from(settings.spp);
         progress.begin(what, clock.map_or(paths, |c| c.time.as_millis() as u64));
         let progress = clock.map_or(progress, |clock| progress.by_clock(clock));
-        Self { progress, started: Instant::now(), snapshots: vec![], clock, look_on: None }
+        Self { read: true, clock, ..Self::of(progress) }
     }
+
+    /// The result of the render.
     pub(crate) fn finish(self, film: &TermFilm, world: World, label: String) -> Sampled {
         let slots = film.shape.slots;
+        // a film that was stopped within a pass has not been read yet
+        let (seconds, read) = self.last.unwrap_or_else(|| (self.started.elapsed().as_secs_f64(), Statistics::of(film)));
         let paths = film.samples.iter().map(|&n| u64::from(n)).sum();
-        let cost = Cost {
-            paths,
-            rays: film.rays.iter().sum(),
-            non_finite: film.non_finite,
-            seconds: self.started.elapsed().as_secs_f64(),
-        };
-        let image = |s: usize| TermImage::of(film, s..s + 1);
-        let parts = (0..slots).map(|s| s..s + 1).chain([0..slots - 1, 0..slots]);
+        let cost = Cost { paths, rays: film.rays.iter().sum(), non_finite: film.non_finite, seconds };
+        let Statistics { images, mut events, norms, functionals, replicates, .. } = read;
+        let mut images = images.into_iter();
+        let terms = images.by_ref().take(slots - 1).collect();
+        let mut next = || images.next().unwrap_or_default();
+        // without terms the only image is the whole
+        let [tail, sum] = if slots > 1 { [next(), next()] } else { Default::default() };
+        if slots == 1 {
+            events.extend([0.0, events[0]]);
+        }
         Sampled {
             series: Series {
                 world,
                 label,
-                functionals: functionals(film),
+                functionals,
                 cost,
                 unsampled: vec![],
                 doubts: vec![],
@@ -275,15 +286,15 @@ impl<'a, 'l> Passes<'a, 'l> {
                 variance: Variance::Finite,
             },
             doubt: None,
-            terms: (0..slots - 1).map(image).collect(),
-            tail: if slots > 1 { image(slots - 1) } else { TermImage::default() },
-            sum: if slots > 1 { TermImage::of(film, 0..slots - 1) } else { TermImage::default() },
-            total: TermImage::of(film, 0..slots),
-            replicates: image_replicates(film),
+            terms,
+            tail,
+            sum,
+            total: next(),
+            replicates,
             rays: film.rays.clone(),
-            pixel_events: parts.map(|p| events_of_pixels(film, p)).collect(),
+            pixel_events: events,
             snapshots: self.snapshots,
-            norms: (0..slots - 1).map(|s| squared_norm(film, s)).collect(),
+            norms,
             spp: film.least_samples(),
         }
     }
@@ -301,16 +312,24 @@ impl Passes<'_, '_> {
         render_in_passes(t, sensor, estimator, amount, progress, &mut |film, planned| self.look(film, planned))
     }
 
-    /// Called after a pass: stores a snapshot of the variances, and decides how far the next pass goes.
+    /// Called after a pass: decides how far the next pass goes, and stores a snapshot of the variances. After the last pass
+    /// the film is read once for all statistics.
     fn look(&mut self, film: &TermFilm, planned: u32) -> u32 {
         self.progress.film(film);
-        if film.shape.replicates > 1 {
-            self.snapshots.push(snapshot(film));
-        }
         let done = film.least_samples();
         let asked = self.look_on.as_mut().and_then(|look| look(film));
         let planned = asked.map_or(planned, |n| planned.min(n));
-        self.clock.map_or(planned, |clock| self.in_time(clock.time, done, planned))
+        let until = self.clock.map_or(planned, |clock| self.in_time(clock.time, done, planned));
+        if !self.read {
+            return until;
+        }
+        if until <= done {
+            self.last = Some((self.started.elapsed().as_secs_f64(), Statistics::of(film)));
+        }
+        if film.shape.replicates > 1 {
+            self.snapshots.push(self.last.as_ref().map_or_else(|| snapshot(film), |(_, read)| read.snapshot.clone()));
+        }
+        until
     }
 
     /// The number of samples that fits into the time at the speed so far, as a multiple of the number of replicates. The

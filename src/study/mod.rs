@@ -28,6 +28,7 @@ pub mod lit;
 pub mod refinement;
 pub mod roulette;
 pub mod run;
+mod some_pixels;
 pub mod split;
 pub mod stages;
 pub mod strategies;

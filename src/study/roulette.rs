@@ -25,6 +25,7 @@
 //! proves that the moment is finite, a bound above 1 proves nothing. Both radii assume that directions are sampled in
 //! proportion to the BSDF times the cosine, so that the weight of a bounce is the albedo.
 
+use super::some_pixels::SomePixels;
 use crate::engine::Settings;
 use crate::engine::known::growth::{CLEAR, FromLight, growth};
 use crate::engine::known::resort::two_digits;
@@ -78,12 +79,23 @@ fn amount(spp: u32, settings: &Settings, stream: &str) -> Amount {
 /// Traces paths that are not ended by roulette before vertex K = `settings.max_bounces`, and records the mean products
 /// E[X_j X_k] of what they contribute to the terms j and k. None if interrupted.
 pub fn pilot(scene: &Scene, settings: &Settings, spp: u32, progress: Progress<'_>) -> Option<Recorded> {
+    let [w, h] = scene.camera.size;
+    pilot_of(scene, settings, spp, w * h, progress)
+}
+
+/// The same with only some pixels, spread evenly over the picture at random; all of them if there are no more.
+pub fn pilot_of(scene: &Scene, settings: &Settings, spp: u32, pixels: u32, progress: Progress<'_>) -> Option<Recorded> {
     let roulette = Roulette::Constant { from: settings.max_bounces, q: beyond(scene) };
     let t = SceneTransport { scene, sampling: settings.sampling };
-    let [w, h] = scene.camera.size;
-    progress.begin("cross moments", u64::from(w) * u64::from(h) * u64::from(spp));
+    let all = scene.camera.size[0] * scene.camera.size[1];
+    progress.begin("cross moments", u64::from(pixels.min(all)) * u64::from(spp));
     let estimator = Vertices(Plan { roulette, ..settings.plan() });
-    record(&t, &scene.camera, &estimator, amount(spp, settings, "cross moments"), progress)
+    let amount = amount(spp, settings, "cross moments");
+    if pixels >= all {
+        return record(&t, &scene.camera, &estimator, amount, progress);
+    }
+    let key = Key::new(settings.seed, "pixels of the cross moments");
+    record(&t, &SomePixels { camera: &scene.camera, pixels, key }, &estimator, amount, progress)
 }
 
 /// Measures the terms under `schedule`, applied from vertex 0 on as in the path tracer. The result is read with

@@ -20,6 +20,7 @@
 use super::largest::Largest;
 use crate::math::Columns;
 use glam::DVec3;
+use std::ops::Range;
 
 /// Size of a film: pixels, slots and replicates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -176,6 +177,12 @@ impl TermFilm {
         first * self.shape.per_pixel() + place(slot, replicate, pixel - first, self.shape.replicates, pixels)
     }
 
+    /// The sums of one replicate and slot at neighbouring pixels of one block, three numbers for each pixel.
+    pub(super) fn row(&self, pixels: &Range<usize>, replicate: usize, slot: usize) -> &[f64] {
+        let at = self.at(pixels.start, replicate, slot);
+        &self.sums[at..at + 3 * pixels.len()]
+    }
+
     /// Σ (r + g + b)² of the contributions to one pixel and slot.
     #[inline(always)]
     pub fn square(&self, pixel: usize, slot: usize) -> f64 {
@@ -194,15 +201,5 @@ impl TermFilm {
     /// Smallest number of samples of any pixel.
     pub fn least_samples(&self) -> u32 {
         self.samples.iter().copied().min().unwrap_or(0)
-    }
-
-    /// Mean and standard error at one pixel of the sum over some slots.
-    pub fn pixel(&self, pixel: usize, slots: std::ops::Range<usize>) -> (DVec3, DVec3) {
-        let (r, n) = (self.shape.replicates, f64::from(self.samples[pixel]));
-        let of = |replicate: usize| slots.clone().map(|s| self.sum(pixel, replicate, s)).sum::<DVec3>();
-        let mean = (0..r).map(of).sum::<DVec3>() / n;
-        let scatter: DVec3 = (0..r).map(|i| ((of(i) - mean * self.count(pixel, i)) / n).powf(2.0)).sum();
-        let replicates = r as f64;
-        (mean, (scatter * (replicates / (replicates - 1.0))).map(f64::sqrt))
     }
 }

@@ -1,6 +1,8 @@
 //! Images of the terms: mean and standard error per pixel, and the number of events behind a pixel.
 
+use super::deviations::{Deviations, Piece, bands};
 use super::film::TermFilm;
+use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -16,24 +18,66 @@ pub struct TermImage {
 impl TermImage {
     /// The image of the sum over some slots of a film.
     pub fn of(film: &TermFilm, slots: Range<usize>) -> Self {
-        let pixels = (0..film.shape.pixels()).into_par_iter().map(|p| film.pixel(p, slots.clone()));
-        let (mean, std_error) = pixels.map(|(m, e)| (m.as_vec3().to_array(), e.as_vec3().to_array())).unzip();
-        Self { mean, std_error }
+        let band = |pixels: Range<usize>| {
+            let (mut image, mut d) = (Self::default(), Deviations::default());
+            for piece in Piece::all(film, pixels) {
+                d.begin(&piece);
+                d.slots(&piece, slots.clone());
+                image.piece(&d);
+            }
+            image
+        };
+        let all: Vec<Self> = bands(film).into_par_iter().map(band).collect();
+        Self::of_bands(all.iter())
+    }
+
+    /// Appends the pixels of a piece.
+    pub(super) fn piece(&mut self, d: &Deviations) {
+        for (mean, error) in d.pixels() {
+            self.mean.push(mean.as_vec3().to_array());
+            self.std_error.push(error.as_vec3().to_array());
+        }
+    }
+
+    /// Puts the bands of an image together.
+    pub(super) fn of_bands<'a>(bands: impl Iterator<Item = &'a Self> + Clone) -> Self {
+        let all = |of: fn(&Self) -> &[[f32; 3]]| bands.clone().map(of).collect::<Vec<_>>().concat();
+        Self { mean: all(|i| &i.mean), std_error: all(|i| &i.std_error) }
     }
 }
 
-/// (Σ x)²/Σ x², the number of events, of the median pixel. Only pixels that hold a contribution to these slots count, and
-/// half of them rest on fewer events. 0 if there is no such pixel.
-pub fn events_of_pixels(film: &TermFilm, slots: Range<usize>) -> f64 {
-    let of = |p: usize| {
-        let sum = |s: usize| (0..film.shape.replicates).map(|r| film.sum(p, r, s).element_sum()).sum::<f64>();
-        let square: f64 = slots.clone().map(|s| film.square(p, s)).sum();
-        (square > 0.0).then(|| slots.clone().map(sum).sum::<f64>().powi(2) / square)
+/// The mean images of the slots of a film, without errors: enough for a preview.
+pub fn means(film: &TermFilm, slots: Range<usize>) -> Vec<Vec<[f32; 3]>> {
+    let of = |slot: usize| {
+        let mean = |p: usize| {
+            let sum: DVec3 = (0..film.shape.replicates).map(|r| film.sum(p, r, slot)).sum();
+            (sum / f64::from(film.samples[p])).as_vec3().to_array()
+        };
+        (0..film.shape.pixels()).map(mean).collect()
     };
-    let mut all: Vec<f64> = (0..film.shape.pixels()).into_par_iter().filter_map(of).collect();
-    if all.is_empty() {
-        return 0.0;
+    slots.into_par_iter().map(of).collect()
+}
+
+/// The median of (Σ x)²/Σ x², the number of events of a pixel. Only pixels that hold a contribution count, and half of them rest
+/// on fewer events. 0 if there is no such pixel.
+#[derive(Clone, Default)]
+pub(super) struct PixelEvents(Vec<f64>);
+
+impl PixelEvents {
+    /// Adds a pixel with its Σ x and Σ x².
+    pub(super) fn push(&mut self, sum: f64, square: f64) {
+        if square > 0.0 {
+            self.0.push(sum * sum / square);
+        }
     }
-    let middle = all.len() / 2;
-    *all.select_nth_unstable_by(middle, f64::total_cmp).1
+
+    /// The median over the pixels of all bands.
+    pub(super) fn median<'a>(bands: impl Iterator<Item = &'a Self>) -> f64 {
+        let mut all = bands.map(|e| e.0.as_slice()).collect::<Vec<_>>().concat();
+        if all.is_empty() {
+            return 0.0;
+        }
+        let middle = all.len() / 2;
+        *all.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
 }

@@ -7,12 +7,14 @@
 //! | φ(T^k E), a linear functional of the image | [`Functional`] | [`functional`] |
 //! | ‖T^k E‖₂ of the image | [`norms::SquaredNorm`] | [`norms`] |
 //! | the largest contributions, and the index of their tail | [`largest::Largest`] | [`largest`] |
+//! | all of these in one pass over a film | [`statistics::Statistics`] | [`statistics`] |
 //! | scatter of the replicates | [`scatter::Scatter`] | [`scatter`] |
 //! | E\[Y_a Y_b\] over the slots of one path | [`CrossMoments`] | [`cross_moments`] |
 //! | complete result of a world | [`Series`] | [`series`] |
 
 pub mod covariance;
 pub mod cross_moments;
+mod deviations;
 pub mod film;
 pub mod functional;
 pub mod image;
@@ -20,6 +22,8 @@ pub mod largest;
 pub mod norms;
 pub mod scatter;
 pub mod series;
+pub mod statistics;
+mod tiles;
 pub mod variance;
 
 pub use cross_moments::{CrossMoments, Recorded};

@@ -21,9 +21,11 @@
 //! same for every number of samples. Reference: Efron and Stein, *Annals of Statistics* 9 (1981), the jackknife.
 
 use super::TermImage;
+use super::deviations::{Deviations, Piece, bands};
 use super::film::TermFilm;
 use super::largest::Largest;
 use glam::DVec3;
+use pulp::{Arch, Simd};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -47,9 +49,9 @@ pub struct Scatter {
 
 /// Sums over some pixels.
 #[derive(Clone)]
-struct Sums {
-    q: Vec<f64>,
-    channels: DVec3,
+pub(super) struct Sums {
+    /// Σ d_r² with x_r − m = R d_r, by replicate, in 24 interleaved parts: eight pixels of three channels.
+    squares: Vec<[f64; LANES]>,
     cross: Vec<f64>,
     square: f64,
     noise: f64,
@@ -58,43 +60,28 @@ struct Sums {
     added: f64,
 }
 
+const LANES: usize = 24;
+
 impl Scatter {
     /// Scatter of the sum over some slots. `reference` is an image of the same quantity from an independent stream.
     ///
     /// Needs at least one sample per replicate and pixel.
     pub fn of(film: &TermFilm, slots: Range<usize>, reference: Option<&TermImage>) -> Self {
-        let (pixels, r) = (film.shape.pixels(), film.shape.replicates);
-        let zero = Sums {
-            q: vec![0.0; r],
-            channels: DVec3::ZERO,
-            cross: vec![0.0; if reference.is_some() { r } else { 0 }],
-            square: 0.0,
-            noise: 0.0,
-            noise_squared: 0.0,
-            added: 0.0,
-        };
-        // chunks of a fixed size, added in order: the same bits for any number of threads
-        let chunk = |c: usize| {
-            let mut sums = zero.clone();
-            (c * 1024..((c + 1) * 1024).min(pixels)).for_each(|p| sums.pixel(film, p, slots.clone(), reference));
+        let replicates = film.shape.replicates;
+        let band = |pixels: Range<usize>| {
+            let (mut sums, mut d) = (Sums::new(replicates, reference.is_some()), Deviations::default());
+            for piece in Piece::all(film, pixels) {
+                d.begin(&piece);
+                d.slots(&piece, slots.clone());
+                sums.piece(&d, slots.clone().map(|s| piece.squares(s).sum::<f64>()).sum());
+                if let Some(x) = reference {
+                    sums.compare(&piece, &d, x);
+                }
+            }
             sums
         };
-        let parts: Vec<Sums> = (0..pixels.div_ceil(1024)).into_par_iter().map(chunk).collect();
-        let s = parts.iter().fold(zero, |a, b| a.plus(b));
-        let (count, n) = (3.0 * pixels as f64, r as f64);
-        let mut largest = Largest::default();
-        slots.clone().for_each(|slot| largest.merge(&film.largest[slot]));
-        let mean = |all: Vec<f64>| all.into_iter().map(|x| x / count).collect();
-        Self {
-            q: mean(s.q),
-            channels: s.channels / (pixels as f64 * n * (n - 1.0)),
-            cross: mean(s.cross),
-            error: if reference.is_some() { (s.square - s.noise) / count } else { f64::NAN },
-            // error of the reference: scatter of |e|² and of se² over the pixels, for normal errors, fully correlated
-            // channels and independent pixels
-            events: largest.spread(s.added),
-            reference_error: (2.0 * s.noise_squared * (1.0 + 1.0 / (n - 1.0))).sqrt() / count,
-        }
+        let parts: Vec<Sums> = bands(film).into_par_iter().map(band).collect();
+        Sums::scatter(parts.iter(), film, slots)
     }
 
     /// R, the number of replicates.
@@ -156,37 +143,93 @@ pub fn jackknife(without: impl Iterator<Item = f64>) -> f64 {
 }
 
 impl Sums {
-    fn pixel(&mut self, film: &TermFilm, p: usize, slots: Range<usize>, reference: Option<&TermImage>) {
-        let (r, samples) = (film.shape.replicates, f64::from(film.samples[p]));
-        let of = |i: usize| slots.clone().map(|s| film.sum(p, i, s)).sum::<DVec3>();
-        let sums: Vec<DVec3> = (0..r).map(of).collect();
-        let mean = sums.iter().sum::<DVec3>() / samples;
-        self.added += slots.clone().map(|s| film.square(p, s)).sum::<f64>();
-        let about = |i: usize| (sums[i] - mean * film.count(p, i)) * (r as f64 / samples);
-        for i in 0..r {
-            let d = about(i);
-            self.q[i] += d.length_squared();
-            self.channels += d * d;
+    /// Nothing yet; `compared` with a reference or not.
+    pub(super) fn new(replicates: usize, compared: bool) -> Self {
+        Self {
+            squares: vec![[0.0; LANES]; replicates],
+            cross: vec![0.0; if compared { replicates } else { 0 }],
+            square: 0.0,
+            noise: 0.0,
+            noise_squared: 0.0,
+            added: 0.0,
         }
-        if let Some(x) = reference {
-            let rgb = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
-            let (off, noise) = (mean - rgb(x.mean[p]), rgb(x.std_error[p]).powf(2.0));
-            (0..r).for_each(|i| self.cross[i] += about(i).dot(off));
+    }
+
+    /// Adds a piece; `added` is Σ x² of its contributions to these slots.
+    pub(super) fn piece(&mut self, d: &Deviations, added: f64) {
+        squares(&d.of, &mut self.squares);
+        self.added += added;
+    }
+
+    /// Adds the differences of a piece from a reference.
+    fn compare(&mut self, piece: &Piece<'_>, d: &Deviations, x: &TermImage) {
+        let rgb = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
+        for (i, p) in piece.pixels.clone().enumerate() {
+            let mean = DVec3::from_slice(&d.mean[3 * i..]);
+            let (off, error) = (mean - rgb(x.mean[p]), rgb(x.std_error[p]));
+            let noise = error.length_squared();
+            for (r, cross) in self.cross.iter_mut().enumerate() {
+                *cross += DVec3::from_slice(&d.replicate(r)[3 * i..]).dot(off);
+            }
             self.square += off.length_squared();
-            self.noise += noise.element_sum();
-            self.noise_squared += noise.element_sum() * noise.element_sum();
+            self.noise += noise;
+            self.noise_squared += noise * noise;
+        }
+    }
+
+    /// The scatter of a film from the sums over its bands, added in their order.
+    pub(super) fn scatter<'a>(
+        mut bands: impl Iterator<Item = &'a Self>,
+        film: &TermFilm,
+        slots: Range<usize>,
+    ) -> Scatter {
+        let (pixels, n) = (film.shape.pixels() as f64, film.shape.replicates as f64);
+        let first = bands.next().cloned().unwrap_or_else(|| Self::new(film.shape.replicates, false));
+        let s = bands.fold(first, |a, b| a.plus(b));
+        let count = 3.0 * pixels;
+        let mut largest = Largest::default();
+        slots.for_each(|slot| largest.merge(&film.largest[slot]));
+        let channel = |c: usize| s.squares.iter().flat_map(|q| q.iter().skip(c).step_by(3)).sum::<f64>();
+        Scatter {
+            q: s.squares.iter().map(|q| q.iter().sum::<f64>() * n * n / count).collect(),
+            channels: DVec3::from_array([0, 1, 2].map(channel)) * n / (pixels * (n - 1.0)),
+            cross: s.cross.iter().map(|x| x * n / count).collect(),
+            error: if s.cross.is_empty() { f64::NAN } else { (s.square - s.noise) / count },
+            // error of the reference: scatter of |e|² and of se² over the pixels, for normal errors, fully correlated
+            // channels and independent pixels
+            reference_error: (2.0 * s.noise_squared * (1.0 + 1.0 / (n - 1.0))).sqrt() / count,
+            events: largest.spread(s.added),
         }
     }
 
     fn plus(mut self, other: &Self) -> Self {
-        self.q.iter_mut().zip(&other.q).for_each(|(a, b)| *a += b);
+        let squares = self.squares.as_flattened_mut().iter_mut().zip(other.squares.as_flattened());
+        squares.for_each(|(a, b)| *a += b);
         self.cross.iter_mut().zip(&other.cross).for_each(|(a, b)| *a += b);
-        self.channels += other.channels;
         self.square += other.square;
         self.noise += other.noise;
         self.noise_squared += other.noise_squared;
         self.added += other.added;
         self
+    }
+}
+
+/// Adds the squares of the deviations, replicate by replicate. Interleaved parts have an order that does not depend on the
+/// width of the vector registers.
+#[pulp::with_simd(squares = Arch::new())]
+#[inline(always)]
+fn squares_with_simd<'a, S: Simd>(_simd: S, deviations: &'a [f64], sums: &'a mut [[f64; LANES]]) {
+    let width = deviations.len() / sums.len();
+    for (row, sums) in deviations.chunks_exact(width).zip(sums) {
+        let (blocks, rest) = row.as_chunks::<LANES>();
+        let mut s = *sums;
+        for block in blocks {
+            for l in 0..LANES {
+                s[l] += block[l] * block[l];
+            }
+        }
+        rest.iter().zip(&mut s).for_each(|(d, s)| *s += d * d);
+        *sums = s;
     }
 }
 

@@ -19,31 +19,39 @@ use fredholm::stats::{Limit, Rate};
 use fredholm::study::lit::Lit;
 use fredholm::study::roulette;
 use fredholm::study::run::Run;
-use fredholm::terms::{Estimate, TermFilm, TermImage};
+use fredholm::terms::{Estimate, TermFilm, image};
 use glam::DVec3;
 pub use mesh::Export;
 use pictures::terms_sheet;
 pub use pictures::z_values;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
-/// Writes a preview after every pass: the contact sheet of the terms so far.
+/// A preview is drawn if the start, or the last one, is at least this long ago. A sheet takes some hundredths of a second to draw,
+/// so that previews cost a few percent of the run, and a run that ends at once draws none.
+const BETWEEN: Duration = Duration::from_millis(500);
+
+/// Writes a preview after a pass: the contact sheet of the terms so far.
 pub fn preview(folder: &Path, caption: Caption, exposure: Exposure) -> impl Fn(&TermFilm) + Sync + Send + use<> {
-    let folder = folder.to_path_buf();
+    let (folder, last) = (folder.to_path_buf(), Mutex::new(Instant::now()));
     move |film: &TermFilm| {
         let slots = film.shape.slots;
-        // a film of the path tracer has one slot and no terms; after 64 samples the preview hardly changes
-        if slots > 1 && film.least_samples() <= 64 {
-            let images: Vec<Pixels> = (0..slots - 1).map(|s| TermImage::of(film, s..s + 1).mean).collect();
+        let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+        // a film of the path tracer has one slot and no terms
+        if slots > 1 && last.elapsed() >= BETWEEN {
+            let images: Vec<Pixels> = image::means(film, 0..slots - 1);
             // an error is ignored here, because writing the final files reports the same error
             let _ = terms_sheet(
                 exposure,
                 film.shape.size,
-                &images,
+                &images.iter().map(Vec::as_slice).collect::<Vec<_>>(),
                 None,
                 &caption,
                 &format!("{} spp so far", film.least_samples()),
             )
             .and_then(|s| s.picture.write(&folder.join("terms.png")).map_err(Failure::from));
+            *last = Instant::now();
         }
     }
 }
@@ -56,21 +64,24 @@ pub fn all(
     exposure: Exposure,
     record: impl Fn() -> Summary,
 ) -> Result<Summary, Failure> {
-    let mut out = Files { folder: folder.to_path_buf(), names: vec![], record: record() };
     let Summary { command, seed, scene, .. } = record();
     let caption = Caption { command, seed, scene };
+    let mut out = Files { folder: folder.to_path_buf(), names: vec![], record: record(), jobs: vec![] };
     let size = run.description.camera.size;
     let trust = pictures::pixel_errors(run);
-    pictures::write_exr(run, &trust, &mut out, size)?;
-    pictures::write_pictures(run, &mut out, size, exposure, &caption)?;
+    pictures::write_exr(run, &trust, &mut out, size);
+    pictures::write_pictures(run, &mut out, size, exposure, &caption);
     if !run.strategies.is_empty() {
         out.names.extend(strategies::FILES.map(str::to_owned));
-        strategies::write(folder, &run.strategies, size.map(|s| s as usize), &caption, &out.attributes(run))?;
+        let (attributes, caption) = (out.attributes(run), &caption);
+        let write = move || strategies::write(folder, &run.strategies, size.map(|s| s as usize), caption, &attributes);
+        out.jobs.push(Box::new(write));
     }
-    plots::write_plots(run, &mut out, &caption)?;
+    plots::write_plots(run, &mut out, &caption);
     if let (Some(what), Some(r)) = (export, &run.radiosity) {
         mesh::write_mesh(r, what, &mut out)?;
     }
+    out.make()?;
     out.names.push("index.html".into());
     out.names.push("summary.json".into());
     let files = out.names.clone();

@@ -54,85 +54,107 @@ pub(super) fn pixel_errors(run: &Run) -> Vec<PixelErrors> {
     layers(run).into_iter().map(|l| l.2).collect()
 }
 
-pub(super) fn write_exr(run: &Run, trust: &[PixelErrors], out: &mut Files, size: [u32; 2]) -> Result<(), Failure> {
-    let all = layers(run);
-    let names: Vec<String> = all.iter().map(|l| format!("{}_se", l.0)).collect();
-    let mut layers: Vec<(&str, &Pixels)> = vec![];
+pub(super) fn write_exr<'a>(run: &'a Run, trust: &[PixelErrors], out: &mut Files<'a>, size: [u32; 2]) {
     let beauty = run.path.as_ref().or(run.terms.first()).map(|s| &s.total);
-    if let Some(image) = beauty.or(run.radiosity.as_ref().map(|r| &r.fine.total)) {
-        layers.push(("", &image.mean));
+    let beauty = beauty.or(run.radiosity.as_ref().map(|r| &r.fine.total));
+    if beauty.is_none() {
+        return;
     }
-    for ((name, image, _), errors) in all.iter().zip(&names) {
-        layers.push((name, &image.mean));
-        layers.push((errors, &image.std_error));
-    }
-    if layers.is_empty() {
-        return Ok(());
-    }
-    let layers: Vec<exr::Layer> = layers.iter().map(|(name, pixels)| exr::Layer { name, pixels }).collect();
     let flags: Vec<(String, String)> =
         trust.iter().map(|t| (format!("fredholm.{}_se", t.layer), t.why.clone())).collect();
-    let mut attributes = out.attributes(run).to_vec();
-    attributes.extend(flags.iter().map(|(name, why)| (name.as_str(), why.clone())));
-    exr::write(&out.add("terms.exr"), size[0] as usize, size[1] as usize, &layers, &attributes)?;
-    Ok(())
+    let attributes = out.attributes(run);
+    out.later("terms.exr", move |path| {
+        let all = layers(run);
+        let names: Vec<String> = all.iter().map(|l| format!("{}_se", l.0)).collect();
+        let mut layers: Vec<exr::Layer> =
+            beauty.into_iter().map(|image| exr::Layer { name: "", pixels: &image.mean }).collect();
+        for ((name, image, _), errors) in all.iter().zip(&names) {
+            layers.push(exr::Layer { name, pixels: &image.mean });
+            layers.push(exr::Layer { name: errors, pixels: &image.std_error });
+        }
+        let mut attributes = attributes.to_vec();
+        attributes.extend(flags.iter().map(|(name, why)| (name.as_str(), why.clone())));
+        exr::write(path, size[0] as usize, size[1] as usize, &layers, &attributes)?;
+        Ok(())
+    });
 }
 
-pub(super) fn write_pictures(
-    run: &Run,
-    out: &mut Files,
+pub(super) fn write_pictures<'a>(
+    run: &'a Run,
+    out: &mut Files<'a>,
     size: [u32; 2],
     exposure: Exposure,
-    caption: &Caption,
-) -> Result<(), Failure> {
+    caption: &'a Caption,
+) {
     let [w, h] = size.map(|s| s as usize);
     let shown = run.terms.first().or(run.radiosity.as_ref().map(|r| &r.fine));
     if let Some(s) = shown {
-        let common = exposure.gain(&s.terms.iter().map(|t| t.mean.as_slice()).collect::<Vec<_>>());
-        for (k, image) in s.terms.iter().enumerate() {
-            let (picture, _) = single(&format!("T{}E", superscript(k)), w, h, &image.mean, common)?;
-            picture.picture.write(&out.add(&format!("T{k:02}.png")))?;
-        }
-        let means: Vec<Pixels> = s.terms.iter().map(|t| t.mean.clone()).collect();
-        let note = format!("{}, {} spp", s.series.label, s.spp);
-        terms_sheet(exposure, size, &means, Some(&s.total.mean), caption, &note)?
-            .picture
-            .write(&out.add("terms.png"))?;
-        // partial sums at the exposure of the whole
-        let gain = Some(whole_gain(&s.total.mean, s.terms.first()));
-        let mut partial: Pixels = vec![[0.0; 3]; w * h];
-        for (k, image) in s.terms.iter().enumerate() {
-            add(&mut partial, &image.mean);
-            if k == 1 {
-                direct_and_indirect(w, h, &s.terms[0].mean, &partial, &s.total.mean, caption)?
-                    .picture
-                    .write(&out.add("direct.png"))?;
-            }
-            let (picture, _) = single(&format!("S{}", subscript(k)), w, h, &partial, gain)?;
-            picture.picture.write(&out.add(&format!("partial_{k:02}.png")))?;
-        }
+        terms_and_sums(s, out, size, exposure, caption);
     }
     if let Some(p) = &run.path {
-        let gain = whole_gain(&p.total.mean, shown.and_then(|s| s.terms.first()));
-        let (picture, _) = single("path tracer", w, h, &p.total.mean, Some(gain))?;
-        picture.picture.write(&out.add("path.png"))?;
+        out.later("path.png", move |path| {
+            let gain = whole_gain(&p.total.mean, shown.and_then(|s| s.terms.first()));
+            let (picture, _) = single("path tracer", w, h, &p.total.mean, Some(gain))?;
+            Ok(picture.picture.write(path)?)
+        });
     }
     if let (Some(t), Some(p)) = (run.terms.first(), &run.path) {
-        let z = z_values((&t.total.mean, &t.total.std_error), (&p.total.mean, &p.total.std_error));
-        zmap::draw("z of the whole image: terms − path tracer", w, h, &z, caption)?.picture.write(&out.add("z.png"))?;
+        out.later("z.png", move |path| {
+            let z = z_values((&t.total.mean, &t.total.std_error), (&p.total.mean, &p.total.std_error));
+            let map = zmap::draw("z of the whole image: terms − path tracer", w, h, &z, caption)?;
+            Ok(map.picture.write(path)?)
+        });
     }
     if let Some(r) = &run.radiosity {
-        let gain = whole_gain(&r.fine.total.mean, r.fine.terms.first());
-        let (picture, _) = single("radiosity", w, h, &r.fine.total.mean, Some(gain))?;
-        picture.picture.write(&out.add("radiosity.png"))?;
+        out.later("radiosity.png", move |path| {
+            let gain = whole_gain(&r.fine.total.mean, r.fine.terms.first());
+            let (picture, _) = single("radiosity", w, h, &r.fine.total.mean, Some(gain))?;
+            Ok(picture.picture.write(path)?)
+        });
     }
     if let (Some(t), Some(p), Some(r)) = (run.terms.first(), &run.path, &run.radiosity) {
-        let gain = Some(whole_gain(&p.total.mean, t.terms.first()));
-        let answers = [("the series: Σ TᵏE", t), ("the path tracer", p), ("the matrix: (I − T)⁻¹E", &r.fine)];
-        let cells = answers.map(|(label, s)| Cell { label: label.into(), pixels: &s.total.mean, gain });
-        contact_sheet::grid("One scene, three answers", w, h, &cells, caption)?.picture.write(&out.add("three.png"))?;
+        out.later("three.png", move |path| {
+            let gain = Some(whole_gain(&p.total.mean, t.terms.first()));
+            let answers = [("the series: Σ TᵏE", t), ("the path tracer", p), ("the matrix: (I − T)⁻¹E", &r.fine)];
+            let cells = answers.map(|(label, s)| Cell { label: label.into(), pixels: &s.total.mean, gain });
+            Ok(contact_sheet::grid("One scene, three answers", w, h, &cells, caption)?.picture.write(path)?)
+        });
     }
-    Ok(())
+}
+
+/// The pictures of the terms and of their partial sums.
+fn terms_and_sums<'a>(s: &'a Sampled, out: &mut Files<'a>, size: [u32; 2], exposure: Exposure, caption: &'a Caption) {
+    let [w, h] = size.map(|s| s as usize);
+    out.later("terms.png", move |path| {
+        let means: Vec<&[[f32; 3]]> = s.terms.iter().map(|t| t.mean.as_slice()).collect();
+        let note = format!("{}, {} spp", s.series.label, s.spp);
+        Ok(terms_sheet(exposure, size, &means, Some(&s.total.mean), caption, &note)?.picture.write(path)?)
+    });
+    let common = exposure.gain(&s.terms.iter().map(|t| t.mean.as_slice()).collect::<Vec<_>>());
+    for (k, image) in s.terms.iter().enumerate() {
+        out.later(&format!("T{k:02}.png"), move |path| {
+            let (picture, _) = single(&format!("T{}E", superscript(k)), w, h, &image.mean, common)?;
+            Ok(picture.picture.write(path)?)
+        });
+    }
+    // partial sums at the exposure of the whole
+    let gain = Some(whole_gain(&s.total.mean, s.terms.first()));
+    let mut partial: Pixels = vec![[0.0; 3]; w * h];
+    for (k, image) in s.terms.iter().enumerate() {
+        add(&mut partial, &image.mean);
+        let partial = partial.clone();
+        if k == 1 {
+            let direct = partial.clone();
+            out.later("direct.png", move |path| {
+                let sheet = direct_and_indirect(w, h, &s.terms[0].mean, &direct, &s.total.mean, caption)?;
+                Ok(sheet.picture.write(path)?)
+            });
+        }
+        out.later(&format!("partial_{k:02}.png"), move |path| {
+            let (picture, _) = single(&format!("S{}", subscript(k)), w, h, &partial, gain)?;
+            Ok(picture.picture.write(path)?)
+        });
+    }
 }
 
 /// The exposure of a whole image. Pixels of lamps are left out where the terms tell which they are.
@@ -154,14 +176,13 @@ fn add(sum: &mut Pixels, image: &Pixels) {
 pub(super) fn terms_sheet(
     exposure: Exposure,
     [w, h]: [u32; 2],
-    images: &[Pixels],
+    images: &[&[[f32; 3]]],
     whole: Option<&Pixels>,
     caption: &Caption,
     note: &str,
 ) -> Result<Sheet, Failure> {
-    let images: Vec<&[[f32; 3]]> = images.iter().map(Vec::as_slice).collect();
-    let (gain, whole) = (exposure.gain(&images), whole.map(Vec::as_slice));
-    Ok(contact_sheet::terms_at(gain, w as usize, h as usize, &images, whole, note, caption)?)
+    let (gain, whole) = (exposure.gain(images), whole.map(Vec::as_slice));
+    Ok(contact_sheet::terms_at(gain, w as usize, h as usize, images, whole, note, caption)?)
 }
 
 /// z for each pixel: the mean over the channels of a − b, divided by its standard error. The channels are treated as fully

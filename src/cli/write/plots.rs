@@ -1,7 +1,6 @@
 //! The figures of a run: how the terms decay, and how the noise falls.
 
 use super::files::Files;
-use crate::cli::base::Failure;
 use fredholm::engine::by_rays::{Estimator, Sampled};
 use fredholm::math::CHANNELS;
 use fredholm::report::figures::decay::{self, Decay, RateLine, independent_ratios};
@@ -12,12 +11,18 @@ use fredholm::stats::TermMeans;
 use fredholm::study::convergence::NoiseCurve;
 use fredholm::study::run::Run;
 use fredholm::terms::{scatter::Scatter, variance::Snapshot};
-use std::path::Path;
 
-pub(super) fn write_plots(run: &Run, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
-    if run.surface.is_empty() && run.radiosity.is_none() {
-        return write_variance(run, out, caption);
+pub(super) fn write_plots<'a>(run: &'a Run, out: &mut Files<'a>, caption: &'a Caption) {
+    if !run.surface.is_empty() || run.radiosity.is_some() {
+        out.figure("decay", move || decay::draw(&decay_of(run), caption));
     }
+    let figure = variance_of(run);
+    if !figure.curves.is_empty() {
+        out.figure("variance", move || variance::draw(&figure, caption));
+    }
+}
+
+fn decay_of(run: &Run) -> Decay {
     // one channel for all of it, so that the measured rate can be compared with the spectral radius
     let c = run.slowest_channel();
     let title = format!("How the terms decay, in the {} channel", CHANNELS[c]);
@@ -55,14 +60,7 @@ pub(super) fn write_plots(run: &Run, out: &mut Files, caption: &Caption) -> Resu
         let points = s.norms.iter().enumerate().filter_map(point).collect();
         figure.image.push(Curve { label: s.series.label.clone(), points, look });
     }
-    for path in decay::draw(&figure, caption)?.write(&out.folder, "decay")? {
-        out.names.push(name_of(&path));
-    }
-    write_variance(run, out, caption)
-}
-
-fn name_of(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    figure
 }
 
 /// The straight lines of the decay plot: observed rate, guaranteed bound, bound of the tail, spectral radius.
@@ -83,7 +81,7 @@ fn lines(run: &Run, c: usize) -> Vec<RateLine> {
     lines
 }
 
-fn write_variance(run: &Run, out: &mut Files, caption: &Caption) -> Result<(), Failure> {
+fn variance_of(run: &Run) -> Variance {
     let mut figure = Variance { title: "How the noise falls".into(), curves: vec![] };
     // one slot of the snapshots, or with no slot their sum
     let mut curve = |label: String, s: &Sampled, slot: Option<usize>| {
@@ -112,10 +110,5 @@ fn write_variance(run: &Run, out: &mut Files, caption: &Caption) -> Result<(), F
     if let Some(p) = &run.path {
         curve("path tracer".into(), p, None);
     }
-    if !figure.curves.is_empty() {
-        for path in variance::draw(&figure, caption)?.write(&out.folder, "variance")? {
-            out.names.push(name_of(&path));
-        }
-    }
-    Ok(())
+    figure
 }

@@ -130,8 +130,13 @@ fn laid_out(
     for (cell, notes) in cells.iter().zip(notes) {
         check_size(&cell.label, width, height, cell.pixels)?;
         let gain = cell.gain.unwrap_or_else(|| auto_gain(cell.pixels));
-        clipped.push(develop(width, height, cell.pixels, gain).clipped);
-        let image = shown(width, height, cell.pixels, gain, NARROWEST, WIDEST);
+        let developed = develop(width, height, cell.pixels, gain);
+        clipped.push(developed.clipped);
+        let image = if width > WIDEST {
+            shown(width, height, cell.pixels, gain, NARROWEST, WIDEST)
+        } else {
+            developed.picture.enlarged(NARROWEST.div_ceil(width))
+        };
         tiles.push(Tile { image, label: cell.label.clone(), notes: notes.clone() });
     }
     let columns = columns.unwrap_or_else(|| balanced(&tiles));

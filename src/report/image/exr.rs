@@ -1,8 +1,8 @@
 //! Several images in one OpenEXR file: one part, float32, one layer per prefix of the channel names (`T03.R`, `T03.G`,
 //! `T03.B`).
 //!
-//! The unnamed layer `R G B` is the one that a viewer shows first. Compression is lossless (ZIP, 16 lines). Equal input
-//! gives equal bytes: blocks are written in scan-line order, and header attributes in the order of their names. The crate
+//! The unnamed layer `R G B` is the one that a viewer shows first. Compression is lossless (run lengths: noise hardly compresses, and ZIP takes
+//! sixteen times as long for files that are 8 % smaller). Equal input gives equal bytes: blocks are written in scan-line order, and header attributes in the order of their names. The crate
 //! keeps custom attributes in a hash map, whose order differs from run to run; `sort_attributes` corrects this.
 //!
 //! Reference: Kainz, Bogart, Stanczyk, Hillman, *Technical Introduction to OpenEXR* (2013), and the file layout page of
@@ -90,10 +90,10 @@ pub fn write(
         own.other.insert(text(name), AttributeValue::Text(text(value)));
     }
     let encoding =
-        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+        Encoding { compression: Compression::RLE, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
     let image = exr::prelude::Image::from_layer(Part::new((width, height), own, encoding, AnyChannels::sort(channels)));
     let mut bytes = Cursor::new(Vec::new());
-    image.write().to_buffered(&mut bytes).map_err(|e| wrong(e.to_string()))?;
+    image.write().non_parallel().to_buffered(&mut bytes).map_err(|e| wrong(e.to_string()))?;
     let bytes = sort_attributes(&bytes.into_inner()).ok_or_else(|| wrong("the header cannot be parsed".into()))?;
     write_atomically(path, &bytes)
 }

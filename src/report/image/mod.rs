@@ -1,5 +1,6 @@
 //! Pictures: files with linear radiance, 8-bit pictures, and sheets of pictures with labels.
 
+mod codes;
 pub mod contact_sheet;
 pub mod exposure;
 pub mod exr;

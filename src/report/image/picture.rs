@@ -11,10 +11,11 @@
 //! | s | transfer curve of IEC 61966-2-1 (1999) | [`srgb`] |
 //! | gain | …, 1/2, 1/1.5, 1, 1.5, 2, 3, 4, 6, 8, … | [`auto_gain`] |
 
-use std::{io::Cursor, path::Path};
+use std::{io::Cursor, path::Path, sync::OnceLock};
 
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 
+use super::codes::Codes;
 use crate::report::{ReportError, write_atomically};
 
 /// An 8-bit sRGB picture, row by row from the top.
@@ -59,6 +60,8 @@ pub const NON_FINITE: [u8; 3] = [255, 0, 255];
 
 /// Applies the gain and the sRGB curve to linear pixels.
 pub fn develop(width: usize, height: usize, pixels: &[[f32; 3]], gain: f64) -> Developed {
+    static CODES: OnceLock<Codes> = OnceLock::new();
+    let srgb_codes = CODES.get_or_init(|| Codes::new(srgb));
     let (mut clipped, mut negative, mut non_finite) = (0, 0, 0);
     let codes = pixels
         .iter()
@@ -70,7 +73,7 @@ pub fn develop(width: usize, height: usize, pixels: &[[f32; 3]], gain: f64) -> D
             let scaled = pixel.map(|v| gain * f64::from(v));
             clipped += usize::from(scaled.iter().any(|&v| v > 1.0));
             negative += usize::from(scaled.iter().any(|&v| v < 0.0));
-            scaled.map(|v| (255.0 * srgb(v.clamp(0.0, 1.0))).round() as u8)
+            scaled.map(|v| srgb_codes.of(v.clamp(0.0, 1.0)))
         })
         .collect();
     Developed { picture: Picture { width, height, pixels: codes }, clipped, negative, non_finite }
@@ -112,11 +115,14 @@ pub fn auto_gain_beside_lamps(pixels: &[[f32; 3]], emitted: &[[f32; 3]]) -> f64 
 
 fn gain_for(luminance: impl Iterator<Item = f64>) -> f64 {
     let mut luminance: Vec<f64> = luminance.filter(|y| y.is_finite()).collect();
-    luminance.sort_unstable_by(f64::total_cmp);
-    let percentile = |sorted: &[f64]| sorted.get((sorted.len() * 99).div_ceil(100).max(1) - 1).copied().unwrap_or(0.0);
-    let mut bright = percentile(&luminance);
+    let percentile = |all: &mut [f64]| {
+        let place = (all.len() * 99).div_ceil(100).max(1) - 1;
+        if all.is_empty() { 0.0 } else { *all.select_nth_unstable_by(place, f64::total_cmp).1 }
+    };
+    let mut bright = percentile(&mut luminance);
     if bright <= 0.0 {
-        bright = percentile(&luminance[luminance.partition_point(|&y| y <= 0.0)..]);
+        luminance.retain(|&y| y > 0.0);
+        bright = percentile(&mut luminance);
     }
     if bright > 0.0 { nearest_gain(0.8 / bright) } else { 1.0 }
 }

@@ -9,10 +9,12 @@
 //! | settings of the run | [`Asked`], [`Settings`] |
 //! | the work, in the order above | [`Run::solve`] |
 //! | results | the fields of [`Run`] |
+//! | how many paths the results without images get | [`share`] |
 //! | comparison of two results | [`RunVerdict`] |
 //! | rates, bounds and orders that follow | [`facts`] |
 
 pub mod facts;
+mod share;
 mod verdicts;
 
 use crate::engine::Settings;
@@ -30,6 +32,8 @@ use crate::study::strategies::{self, Strategy};
 use crate::study::surface;
 use crate::terms::functional::Replicates;
 use crate::terms::{Recorded, Variance, World};
+use rayon::prelude::*;
+use share::{Share, Together};
 pub use verdicts::RunVerdict;
 
 /// The results that a run computes.
@@ -238,26 +242,34 @@ impl Run {
         if !self.wants(World::Terms) {
             return;
         }
-        let Settings { spp, max_bounces, .. } = self.settings;
-        let reached = self.terms.iter().map(|t| t.spp).min().unwrap_or(0);
-        let paths = reached.min(spp).max(1).saturating_mul(1024).min(1 << 22);
-        for &estimator in &self.asked.surface {
-            if !progress.stopped() {
-                let norms = surface::norms(&self.scene, estimator, paths, &self.settings, progress);
-                self.surface.push((estimator, norms));
-            }
-        }
+        let (description, scene, settings) = (&self.description, &self.scene, &self.settings);
+        let reached = self.terms.iter().map(|t| t.spp).min().unwrap_or(0).clamp(1, settings.spp.max(1));
+        let share = Share::of(scene.camera.size, reached);
         // where the paths of the run never end by roulette, the scene may keep all its light, and these paths would not end either
-        if self.asked.bounces && self.settings.roulette.ends() && !progress.stopped() {
-            // without images these cost little, so they have enough paths even where the run has few
-            self.bounces = bounces(&self.scene, paths.saturating_mul(4).max(1 << 15), &self.settings, progress);
-            self.lit = lit(&self.description, &self.scene, (paths / 4).max(1 << 13), &self.settings, progress);
-        }
-        // 3 % of the run; left out if that is less than two samples, or if the moments of that many terms would fill the memory
+        let longer = self.asked.bounces && settings.roulette.ends();
         let prefixes = self.asked.moments && self.asked.estimators.contains(&Estimator::Prefix);
-        if prefixes && spp >= 64 && max_bounces <= 64 && !progress.stopped() {
-            self.moments = roulette::pilot(&self.scene, &self.settings, (spp / 32).min(16), progress);
-        }
+        // left out if there are few samples, or if the moments of that many terms would fill the memory
+        let moments = prefixes && settings.spp >= 64 && settings.max_bounces <= 64;
+        let work = Together(progress);
+        progress.begin("surfaces, long terms, moments", share.all(self.asked.surface.len(), longer, moments));
+        let inner = Progress::to(&work);
+        let inner = progress.stop_flag().map_or(inner, |flag| inner.stopped_by(flag));
+        let goes_on = |asked: bool| asked && !inner.stopped();
+        let norms = || {
+            let one = |&e: &Estimator| {
+                (!inner.stopped()).then(|| (e, surface::norms(scene, e, share.norms, settings, inner)))
+            };
+            self.asked.surface.par_iter().filter_map(one).collect()
+        };
+        let bounces = || goes_on(longer).then(|| bounces(scene, share.bounces, settings, inner)).flatten();
+        let lit = || if goes_on(longer) { lit(description, scene, share.lit, settings, inner) } else { vec![] };
+        let (samples, pixels) = share.moments(settings.spp);
+        let moments =
+            || goes_on(moments).then(|| roulette::pilot_of(scene, settings, samples, pixels, inner)).flatten();
+        // each of these has less work for several threads than all of them together
+        let ((norms, moments), (bounces, lit)) =
+            rayon::join(|| rayon::join(norms, moments), || rayon::join(bounces, lit));
+        (self.surface, self.moments, self.bounces, self.lit) = (norms, moments, bounces, lit);
     }
 
     /// Compares the results, and removes error bars whose variance is infinite.
