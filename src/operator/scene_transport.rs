@@ -15,7 +15,6 @@
 
 use super::form_factor::Visibility;
 use super::patches::SurfacePoint;
-use super::scene_waves;
 use super::transport::{self, Samples, Seen, Sensor, Step, Transport, Wave};
 use crate::math::direction::Frame;
 use crate::math::{Columns, Rgb, Rng, Streams};
@@ -201,6 +200,6 @@ impl Sensor<SceneTransport<'_>> for Camera {
         if !t.scene.in_waves() {
             return transport::start_one_by_one(self, t, wave, streams, alive);
         }
-        scene_waves::start_by_wave(self, t, wave, streams, alive);
+        t.start_by_wave(self, wave, streams, alive);
     }
 }

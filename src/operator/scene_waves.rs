@@ -52,23 +52,14 @@ impl SceneTransport<'_> {
         self.scene.connect(at, rays, self.sampling);
         let mut some = 0;
         for place in 0..places {
-            if rays.flag[place] != NOTHING {
-                rays.list[some] = place as u32;
-                some += 1;
-            }
-        }
-        // the answers replace what `prim` said
-        for &place in &rays.list[..some] {
-            if rays.prim[place as usize] == 0 {
-                rays.cosine[place as usize] = 0.0;
-            }
+            rays.list[some] = place as u32;
+            some += usize::from(rays.flag[place] != NOTHING);
         }
         self.scene.block_wave(rays, some);
         for &place in &rays.list[..some] {
             let place = place as usize;
             if rays.prim[place] == 0 {
-                let value = rays.value.get(place) * rays.radiance.get(place);
-                out.set(rays.order[place] as usize, value, rays.t[place], rays.cosine[place]);
+                out.set(rays.order[place] as usize, rays.value.get(place), rays.t[place], rays.cosine[place]);
             }
         }
     }
@@ -130,29 +121,23 @@ impl SceneTransport<'_> {
         columns::gather(side, &rays.side, list);
         omega.negate(on);
     }
-}
 
-/// What the camera sees along one ray for each path of a wave.
-pub(super) fn start_by_wave(
-    camera: &Camera,
-    t: &SceneTransport,
-    wave: &mut VertexWave,
-    streams: Streams,
-    alive: &mut Vec<u32>,
-) {
-    numbers(streams, &mut wave.rays.u);
-    let VertexWave { p, n, omega, side, rays } = wave;
-    for i in 0..streams.len() {
-        let (o, d) = camera.ray(streams.pixel[i], [rays.u[0][i], rays.u[1][i]]);
-        rays.o.set(i, o);
-        rays.d.set(i, d);
+    /// What the camera sees along one ray for each path of a wave.
+    pub(super) fn start_by_wave(&self, camera: &Camera, wave: &mut VertexWave, streams: Streams, alive: &mut Vec<u32>) {
+        numbers(streams, &mut wave.rays.u);
+        let VertexWave { p, n, omega, side, rays } = wave;
+        for i in 0..streams.len() {
+            let (o, d) = camera.ray(streams.pixel[i], [rays.u[0][i], rays.u[1][i]]);
+            rays.o.set(i, o);
+            rays.d.set(i, d);
+        }
+        self.scene.look_wave(rays, streams.len());
+        let seen = (0..streams.len()).filter(|&i| rays.side[i] != NOWHERE).map(|i| i as u32);
+        alive.extend(seen);
+        for (state, ray) in [(p, &rays.q), (n, &rays.m), (omega, &rays.d)] {
+            state.gather(ray, alive);
+        }
+        columns::gather(side, &rays.side, alive);
+        omega.negate(alive.len());
     }
-    t.scene.look_wave(rays, streams.len());
-    let seen = (0..streams.len()).filter(|&i| rays.side[i] != NOWHERE).map(|i| i as u32);
-    alive.extend(seen);
-    for (state, ray) in [(p, &rays.q), (n, &rays.m), (omega, &rays.d)] {
-        state.gather(ray, alive);
-    }
-    columns::gather(side, &rays.side, alive);
-    omega.negate(alive.len());
 }

@@ -36,6 +36,11 @@ pub(crate) struct Group {
     pub(crate) coloured: bool,
 }
 
+/// Number of sides up to which a table by side is kept.
+pub(crate) const FEW: usize = 128;
+/// Reflectances by side, one row per channel.
+pub(crate) type ColourTable = [[f32; FEW]; 3];
+
 /// The sides of all shapes: number 2·shape, plus 1 for the back.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Faces {
@@ -44,6 +49,8 @@ pub(crate) struct Faces {
     of_prim: Vec<u32>,
     /// Group 0 is black: sides that scatter nothing, and vertices that are not on a surface.
     groups: Vec<Group>,
+    /// [`Face::colour`] by side, if there are few.
+    colours: Option<Box<ColourTable>>,
 }
 
 impl Faces {
@@ -74,7 +81,19 @@ impl Faces {
                 });
             }
         }
+        if all.sides() as usize <= FEW {
+            let mut table = Box::new([[0.0; FEW]; 3]);
+            for side in 0..all.sides() {
+                table.iter_mut().zip(all.of(side).colour.to_array()).for_each(|(row, c)| row[side as usize] = c);
+            }
+            all.colours = Some(table);
+        }
         all
+    }
+
+    /// [`Face::colour`] by side, if there are few sides.
+    pub(crate) fn colours(&self) -> Option<&ColourTable> {
+        self.colours.as_deref()
     }
 
     /// The group of a BSDF; a new one if there is none yet.

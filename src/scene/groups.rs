@@ -12,6 +12,7 @@
 //! the bits are those of single vertices.
 
 use super::bsdf::{Bsdf, Model, Sampling, TransportMode, Visitor};
+use super::faces::{ColourTable, FEW};
 use super::rounding::{offset_origin, segment};
 use super::vertex::{DELTA, NOTHING, Rays, SOME, Side};
 use super::{Scene, Vertex};
@@ -92,7 +93,12 @@ impl Scene {
     /// The reflectance of every vertex in a coloured group.
     fn colours(&self, at: Vertices, rays: &mut Rays) {
         for g in (1..self.faces.groups().len()).filter(|&g| self.faces.groups()[g].coloured) {
-            for place in rays.ends[g - 1] as usize..rays.ends[g] as usize {
+            let places = rays.ends[g - 1] as usize..rays.ends[g] as usize;
+            if let (Some(table), None) = (self.faces.colours(), &self.textures) {
+                colours_in_lanes(table, at.side, &rays.order, &mut rays.colour, places);
+                continue;
+            }
+            for place in places {
                 let i = rays.order[place] as usize;
                 let rho = match self.textures {
                     None => self.faces.of(at.side[i]).colour,
@@ -122,8 +128,9 @@ impl Scene {
     }
 
     /// Evaluates the BSDF of every sorted vertex for its light point, given by place in `rays.to`, `rays.t` (density) and
-    /// `rays.q`, `rays.m` (position and normal). Writes by place: the shadow segment to `rays.o` and `rays.d`, the weight to
-    /// `rays.value`, the density of scattering to `rays.cosine`, and whether there is a contribution to `rays.flag`.
+    /// `rays.q`, `rays.m` (position and normal), `rays.radiance`, `rays.prim` (1 if a ray can hit the light). Writes by place:
+    /// the shadow segment to `rays.o` and `rays.d`, the radiance times its weight to `rays.value`, the density of scattering
+    /// to `rays.cosine`, and whether there is a contribution to `rays.flag`.
     pub(crate) fn connect(&self, at: Vertices, rays: &mut Rays, sampling: Sampling) {
         self.each_group(rays, |group, places, rays| {
             group.bsdf.welcome(Connect { at, rays, places, coloured: group.coloured, sampling });
@@ -132,13 +139,12 @@ impl Scene {
 }
 
 #[inline(always)]
-fn gather(column: &[f32], at: &[u32; LANES]) -> Lane {
+fn gather(column: &[f32], at: &Paths) -> Lane {
     let mut lane = [0.0; LANES];
-    // neighbours in the wave are usually neighbours here too
-    if at[LANES - 1].wrapping_sub(at[0]) == LANES as u32 - 1 {
-        lane.copy_from_slice(&column[at[0] as usize..][..LANES]);
+    if at.neighbours {
+        lane.copy_from_slice(&column[at.list[0] as usize..][..LANES]);
     } else {
-        for (lane, &i) in lane.iter_mut().zip(at) {
+        for (lane, &i) in lane.iter_mut().zip(&at.list) {
             *lane = column[i as usize];
         }
     }
@@ -146,7 +152,7 @@ fn gather(column: &[f32], at: &[u32; LANES]) -> Lane {
 }
 
 #[inline(always)]
-fn gather3(c: &Columns, at: &[u32; LANES]) -> Lane3 {
+fn gather3(c: &Columns, at: &Paths) -> Lane3 {
     [gather(&c.x, at), gather(&c.y, at), gather(&c.z, at)]
 }
 
@@ -184,15 +190,50 @@ fn put(lane: &mut Lane3, i: usize, v: Vec3) {
     (lane[0][i], lane[1][i], lane[2][i]) = (v.x, v.y, v.z);
 }
 
+/// The paths at sixteen places.
+struct Paths {
+    list: [u32; LANES],
+    /// True if they are neighbours in the wave, as they usually are.
+    neighbours: bool,
+}
+
 /// The paths at sixteen places from `place` on; after the last place of the group, the last path again.
 #[inline(always)]
-fn paths(order: &[u32], place: usize, end: usize) -> [u32; LANES] {
+fn paths(order: &[u32], place: usize, end: usize) -> Paths {
     if place + LANES <= end {
-        let mut paths = [0; LANES];
-        paths.copy_from_slice(&order[place..place + LANES]);
-        return paths;
+        let mut list = [0; LANES];
+        list.copy_from_slice(&order[place..place + LANES]);
+        // paths of a group ascend
+        return Paths { neighbours: list[LANES - 1] - list[0] == LANES as u32 - 1, list };
     }
-    std::array::from_fn(|i| order[(place + i).min(end - 1)])
+    Paths { list: std::array::from_fn(|i| order[(place + i).min(end - 1)]), neighbours: false }
+}
+
+/// The reflectance of every vertex at these places, by its side.
+#[pulp::with_simd(colours_in_lanes = Arch::new())]
+#[inline(always)]
+fn colours_in_lanes_with_simd<'a, S: Simd>(
+    _simd: S,
+    table: &'a ColourTable,
+    side: &'a [Side],
+    order: &'a [u32],
+    colour: &'a mut Columns,
+    places: Range<usize>,
+) {
+    for place in places.clone().step_by(LANES) {
+        let list = paths(order, place, places.end);
+        let mut sides = [0; LANES];
+        for (to, &i) in sides.iter_mut().zip(&list.list) {
+            *to = side[i as usize];
+        }
+        for (to, table) in [&mut colour.x, &mut colour.y, &mut colour.z].into_iter().zip(table) {
+            let mut lane = [0.0; LANES];
+            for i in 0..LANES {
+                lane[i] = table[sides[i] as usize % FEW];
+            }
+            store(to, place, &lane);
+        }
+    }
 }
 
 struct Depart<'a, 'r> {
@@ -271,6 +312,7 @@ impl<M: Model> WithSimd for With<Connect<'_, '_>, M> {
             let (p, n, omega) = (gather3(at.p, &list), gather3(at.n, &list), gather3(at.omega, &list));
             let (to, q, m) = (load3(&rays.to, place), load3(&rays.q, place), load3(&rays.m, place));
             let (density, rho) = (load(&rays.t, place), load3(&rays.colour, place));
+            let (radiance, hittable) = (load3(&rays.radiance, place), &rays.prim[place..place + LANES]);
             let (mut o, mut d, mut value) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [[0.0; LANES]; 3]);
             let (mut pdf, mut flag) = ([0.0; LANES], [NOTHING; LANES]);
             for i in 0..LANES {
@@ -282,8 +324,8 @@ impl<M: Model> WithSimd for With<Connect<'_, '_>, M> {
                     let (start, along) = segment(vector(&p, i), found.normal, vector(&q, i), vector(&m, i));
                     put(&mut o, i, start);
                     put(&mut d, i, along);
-                    put(&mut value, i, found.value);
-                    pdf[i] = found.pdf;
+                    put(&mut value, i, found.value * vector(&radiance, i));
+                    pdf[i] = if hittable[i] != 0 { found.pdf } else { 0.0 };
                     flag[i] = if seen { SOME } else { NOTHING };
                 }
             }

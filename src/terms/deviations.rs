@@ -33,6 +33,8 @@ impl<'a> Piece<'a> {
     /// The pieces that neighbouring pixels consist of.
     pub(super) fn all(film: &'a TermFilm, pixels: Range<usize>) -> impl Iterator<Item = Self> {
         let blocks = pixels.start / BLOCK..pixels.end.div_ceil(BLOCK);
+        // a film of few rows has bands without a pixel
+        let blocks = if pixels.is_empty() { 0..0 } else { blocks };
         blocks.map(move |b| {
             let pixels = pixels.start.max(b * BLOCK)..pixels.end.min((b + 1) * BLOCK);
             Self { film, pixels }

@@ -1,8 +1,8 @@
 //! The interface of every BSDF: the same methods as [`Bsdf`](super::Bsdf), in the same local directions.
 
-use super::world::{self, Departure, Towards};
+use super::world::{Departure, Towards};
 use super::{BsdfSample, Sampling, TransportMode};
-use crate::math::Rgb;
+use crate::math::{Rgb, direction::Frame};
 use glam::Vec3;
 
 /// The BSDF of one side of a surface at a point.
@@ -52,12 +52,20 @@ pub trait Model: Copy {
     /// [`Self::sample`] in world coordinates. An override may be faster, but means the same.
     #[inline(always)]
     fn depart(&self, n: Vec3, omega: Vec3, sampling: Sampling, mode: TransportMode, u: [f32; 3]) -> Option<Departure> {
-        world::depart(self, n, omega, sampling, mode, u)
+        let frame = Frame::new(n);
+        let s = self.sample(frame.local(omega), sampling, mode, u)?;
+        let normal = if s.wi.z > 0.0 { n } else { -n };
+        Some(Departure { direction: frame.world(s.wi), normal, weight: s.weight, pdf: s.pdf, delta: s.delta })
     }
     /// f cos θ_i and [`Self::pdf`] in world coordinates; `None` if f cos θ_i is zero.
     #[inline(always)]
     fn towards(&self, n: Vec3, omega: Vec3, to: Vec3, sampling: Sampling, mode: TransportMode) -> Option<Towards> {
-        world::towards(self, n, omega, to, sampling, mode)
+        let frame = Frame::new(n);
+        let (wo, wi) = (frame.local(omega), frame.local(to));
+        let value = self.eval(wo, wi, mode) * wi.z.abs();
+        let normal = if wi.z > 0.0 { n } else { -n };
+        // not `bool::then`: its closure would not be compiled for the lanes
+        if value == Rgb::ZERO { None } else { Some(Towards { value, pdf: self.pdf(wo, wi, sampling), normal }) }
     }
     /// The same for radiance from a direction that was drawn with density `pdf`: the value is divided by it.
     #[inline(always)]

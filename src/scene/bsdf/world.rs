@@ -12,10 +12,11 @@
 //! | ω_i | unit vector in which the path goes on | [`Departure::direction`], argument `to` |
 //! | side of the surface on which ω_i lies | its normal, n or −n | [`Departure::normal`], [`Towards::normal`] |
 //!
-//! A wave of paths and a single path use the same functions, so that both give the same bits.
+//! The functions are [`Model::depart`](super::Model::depart), [`Model::towards`](super::Model::towards) and
+//! [`Model::connect`](super::Model::connect). A wave of paths and a single path use the same functions, so that both give the
+//! same bits.
 
-use super::{Model, Sampling, TransportMode};
-use crate::math::{Rgb, direction::Frame};
+use crate::math::Rgb;
 use glam::Vec3;
 
 /// A direction sampled at a vertex; no ray has been traced yet.
@@ -42,38 +43,4 @@ pub struct Towards {
     pub pdf: f32,
     /// The normal on the side of the surface on which the direction lies.
     pub normal: Vec3,
-}
-
-/// A sampled direction in world coordinates.
-#[inline(always)]
-pub(super) fn depart(
-    f: &impl Model,
-    n: Vec3,
-    omega: Vec3,
-    sampling: Sampling,
-    mode: TransportMode,
-    u: [f32; 3],
-) -> Option<Departure> {
-    let frame = Frame::new(n);
-    let s = f.sample(frame.local(omega), sampling, mode, u)?;
-    let normal = if s.wi.z > 0.0 { n } else { -n };
-    Some(Departure { direction: frame.world(s.wi), normal, weight: s.weight, pdf: s.pdf, delta: s.delta })
-}
-
-/// f |cos θ_i|, p and the side for the unit direction `to`; `None` if f cos θ_i is zero.
-#[inline(always)]
-pub(super) fn towards(
-    f: &impl Model,
-    n: Vec3,
-    omega: Vec3,
-    to: Vec3,
-    sampling: Sampling,
-    mode: TransportMode,
-) -> Option<Towards> {
-    let frame = Frame::new(n);
-    let (wo, wi) = (frame.local(omega), frame.local(to));
-    let value = f.eval(wo, wi, mode) * wi.z.abs();
-    let normal = if wi.z > 0.0 { n } else { -n };
-    // not `bool::then`: its closure would not be compiled for the lanes
-    if value == Rgb::ZERO { None } else { Some(Towards { value, pdf: f.pdf(wo, wi, sampling), normal }) }
 }
