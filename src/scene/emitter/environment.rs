@@ -102,7 +102,7 @@ impl Environment {
         let [w, h] = self.image.size;
         if [w, h] == [1, 1] {
             // one texel has no edges to keep away from
-            return (uniform_sphere(u), self.density([0, 0]));
+            return (uniform_sphere(u).normalize(), self.density([0, 0]));
         }
         let ([column, row], rest) = self.table.sample(u);
         // the centre of the interval of length 2⁻²⁴ that the number represents
