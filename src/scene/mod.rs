@@ -23,6 +23,7 @@ pub mod description;
 pub mod emitter;
 mod error;
 mod faces;
+mod flat;
 mod groups;
 mod lighting;
 pub mod load;

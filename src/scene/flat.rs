@@ -1,0 +1,168 @@
+//! The parallelogram, ready for rays: its plane, the coordinates across it, and the test of its edges.
+//!
+//! ```text
+//! t = (h − n·o)/(n·d)        |u|, |v| ≤ 1 with u = a·p + a0, v = b·p + b0        p = o + t d
+//! ```
+//!
+//! Close to an edge, where rounding decides, the test of a triangle's edges is used; see [`shape`](super::shape).
+
+use super::plucker;
+use super::rounding::{KEEP, MOST_KEEP, UNSURE, across, dot, onto};
+use glam::{DVec3, Vec3};
+
+/// Volume between a ray and an edge, whose ends are given relative to the start of the ray. The sign is exactly opposite if
+/// the ends are exchanged.
+#[inline(always)]
+fn edge(a: Vec3, b: Vec3, d: Vec3) -> f32 {
+    plucker::edge(a.to_array(), b.to_array(), d.to_array())
+}
+
+/// A parallelogram, ready for rays, in the plane `n·p = h`. The coordinates `a·p + a0` and `b·p + b0` run from −1/s to 1/s
+/// across it, with s = 1 − R and R in units of half the width. If both are in [−1, 1], a hit is certain.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flat {
+    pub(super) n: Vec3,
+    pub(super) h: f32,
+    pub(super) a: Vec3,
+    pub(super) a0: f32,
+    pub(super) b: Vec3,
+    pub(super) b0: f32,
+    /// Largest coordinate at which rounding may decide the result; from 1 up to here the edge test is used.
+    pub(super) band: f32,
+    /// s for both coordinates.
+    pub(super) sure: [f32; 2],
+    pub(super) corners: [Vec3; 4],
+    pub(super) center: Vec3,
+    pub(super) half_u: Vec3,
+    pub(super) half_v: Vec3,
+    /// (1 − M)/s for both coordinates: hits are kept inside this range.
+    pub(super) keep: [f32; 2],
+}
+
+impl Flat {
+    /// `touch` is the largest difference of two corners that are meant to be the same, m.
+    pub(super) fn new(origin: DVec3, u: DVec3, v: DVec3, touch: f64) -> Self {
+        let g = u.cross(v);
+        let (gg, n) = (g.length_squared(), g.normalize());
+        let (a, b) = (2.0 * v.cross(g) / gg, 2.0 * g.cross(u) / gg);
+        // 1/|a| is half the width between the edges along v
+        let corners = [origin, origin + u, origin + v, origin + u + v];
+        let round = [a, b].map(|a| across(a, &corners));
+        let touch = [a, b].map(|a| touch * a.length());
+        let part = |k: f64, most: f64| [0, 1].map(|i| (k * round[i] + touch[i]).min(most));
+        let sure = part(UNSURE, 0.25).map(|r| 1.0 - r);
+        let [wide, long] = [0, 1].map(|i| (1.0 + part(KEEP, 0.5)[i]) / sure[i]);
+        let f = |v: DVec3| v.as_vec3();
+        Self {
+            n: f(n),
+            h: n.dot(origin) as f32,
+            a: f(a / sure[0]),
+            a0: ((-1.0 - a.dot(origin)) / sure[0]) as f32,
+            b: f(b / sure[1]),
+            b0: ((-1.0 - b.dot(origin)) / sure[1]) as f32,
+            band: wide.max(long) as f32,
+            sure: sure.map(|s| s as f32),
+            corners: [0, 1, 3, 2].map(|i| f(corners[i])),
+            center: f(origin + 0.5 * (u + v)),
+            half_u: f(0.5 * u),
+            half_v: f(0.5 * v),
+            keep: [0, 1].map(|i| ((1.0 - part(KEEP, MOST_KEEP)[i]) / sure[i]) as f32),
+        }
+    }
+
+    /// How many numbers describe where a hit lies.
+    pub(crate) const NUMBERS: usize = 22;
+
+    /// The numbers that [`Self::settle`] uses.
+    pub(crate) fn numbers(&self) -> [f32; Self::NUMBERS] {
+        let Self { n, h, a, a0, b, b0, sure, half_u: u, half_v: v, keep, .. } = *self;
+        [
+            n.x, n.y, n.z, h, a.x, a.y, a.z, a0, b.x, b.y, b.z, b0, sure[0], sure[1], u.x, u.y, u.z, v.x, v.y, v.z,
+            keep[0], keep[1],
+        ]
+    }
+
+    /// A parallelogram with these numbers. It has no corners, so no ray can meet it.
+    #[inline(always)]
+    pub(crate) fn on_plane(x: [f32; Self::NUMBERS]) -> Self {
+        Self {
+            n: Vec3::new(x[0], x[1], x[2]),
+            h: x[3],
+            a: Vec3::new(x[4], x[5], x[6]),
+            a0: x[7],
+            b: Vec3::new(x[8], x[9], x[10]),
+            b0: x[11],
+            sure: [x[12], x[13]],
+            half_u: Vec3::new(x[14], x[15], x[16]),
+            half_v: Vec3::new(x[17], x[18], x[19]),
+            keep: [x[20], x[21]],
+            band: 0.0,
+            corners: [Vec3::ZERO; 4],
+            center: Vec3::ZERO,
+        }
+    }
+
+    /// The unit normal of the front.
+    #[inline(always)]
+    pub(crate) fn normal(&self) -> Vec3 {
+        self.n
+    }
+
+    /// A uniformly distributed point, chosen by `u`.
+    #[inline(always)]
+    pub(crate) fn point(&self, u: [f32; 2]) -> Vec3 {
+        onto(self.center + self.half_u * (2.0 * u[0] - 1.0) + self.half_v * (2.0 * u[1] - 1.0), self.n, self.h)
+    }
+
+    /// Returns the distance t, whether the ray passes inside the parallelogram or close to its edges, and whether this is
+    /// certain. If not, [`Self::edges`] decides. Packets use this function lane by lane.
+    #[inline(always)]
+    pub(crate) fn look(&self, o: Vec3, d: Vec3) -> (f32, bool, bool) {
+        let t = (self.h - dot(self.n, o)) / dot(self.n, d);
+        let p = Vec3::new(d.x * t + o.x, d.y * t + o.y, d.z * t + o.z);
+        let (u, v) = ((dot(self.a, p) + self.a0).abs(), (dot(self.b, p) + self.b0).abs());
+        let most = if u > v { u } else { v };
+        (t, (most <= self.band) & (t > 0.0), most <= 1.0)
+    }
+
+    /// Returns true if the line of the ray passes between the edges. An edge that a neighbouring primitive shares has the
+    /// same sign there.
+    #[inline(always)]
+    pub(crate) fn edges(&self, o: Vec3, d: Vec3) -> bool {
+        self.between(o.x, o.y, o.z, d.x, d.y, d.z)
+    }
+
+    /// The same with plain numbers as arguments, which are passed in registers. With a ray in memory, the loops around this
+    /// rare call were half as fast.
+    #[cold]
+    #[inline(never)]
+    fn between(&self, ox: f32, oy: f32, oz: f32, dx: f32, dy: f32, dz: f32) -> bool {
+        let (o, d) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
+        let v = self.corners.map(|p| p - o);
+        let w = [0, 1, 2, 3].map(|i| edge(v[(i + 1) % 4], v[i], d));
+        (w.iter().all(|w| *w >= 0.0) || w.iter().all(|w| *w <= 0.0)) && w.iter().any(|w| *w != 0.0)
+    }
+
+    #[inline(always)]
+    pub(super) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
+        let (t, near, certain) = self.look(o, d);
+        let mut met = near & certain;
+        if near != met {
+            met = self.edges(o, d);
+        }
+        (t, met)
+    }
+
+    /// The point of the plane nearest to `p`, kept inside the edges.
+    #[inline(always)]
+    pub(crate) fn settle(&self, p: Vec3) -> Vec3 {
+        let p = onto(p, self.n, self.h);
+        let (u, v) = (dot(self.a, p) + self.a0, dot(self.b, p) + self.b0);
+        let [ku, kv] = self.keep;
+        if u.abs() <= ku && v.abs() <= kv {
+            return p;
+        }
+        let back = |x: f32, k: f32| if x.abs() <= k { 0.0 } else { k.copysign(x) - x };
+        p + self.half_u * (self.sure[0] * back(u, ku)) + self.half_v * (self.sure[1] * back(v, kv))
+    }
+}
