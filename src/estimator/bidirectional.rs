@@ -56,7 +56,9 @@ pub struct Found {
 impl Found {
     fn clear(&mut self, s: usize, k: usize) {
         (self.s, self.k) = (s, k);
-        (self.pixel.clear(), self.sample.clear(), self.weight.clear());
+        self.pixel.clear();
+        self.sample.clear();
+        self.weight.clear();
     }
 
     fn push(&mut self, (pixel, sample): (u32, u32), value: Rgb, weight: f64) {

@@ -147,10 +147,11 @@ fn add(jobs: &[Splats], film: &mut TermFilm) {
             let mut block = FilmBlock { shape, first, pixels, sums, squares, largest, non_finite: 0, rays };
             for slot in 0..shape.slots {
                 let list = &list[starts[slot] as usize..starts[slot + 1] as usize];
-                (pixel.clear(), sample.clear());
+                pixel.clear();
+                sample.clear();
                 pixel.extend(list.iter().map(|s| s.pixel));
                 sample.extend(list.iter().map(|s| s.sample));
-                (value.x.clear(), value.y.clear(), value.z.clear());
+                [&mut value.x, &mut value.y, &mut value.z].into_iter().for_each(Vec::clear);
                 value.x.extend(list.iter().map(|s| s.value.x));
                 value.y.extend(list.iter().map(|s| s.value.y));
                 value.z.extend(list.iter().map(|s| s.value.z));
