@@ -4,7 +4,7 @@
 //! bias that no single pixel can show. The region means show where the bias is. The projections detect light that is only
 //! moved within the image, which changes no mean.
 //!
-//! All are built from sums over a 16 × 16 grid of [tiles](super::tiles), so each pixel is read only once.
+//! All are built from sums over a 16 × 16 grid of tiles (`terms::tiles`), so each pixel is read only once.
 //!
 //! ```text
 //! few replicates, pixels that share no path:     se² = Σ_p w_p² se_p²,     dof = (R − 1) (Σ_p w_p² se_p²)² / Σ_p w_p⁴ se_p⁴

@@ -9,7 +9,7 @@
 //! | settings of the run | [`Asked`], [`Settings`] |
 //! | the work, in the order above | [`Run::solve`] |
 //! | results | the fields of [`Run`] |
-//! | how many paths the results without images get | [`share`] |
+//! | how many paths the results without images get | `share` |
 //! | comparison of two results | [`RunVerdict`] |
 //! | rates, bounds and orders that follow | [`facts`] |
 
