@@ -73,7 +73,8 @@ fn sort(list: &mut Vec<Splat>, keys: usize, key: impl Fn(&Splat) -> usize) -> Ve
     starts
 }
 
-/// Adds the samples `samples` of every pixel to a film. If it is stopped, each sample is done completely or not at all, because a half-finished sample would darken every pixel.
+/// Adds the samples `samples` of every pixel to a film. If it is stopped, each sample is done completely or not at all, because
+/// a half-finished sample would darken every pixel.
 pub(super) fn pass<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,

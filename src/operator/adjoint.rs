@@ -64,7 +64,7 @@ pub struct Steps {
     pub density: Vec<f32>,
     /// For a delta step, the probability with which it was chosen; 0 for every other step.
     pub choice: Vec<f32>,
-    /// False if the densities of steps are not needed, so that they need not be computed.
+    /// False if nobody reads the densities of steps; they need not be computed then.
     pub wanted: bool,
 }
 
@@ -135,8 +135,8 @@ pub trait Adjoint: Transport {
         }
     }
 
-    /// One step of every walk i: the new state replaces the old one. Densities are set where `out.wanted` is true. The indices of the walks that continue are pushed to
-    /// `alive` in ascending order.
+    /// One step of every walk i: the new state replaces the old one. Densities are set where `out.wanted` is true. The indices
+    /// of the walks that continue are pushed to `alive` in ascending order.
     fn walk_wave(&self, wave: &mut Self::Wave, role: Role, streams: Streams, out: &mut Steps, alive: &mut Vec<u32>) {
         for i in 0..streams.len() {
             if let Some(s) = self.walk(&wave.get(i), role, &mut streams.rng(i)) {

@@ -14,8 +14,8 @@ use super::scene_transport::SceneTransport;
 use crate::math::direction::{about, cos_sin_turn, cosine_hemisphere, uniform_sphere};
 use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::scene::bsdf::dielectric::Dielectric;
-use crate::scene::bsdf::{Bsdf, Departure, Sampling, TransportMode, diffuse::Diffuse};
-use crate::scene::{ESCAPED, Vertex, VertexWave, cosine_directions, emitter::Light, numbers, offset_origin, segment};
+use crate::scene::bsdf::{Bsdf, Departure, TransportMode};
+use crate::scene::{DELTA, ESCAPED, Vertex, VertexWave, Vertices, emitter::Light, numbers, offset_origin, segment};
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
 
@@ -78,7 +78,7 @@ impl Adjoint for SceneTransport<'_> {
         let d = self.leave(at, role, u)?;
         let seen = if role == Role::Radiance { self.scene.look(d.o, d.d) } else { self.scene.trace(d.o, d.d) };
         let state = seen?;
-        let density = self.arrived(at, &state, role, &d);
+        let density = self.arrived(at, &state, role, d.pdf, d.delta);
         Some(AdjointStep { state, weight: d.weight, density, delta: d.delta.then_some(d.pdf) })
     }
 
@@ -161,46 +161,30 @@ impl Adjoint for SceneTransport<'_> {
     /// All rays of the wave are traced together.
     fn walk_wave(&self, wave: &mut VertexWave, role: Role, streams: Streams, out: &mut Steps, alive: &mut Vec<u32>) {
         numbers(streams, &mut wave.rays.u);
-        let VertexWave { p, n, omega, side, rays } = wave;
-        let mut leaves = Vec::with_capacity(streams.len());
-        // the directions of Lambertian surfaces in lanes; the others draw again from the same numbers
-        cosine_directions(n, &rays.u, &mut rays.d, &mut rays.cosine, streams.len());
-        for i in 0..streams.len() {
-            let at = Vertex { p: p.get(i), n: n.get(i), omega: omega.get(i), side: side[i] };
-            let drawn = (rays.d.get(i), rays.cosine[i]);
-            if let Some(d) = self.leave_along(&at, role, drawn, rays.u.each_ref().map(|u| u[i])) {
-                rays.o.set(leaves.len(), d.o);
-                rays.d.set(leaves.len(), d.d);
-                leaves.push((i as u32, d));
-            }
+        if role == Role::Emission {
+            return self.shine_wave(wave, streams.len(), out, alive);
         }
-        let mut missed = vec![role == Role::Radiance && self.scene.has_environment(); leaves.len()];
-        let mut arrive = |j: usize, state: Vertex| {
-            let (i, d) = (leaves[j].0 as usize, &leaves[j].1);
-            let at = Vertex { p: p.get(i), n: n.get(i), omega: omega.get(i), side: side[i] };
-            out.weight.set(i, d.weight);
-            if out.wanted {
-                out.density[i] = self.arrived(&at, &state, role, d);
+        let VertexWave { p, n, omega, side, rays } = wave;
+        let on = self.depart_and_look(Vertices { p, n, omega, side }, streams.len(), rays, role.mode());
+        for index in 0..on {
+            let place = rays.list[index] as usize;
+            let (i, state) = (rays.order[place] as usize, rays.seen(place));
+            // light never walks into the sky
+            if role == Role::Flux && state.side == ESCAPED {
+                continue;
             }
-            out.choice[i] = if d.delta { d.pdf } else { 0.0 };
+            let (pdf, delta) = (rays.cosine[place], rays.flag[place] == DELTA);
+            let at = Vertices { p, n, omega, side }.get(i);
+            out.weight.set(i, rays.value.get(place));
+            if out.wanted {
+                out.density[i] = self.arrived(&at, &state, role, pdf, delta);
+            }
+            out.choice[i] = if delta { pdf } else { 0.0 };
             p.set(i, state.p);
             n.set(i, state.n);
             omega.set(i, state.omega);
             side[i] = state.side;
-        };
-        self.scene.trace_wave(rays, leaves.len(), |j, state| {
-            arrive(j, state);
-            missed[j] = false;
-            alive.push(leaves[j].0);
-        });
-        // rays into the sky
-        if missed.contains(&true) {
-            for j in (0..leaves.len()).filter(|&j| missed[j]) {
-                let (o, d) = (rays.o.get(j), rays.d.get(j));
-                arrive(j, Vertex::escaped(self.scene.beyond(o, d), d));
-                alive.push(leaves[j].0);
-            }
-            alive.sort_unstable();
+            alive.push(i as u32);
         }
     }
 
@@ -271,17 +255,31 @@ impl SceneTransport<'_> {
         Some(Leave { o: offset_origin(at.p, normal), d: direction, weight, pdf, delta })
     }
 
-    /// The same, if a cosine-distributed direction with its cosine has already been drawn from these numbers.
-    #[inline(always)]
-    fn leave_along(&self, at: &Vertex, role: Role, (d, cosine): (Vec3, f32), u: [f32; 4]) -> Option<Leave> {
-        match self.scene.bsdf(at) {
-            Bsdf::Diffuse(Diffuse { reflectance }) if role != Role::Emission && self.sampling == Sampling::Bsdf => {
-                let pdf = self.sampling.pdf(cosine);
-                let o = offset_origin(at.p, at.n);
-                (reflectance != Rgb::ZERO).then_some(Leave { o, d, weight: reflectance, pdf, delta: false })
+    /// The first step of every walk of a wave from the lights.
+    fn shine_wave(&self, wave: &mut VertexWave, n: usize, out: &mut Steps, alive: &mut Vec<u32>) {
+        let mut leaves = Vec::with_capacity(n);
+        for i in 0..n {
+            if let Some(ray) = self.shine(&wave.get(i), wave.rays.u.each_ref().map(|u| u[i])) {
+                wave.rays.o.set(leaves.len(), ray.o);
+                wave.rays.d.set(leaves.len(), ray.d);
+                leaves.push((i, ray.weight));
             }
-            _ => self.leave(at, role, u),
         }
+        let VertexWave { p, n, omega, side, rays } = wave;
+        self.scene.trace_wave(rays, leaves.len(), |j, state| {
+            let (i, weight) = leaves[j];
+            let at = Vertices { p, n, omega, side }.get(i);
+            out.weight.set(i, weight);
+            if out.wanted {
+                out.density[i] = self.arrived(&at, &state, Role::Emission, 0.0, false);
+            }
+            out.choice[i] = 0.0;
+            p.set(i, state.p);
+            n.set(i, state.n);
+            omega.set(i, state.omega);
+            side[i] = state.side;
+            alive.push(i as u32);
+        });
     }
 
     /// The first ray of light from its source. The weight E cos θ/p is π E for a surface, 4π I for a point light of
@@ -304,16 +302,17 @@ impl SceneTransport<'_> {
         (weight != Rgb::ZERO).then_some(Leave { o, d, weight, pdf: 0.0, delta: false })
     }
 
-    /// The density of the step from `at` to the state where its ray arrived.
+    /// The density of the step from `at` to the state where its ray arrived. The direction of the ray was sampled with density
+    /// `pdf`, or chosen with that probability if it came from a delta part.
     #[inline(always)]
-    fn arrived(&self, at: &Vertex, state: &Vertex, role: Role, ray: &Leave) -> f32 {
-        if ray.delta {
-            return self.delta_density(at, state, ray.pdf);
+    fn arrived(&self, at: &Vertex, state: &Vertex, role: Role, pdf: f32, delta: bool) -> f32 {
+        if delta {
+            return self.delta_density(at, state, pdf);
         }
         // take the density for the pair of points, as every other strategy does; if rounding makes it zero, take the density
         // of the sampled direction
         let density = self.toward(at, state, role).density;
-        if density > 0.0 || role == Role::Emission { density } else { ray.pdf * self.angle(at, state, ray.d) }
+        if density > 0.0 || role == Role::Emission { density } else { pdf * self.angle(at, state, -state.omega) }
     }
 
     /// The ends of the segment between two states, each with the normal on its side, and the squared distance; 1 instead of

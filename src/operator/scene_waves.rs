@@ -17,7 +17,7 @@ use super::scene_transport::SceneTransport;
 use super::transport::Samples;
 use crate::math::{Columns, Rgb, Streams, columns};
 use crate::scene::bsdf::{Bsdf, TransportMode};
-use crate::scene::{Camera, DELTA, ESCAPED, LIGHT, NOTHING, NOWHERE, VertexWave, Vertices, numbers};
+use crate::scene::{Camera, DELTA, ESCAPED, LIGHT, NOTHING, NOWHERE, Rays, VertexWave, Vertices, numbers};
 
 impl SceneTransport<'_> {
     /// E at the first `n` vertices of a wave.
@@ -80,28 +80,7 @@ impl SceneTransport<'_> {
     pub(crate) fn scatter_numbered(&self, wave: &mut VertexWave, n: usize, out: &mut Samples, alive: &mut Vec<u32>) {
         let VertexWave { p, n: normals, omega, side, rays } = wave;
         let at = Vertices { p, n: normals, omega, side };
-        let places = self.scene.sort(at, n, rays, |_| true);
-        self.scene.depart(at, rays, self.sampling, TransportMode::Radiance);
-        let rest = rays.keep_samples(places);
-        std::mem::swap(&mut rays.t, &mut rays.cosine);
-        self.scene.look_wave(rays, rest);
-        // the places of the paths that go on, in ascending order of the paths
-        let mut on = 0;
-        let mut go_on = |place: usize, side: &[u32], list: &mut [u32]| {
-            list[on] = place as u32;
-            on += usize::from(side[place] != NOWHERE);
-        };
-        if rays.groups() > 1 {
-            rays.place[..n].fill(u32::MAX);
-            for place in 0..rest {
-                rays.place[rays.order[place] as usize] = place as u32;
-            }
-            for &place in rays.place[..n].iter().filter(|&&place| place != u32::MAX) {
-                go_on(place as usize, &rays.side, &mut rays.list);
-            }
-        } else {
-            (0..rest).for_each(|place| go_on(place, &rays.side, &mut rays.list));
-        }
+        let on = self.depart_and_look(at, n, rays, TransportMode::Radiance);
         let list = &rays.list[..on];
         alive.extend(list.iter().map(|&place| rays.order[place as usize]));
         out.value.gather(&rays.value, list);
@@ -120,6 +99,34 @@ impl SceneTransport<'_> {
         omega.gather(&rays.d, list);
         columns::gather(side, &rays.side, list);
         omega.negate(on);
+    }
+
+    /// Samples a direction at each of the first `n` vertices from the random numbers in `rays.u`, and traces the rays. Returns
+    /// the number of paths that go on, and lists their places in `rays.list`, in ascending order of the paths. At these places
+    /// are weights in `rays.value`, densities in `rays.cosine`, and what `Rays::seen` returns.
+    pub(super) fn depart_and_look(&self, at: Vertices, n: usize, rays: &mut Rays, mode: TransportMode) -> usize {
+        let places = self.scene.sort(at, n, rays, |_| true);
+        self.scene.depart(at, rays, self.sampling, mode);
+        let rest = rays.keep_samples(places);
+        std::mem::swap(&mut rays.t, &mut rays.cosine);
+        self.scene.look_wave(rays, rest);
+        let mut on = 0;
+        let mut go_on = |place: usize, side: &[u32], list: &mut [u32]| {
+            list[on] = place as u32;
+            on += usize::from(side[place] != NOWHERE);
+        };
+        if rays.groups() > 1 {
+            rays.place[..n].fill(u32::MAX);
+            for place in 0..rest {
+                rays.place[rays.order[place] as usize] = place as u32;
+            }
+            for &place in rays.place[..n].iter().filter(|&&place| place != u32::MAX) {
+                go_on(place as usize, &rays.side, &mut rays.list);
+            }
+        } else {
+            (0..rest).for_each(|place| go_on(place, &rays.side, &mut rays.list));
+        }
+        on
     }
 
     /// What the camera sees along one ray for each path of a wave.

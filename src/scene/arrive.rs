@@ -13,12 +13,11 @@
 //! call the functions of [`shape`](super::shape), so that the bits are those of single rays.
 
 use super::shape::{self, Flat, Hit, Shape};
+use super::sixteen::{LANES, ZERO3, get, load, load3, put, store3};
 use super::vertex::{NOWHERE, Rays, Vertex};
 use glam::Vec3;
 use pulp::{Arch, Simd};
 
-/// Vertices that are computed at once.
-const LANES: usize = 16;
 /// Number of primitives in the table: as many as a scene in packets may have.
 pub(crate) const MOST: usize = 64;
 
@@ -65,43 +64,29 @@ pub(crate) fn arrive_in_lanes_with_simd<'a, S: Simd>(
     n: usize,
 ) {
     for at in (0..n).step_by(LANES) {
-        let lane = at..at + LANES;
-        let mut o = [[0.0; LANES]; 3];
-        let (mut d, mut t, mut prim) = (o, [0.0; LANES], [0; LANES]);
-        for (to, from) in o.iter_mut().zip([&rays.o.x, &rays.o.y, &rays.o.z]) {
-            to.copy_from_slice(&from[lane.clone()]);
-        }
-        for (to, from) in d.iter_mut().zip([&rays.d.x, &rays.d.y, &rays.d.z]) {
-            to.copy_from_slice(&from[lane.clone()]);
-        }
-        t.copy_from_slice(&rays.t[lane.clone()]);
-        prim.copy_from_slice(&rays.prim[lane.clone()]);
-        let (mut q, mut m, mut side) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [0; LANES]);
+        let (o, d, t) = (load3(&rays.o, at), load3(&rays.d, at), load(&rays.t, at));
+        let mut prim = [0; LANES];
+        prim.copy_from_slice(&rays.prim[at..at + LANES]);
+        let (mut q, mut m, mut side) = (ZERO3, ZERO3, [NOWHERE; LANES]);
         for i in 0..LANES {
             let flat = flats.get(prim[i] as usize);
-            let (o, d) = (Vec3::new(o[0][i], o[1][i], o[2][i]), Vec3::new(d[0][i], d[1][i], d[2][i]));
-            let (p, n) = (flat.settle(o + d * t[i]), flat.normal());
-            let back = shape::dot(n, d) > 0.0;
-            let n = if back { -n } else { n };
-            (q[0][i], q[1][i], q[2][i]) = (p.x, p.y, p.z);
-            (m[0][i], m[1][i], m[2][i]) = (n.x, n.y, n.z);
+            let (p, n) = (flat.settle(get(&o, i) + get(&d, i) * t[i]), flat.normal());
+            let back = shape::dot(n, get(&d, i)) > 0.0;
+            put(&mut q, i, p);
+            put(&mut m, i, if back { -n } else { n });
             side[i] = if prim[i] == u32::MAX { NOWHERE } else { prim[i].wrapping_mul(2) | u32::from(back) };
         }
         for i in 0..if flats.mixed { LANES } else { 0 } {
             if flats.other[prim[i] as usize % MOST] && prim[i] != u32::MAX {
-                let (o, d) = (Vec3::new(o[0][i], o[1][i], o[2][i]), Vec3::new(d[0][i], d[1][i], d[2][i]));
-                let v = arrive(shapes, o, d, Hit { t: t[i], prim: prim[i] });
-                (q[0][i], q[1][i], q[2][i]) = (v.p.x, v.p.y, v.p.z);
-                (m[0][i], m[1][i], m[2][i]) = (v.n.x, v.n.y, v.n.z);
+                let v = arrive(shapes, get(&o, i), get(&d, i), Hit { t: t[i], prim: prim[i] });
+                put(&mut q, i, v.p);
+                put(&mut m, i, v.n);
                 side[i] = v.side;
             }
         }
-        for (c, from) in [(&mut rays.q, &q), (&mut rays.m, &m)] {
-            c.x[lane.clone()].copy_from_slice(&from[0]);
-            c.y[lane.clone()].copy_from_slice(&from[1]);
-            c.z[lane.clone()].copy_from_slice(&from[2]);
-        }
-        rays.side[lane].copy_from_slice(&side);
+        store3(&mut rays.q, at, &q);
+        store3(&mut rays.m, at, &m);
+        rays.side[at..at + LANES].copy_from_slice(&side);
     }
 }
 

@@ -1,5 +1,5 @@
 //! Rays without vertices: what a ray `o + t·d` meets, found in every way that exists. Benchmarks measure these ways, and
-//! tests compare them: all give the same bits.
+//! tests compare them, because all must give the same bits.
 
 use super::shape::{Hit, Shape};
 use super::vertex::{Rays, VertexWave};
@@ -18,7 +18,7 @@ pub enum Way {
     Plain,
     /// The tree, all rays at once, by AVX2 even if the machine has AVX-512.
     Avx2,
-    /// Packets: every shape against sixteen rays at once. Only for flat shapes.
+    /// Packets: every shape against sixteen rays at once.
     Packets,
     /// Every shape against one ray at a time.
     EveryShape,

@@ -33,17 +33,18 @@ impl Scene {
         self
     }
 
-    /// Traces the first `n` rays of a wave in packets. `at(i, vertex)` is called, in ascending order of i, for every ray
-    /// that hits a surface.
-    #[inline(always)]
-    pub(crate) fn trace_packets(&self, rays: &mut Rays, n: usize, at: impl FnMut(usize, Vertex)) {
-        packets::closest(&self.accel.shapes, rays, n);
-        self.arrivals(rays, n, at);
+    /// The nearest hits of the first `n` rays of a wave, in packets or through the tree: sets `rays.t` and `rays.prim`.
+    fn closest_wave(&self, rays: &mut Rays, n: usize) {
+        match self.flats {
+            Some(_) => packets::closest(&self.accel.shapes, rays, n),
+            None => self.accel.closest_wave(rays, n),
+        }
     }
 
-    /// The vertices of the first `n` rays of a wave, from their hits.
-    #[inline(always)]
-    fn arrivals(&self, rays: &Rays, n: usize, mut at: impl FnMut(usize, Vertex)) {
+    /// Traces the first `n` rays of a wave. `at(i, vertex)` is called, in ascending order of i, for every ray that hits a
+    /// surface.
+    pub(crate) fn trace_wave(&self, rays: &mut Rays, n: usize, mut at: impl FnMut(usize, Vertex)) {
+        self.closest_wave(rays, n);
         for i in 0..n {
             if rays.prim[i] != u32::MAX {
                 at(i, self.arrive(rays.o.get(i), rays.d.get(i), shape::Hit { t: rays.t[i], prim: rays.prim[i] }));
@@ -54,23 +55,18 @@ impl Scene {
     /// What the first `n` rays of a wave see: points, normals and sides in `rays.q`, `rays.m` and `rays.side`. A ray that
     /// leaves the scene sees the sky, if there is one, or [`NOWHERE`].
     pub(crate) fn look_wave(&self, rays: &mut Rays, n: usize) {
-        match &self.flats {
-            Some(flats) => {
-                packets::closest(&self.accel.shapes, rays, n);
-                arrive::arrive_in_lanes(flats, &self.accel.shapes, rays, n);
-            }
-            None => {
-                self.accel.closest_wave(rays, n);
-                for i in 0..n {
-                    if rays.prim[i] != u32::MAX {
-                        let hit = shape::Hit { t: rays.t[i], prim: rays.prim[i] };
-                        let v = self.arrive(rays.o.get(i), rays.d.get(i), hit);
-                        rays.q.set(i, v.p);
-                        rays.m.set(i, v.n);
-                        rays.side[i] = v.side;
-                    } else {
-                        rays.side[i] = NOWHERE;
-                    }
+        self.closest_wave(rays, n);
+        if let Some(flats) = &self.flats {
+            arrive::arrive_in_lanes(flats, &self.accel.shapes, rays, n);
+        } else {
+            for i in 0..n {
+                rays.side[i] = NOWHERE;
+                if rays.prim[i] != u32::MAX {
+                    let hit = shape::Hit { t: rays.t[i], prim: rays.prim[i] };
+                    let v = self.arrive(rays.o.get(i), rays.d.get(i), hit);
+                    rays.q.set(i, v.p);
+                    rays.m.set(i, v.n);
+                    rays.side[i] = v.side;
                 }
             }
         }
@@ -88,26 +84,11 @@ impl Scene {
 
     /// Tests the segments of the rays in the first `n` entries of `rays.list`: sets `rays.prim[ray]` to 1 if the segment is
     /// blocked, else to 0.
-    #[inline(always)]
-    pub(crate) fn block_packets(&self, rays: &mut Rays, n: usize) {
-        packets::occluded(&self.accel.shapes, rays, n);
-    }
-
-    /// The same as [`Scene::trace_packets`], but goes through the tree if the scene is not traced in packets.
-    pub(crate) fn trace_wave(&self, rays: &mut Rays, n: usize, at: impl FnMut(usize, Vertex)) {
-        if self.flats.is_some() {
-            return self.trace_packets(rays, n, at);
-        }
-        self.accel.closest_wave(rays, n);
-        self.arrivals(rays, n, at);
-    }
-
-    /// The same as [`Scene::block_packets`], but goes through the tree if the scene is not traced in packets.
     pub(crate) fn block_wave(&self, rays: &mut Rays, n: usize) {
-        if self.flats.is_some() {
-            return self.block_packets(rays, n);
+        match self.flats {
+            Some(_) => packets::occluded(&self.accel.shapes, rays, n),
+            None => self.accel.occluded_wave(rays, n),
         }
-        self.accel.occluded_wave(rays, n);
     }
 
     #[inline(always)]

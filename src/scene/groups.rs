@@ -12,20 +12,15 @@
 //! the bits are those of single vertices.
 
 use super::bsdf::{Bsdf, Model, Sampling, TransportMode, Visitor};
-use super::faces::{ColourTable, FEW};
+use super::faces::{ColourTable, FEW, Group};
 use super::rounding::{offset_origin, segment};
+use super::sixteen::{LANES, Lane, Lane3, ZERO, ZERO3, get, load, load3, put, store, store3};
 use super::vertex::{DELTA, NOTHING, Rays, SOME, Side};
 use super::{Scene, Vertex};
 use crate::math::{Columns, Rgb};
 use glam::Vec3;
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
-
-/// Vertices that are evaluated at once.
-const LANES: usize = 16;
-
-type Lane = [f32; LANES];
-type Lane3 = [Lane; 3];
 
 /// The columns of a wave of vertices.
 #[derive(Clone, Copy)]
@@ -50,17 +45,11 @@ impl Scene {
         let groups = self.faces.groups();
         rays.ends.clear();
         rays.ends.resize(groups.len() + 1, 0);
-        let mut wants = [false; 64];
-        let many = groups.len() > wants.len();
-        groups.iter().zip(&mut wants).skip(1).for_each(|(g, w)| *w = wanted(&g.bsdf));
-        let group_of = |side: Side| {
-            let group = self.faces.group_of(side) as usize;
-            let taken = if many { group != 0 && wanted(&groups[group].bsdf) } else { wants[group % 64] };
-            if taken { group } else { 0 }
-        };
-        if let [_, only] = groups {
-            // nothing to sort
-            let (wants, mut places) = (wanted(&only.bsdf), 0);
+        // group 0 is black
+        let wants: Vec<bool> = groups.iter().enumerate().map(|(g, group)| g != 0 && wanted(&group.bsdf)).collect();
+        if let [_, wants] = wants[..] {
+            // one group needs no sorting, and one pass over the wave
+            let mut places = 0;
             for (i, &side) in at.side[..n].iter().enumerate() {
                 rays.order[places] = i as u32;
                 places += usize::from(wants && self.faces.group_of(side) != 0);
@@ -70,7 +59,8 @@ impl Scene {
             return places;
         }
         for (group, &side) in rays.group[..n].iter_mut().zip(&at.side[..n]) {
-            *group = group_of(side) as u32;
+            let of = self.faces.group_of(side);
+            *group = if wants[of as usize] { of } else { 0 };
             rays.ends[*group as usize] += 1;
         }
         // the starts of groups 1, 2, …; group 0 has no place
@@ -109,8 +99,8 @@ impl Scene {
         }
     }
 
-    /// Calls `work` with each group that has vertices: its number and its places.
-    fn each_group(&self, rays: &mut Rays, mut work: impl FnMut(&super::faces::Group, Range<usize>, &mut Rays)) {
+    /// Calls `work` with each group that has vertices, and its places.
+    fn each_group(&self, rays: &mut Rays, mut work: impl FnMut(&Group, Range<usize>, &mut Rays)) {
         for g in 1..self.faces.groups().len() {
             let places = rays.ends[g - 1] as usize..rays.ends[g] as usize;
             if !places.is_empty() {
@@ -140,7 +130,7 @@ impl Scene {
 
 #[inline(always)]
 fn gather(column: &[f32], at: &Paths) -> Lane {
-    let mut lane = [0.0; LANES];
+    let mut lane = ZERO;
     if at.neighbours {
         lane.copy_from_slice(&column[at.list[0] as usize..][..LANES]);
     } else {
@@ -154,40 +144,6 @@ fn gather(column: &[f32], at: &Paths) -> Lane {
 #[inline(always)]
 fn gather3(c: &Columns, at: &Paths) -> Lane3 {
     [gather(&c.x, at), gather(&c.y, at), gather(&c.z, at)]
-}
-
-#[inline(always)]
-fn load(column: &[f32], at: usize) -> Lane {
-    let mut lane = [0.0; LANES];
-    lane.copy_from_slice(&column[at..at + LANES]);
-    lane
-}
-
-#[inline(always)]
-fn load3(c: &Columns, at: usize) -> Lane3 {
-    [load(&c.x, at), load(&c.y, at), load(&c.z, at)]
-}
-
-#[inline(always)]
-fn store(column: &mut [f32], at: usize, lane: &Lane) {
-    column[at..at + LANES].copy_from_slice(lane);
-}
-
-#[inline(always)]
-fn store3(c: &mut Columns, at: usize, lane: &Lane3) {
-    store(&mut c.x, at, &lane[0]);
-    store(&mut c.y, at, &lane[1]);
-    store(&mut c.z, at, &lane[2]);
-}
-
-#[inline(always)]
-fn vector(lane: &Lane3, i: usize) -> Vec3 {
-    Vec3::new(lane[0][i], lane[1][i], lane[2][i])
-}
-
-#[inline(always)]
-fn put(lane: &mut Lane3, i: usize, v: Vec3) {
-    (lane[0][i], lane[1][i], lane[2][i]) = (v.x, v.y, v.z);
 }
 
 /// The paths at sixteen places.
@@ -227,7 +183,7 @@ fn colours_in_lanes_with_simd<'a, S: Simd>(
             *to = side[i as usize];
         }
         for (to, table) in [&mut colour.x, &mut colour.y, &mut colour.z].into_iter().zip(table) {
-            let mut lane = [0.0; LANES];
+            let mut lane = ZERO;
             for i in 0..LANES {
                 lane[i] = table[sides[i] as usize % FEW];
             }
@@ -264,14 +220,14 @@ impl<M: Model> WithSimd for With<Depart<'_, '_>, M> {
             let (p, n, omega) = (gather3(at.p, &list), gather3(at.n, &list), gather3(at.omega, &list));
             let u = [gather(&rays.u[0], &list), gather(&rays.u[1], &list), gather(&rays.u[2], &list)];
             let rho = load3(&rays.colour, place);
-            let (mut o, mut d, mut weight) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [[0.0; LANES]; 3]);
-            let (mut pdf, mut flag) = ([0.0; LANES], [NOTHING; LANES]);
+            let (mut o, mut d, mut weight) = (ZERO3, ZERO3, ZERO3);
+            let (mut pdf, mut flag) = (ZERO, [NOTHING; LANES]);
             for i in 0..LANES {
-                let f = if coloured { f.with_reflectance(vector(&rho, i)) } else { f };
-                let n = vector(&n, i);
-                let sample = f.depart(n, vector(&omega, i), sampling, mode, [u[0][i], u[1][i], u[2][i]]);
+                let f = if coloured { f.with_reflectance(get(&rho, i)) } else { f };
+                let n = get(&n, i);
+                let sample = f.depart(n, get(&omega, i), sampling, mode, [u[0][i], u[1][i], u[2][i]]);
                 if let Some(s) = sample {
-                    put(&mut o, i, offset_origin(vector(&p, i), s.normal));
+                    put(&mut o, i, offset_origin(get(&p, i), s.normal));
                     put(&mut d, i, s.direction);
                     put(&mut weight, i, s.weight);
                     pdf[i] = s.pdf;
@@ -313,18 +269,18 @@ impl<M: Model> WithSimd for With<Connect<'_, '_>, M> {
             let (to, q, m) = (load3(&rays.to, place), load3(&rays.q, place), load3(&rays.m, place));
             let (density, rho) = (load(&rays.t, place), load3(&rays.colour, place));
             let (radiance, hittable) = (load3(&rays.radiance, place), &rays.prim[place..place + LANES]);
-            let (mut o, mut d, mut value) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [[0.0; LANES]; 3]);
-            let (mut pdf, mut flag) = ([0.0; LANES], [NOTHING; LANES]);
+            let (mut o, mut d, mut value) = (ZERO3, ZERO3, ZERO3);
+            let (mut pdf, mut flag) = (ZERO, [NOTHING; LANES]);
             for i in 0..LANES {
-                let f = if coloured { f.with_reflectance(vector(&rho, i)) } else { f };
-                let found = f.connect(vector(&n, i), vector(&omega, i), vector(&to, i), density[i], sampling);
+                let f = if coloured { f.with_reflectance(get(&rho, i)) } else { f };
+                let found = f.connect(get(&n, i), get(&omega, i), get(&to, i), density[i], sampling);
                 // a density of 0 or less: the light faces away; an infinite one: it is seen exactly edge-on
                 let seen = (density[i] > 0.0) & (density[i] < f32::INFINITY);
                 if let Some(found) = found {
-                    let (start, along) = segment(vector(&p, i), found.normal, vector(&q, i), vector(&m, i));
+                    let (start, along) = segment(get(&p, i), found.normal, get(&q, i), get(&m, i));
                     put(&mut o, i, start);
                     put(&mut d, i, along);
-                    put(&mut value, i, found.value * vector(&radiance, i));
+                    put(&mut value, i, found.value * get(&radiance, i));
                     pdf[i] = if hittable[i] != 0 { found.pdf } else { 0.0 };
                     flag[i] = if seen { SOME } else { NOTHING };
                 }

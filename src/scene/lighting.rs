@@ -14,12 +14,10 @@
 use super::emitter::{Light, cone};
 use super::groups::Vertices;
 use super::shape::Shape;
+use super::sixteen::{LANES, ZERO, ZERO3, get, put, store, store3};
 use super::{ESCAPED, LIGHT, Rays, Scene, Vertex, connection, solid_angle};
 use crate::math::Columns;
 use glam::Vec3;
-
-/// Light points that are computed at once.
-const LANES: usize = 16;
 
 /// A point on a light, chosen by next-event estimation.
 pub struct LightSample {
@@ -272,27 +270,24 @@ fn lamp_points_with_simd<'a, S: pulp::Simd>(
 #[inline(always)]
 fn points(point: impl Fn([f32; 2]) -> (Vec3, Vec3), density: f32, x: &Columns, rays: &mut Rays, m: usize) {
     for place in (0..m).step_by(LANES) {
-        let mut to = [[0.0; LANES]; 3];
-        let (mut q, mut n, mut at, mut pdf) = (to, to, to, [0.0; LANES]);
-        let mut u = [[0.0; LANES]; 2];
+        let (mut to, mut q, mut n, mut at) = (ZERO3, ZERO3, ZERO3, ZERO3);
+        let (mut u, mut v, mut pdf) = (ZERO, ZERO, ZERO);
         for lane in 0..LANES.min(m - place) {
             let i = rays.order[place + lane] as usize;
-            (at[0][lane], at[1][lane], at[2][lane]) = (x.x[i], x.y[i], x.z[i]);
-            (u[0][lane], u[1][lane]) = (rays.u[2][i], rays.u[3][i]);
+            put(&mut at, lane, x.get(i));
+            (u[lane], v[lane]) = (rays.u[2][i], rays.u[3][i]);
         }
         for lane in 0..LANES {
-            let (p, normal) = point([u[0][lane], u[1][lane]]);
-            let (d, r2, _, cos) = connection(Vec3::new(at[0][lane], at[1][lane], at[2][lane]), Vec3::ZERO, p, normal);
+            let (p, normal) = point([u[lane], v[lane]]);
+            let (d, r2, _, cos) = connection(get(&at, lane), Vec3::ZERO, p, normal);
             pdf[lane] = solid_angle(density, r2, cos);
-            (to[0][lane], to[1][lane], to[2][lane]) = (d.x, d.y, d.z);
-            (q[0][lane], q[1][lane], q[2][lane]) = (p.x, p.y, p.z);
-            (n[0][lane], n[1][lane], n[2][lane]) = (normal.x, normal.y, normal.z);
+            put(&mut to, lane, d);
+            put(&mut q, lane, p);
+            put(&mut n, lane, normal);
         }
-        for (c, lanes) in [(&mut rays.to, &to), (&mut rays.q, &q), (&mut rays.m, &n)] {
-            c.x[place..place + LANES].copy_from_slice(&lanes[0]);
-            c.y[place..place + LANES].copy_from_slice(&lanes[1]);
-            c.z[place..place + LANES].copy_from_slice(&lanes[2]);
-        }
-        rays.t[place..place + LANES].copy_from_slice(&pdf);
+        store3(&mut rays.to, place, &to);
+        store3(&mut rays.q, place, &q);
+        store3(&mut rays.m, place, &n);
+        store(&mut rays.t, place, &pdf);
     }
 }

@@ -34,6 +34,7 @@ pub mod raster;
 mod rounding;
 pub mod sensor;
 mod shape;
+mod sixteen;
 mod stand_in;
 mod textures;
 pub mod vertex;
@@ -64,7 +65,7 @@ use shape::Shape;
 use textures::Textures;
 pub(crate) use vertex::Rays;
 
-pub(crate) use packets::{cosine_directions, numbers};
+pub(crate) use packets::numbers;
 
 /// Change of measure: converts a density per area at a point y to one per solid angle at a point at distance r, with `r2` =
 /// r².

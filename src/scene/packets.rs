@@ -1,18 +1,17 @@
 //! Ray tracing in packets: every primitive of a small scene is tested against sixteen rays at once.
 //!
-//! [`Accel`](super::accel::Accel) traces one ray at a time through the tree and gives the same bits (tested). Both use the
-//! same formulas of [`shape`](super::shape), and for hits at the same distance both return the lower number. The loops over
-//! SIMD lanes are plain Rust that the compiler vectorises. `pulp` compiles them for several instruction sets and chooses one
-//! at run time.
+//! [`Accel`](super::accel::Accel) traces rays through the tree and gives the same bits (tested). Both use the same formulas of
+//! [`shape`](super::shape), and for hits at the same distance both return the lower number. The loops over
+//! [lanes](super::sixteen) are plain Rust that the compiler vectorises. `pulp` compiles them for several instruction sets and
+//! chooses one at run time.
 
 use super::shape::{Flat, Shape};
+use super::sixteen::{LANES, Lane, Lane3, ZERO3, get, load3};
 use super::vertex::Rays;
-use crate::math::{Columns, Points, Streams};
+use crate::math::{Points, Streams};
 use glam::Vec3;
 use pulp::{Arch, Simd};
 
-/// Number of rays in a packet.
-const LANES: usize = 16;
 /// Largest number of primitives for packets; beyond it the tree is faster.
 const SMALL: usize = super::arrive::MOST;
 
@@ -21,26 +20,17 @@ pub(crate) fn suit(shapes: &[Shape]) -> bool {
     shapes.len() <= SMALL
 }
 
-type Lane = [f32; LANES];
-
-#[inline(always)]
-fn load(column: &[f32], at: usize) -> Lane {
-    let mut lane = [0.0; LANES];
-    lane.copy_from_slice(&column[at..at + LANES]);
-    lane
-}
-
 #[inline(always)]
 fn nearest(
     meet: impl Fn(Vec3, Vec3) -> (f32, bool),
     id: u32,
-    o: &[Lane; 3],
-    d: &[Lane; 3],
+    o: &Lane3,
+    d: &Lane3,
     t: &mut Lane,
     prim: &mut [u32; LANES],
 ) {
     for i in 0..LANES {
-        let (s, met) = meet(Vec3::new(o[0][i], o[1][i], o[2][i]), Vec3::new(d[0][i], d[1][i], d[2][i]));
+        let (s, met) = meet(get(o, i), get(d, i));
         let nearer = met & (s < t[i]);
         t[i] = if nearer { s } else { t[i] };
         prim[i] = if nearer { id } else { prim[i] };
@@ -49,12 +39,10 @@ fn nearest(
 
 /// The same for a parallelogram. Lanes with a ray close to an edge are rare and are tested one by one.
 #[inline(always)]
-fn nearest_flat(s: &Flat, id: u32, o: &[Lane; 3], d: &[Lane; 3], t: &mut Lane, prim: &mut [u32; LANES]) {
-    let at = |i: usize| (Vec3::new(o[0][i], o[1][i], o[2][i]), Vec3::new(d[0][i], d[1][i], d[2][i]));
+fn nearest_flat(s: &Flat, id: u32, o: &Lane3, d: &Lane3, t: &mut Lane, prim: &mut [u32; LANES]) {
     let mut any = 0;
     for i in 0..LANES {
-        let (o, d) = at(i);
-        let (r, near, certain) = s.look(o, d);
+        let (r, near, certain) = s.look(get(o, i), get(d, i));
         let near = near & (r < t[i]);
         let nearer = near & certain;
         t[i] = if nearer { r } else { t[i] };
@@ -63,7 +51,7 @@ fn nearest_flat(s: &Flat, id: u32, o: &[Lane; 3], d: &[Lane; 3], t: &mut Lane, p
     }
     if any != 0 {
         for i in 0..LANES {
-            let (o, d) = at(i);
+            let (o, d) = (get(o, i), get(d, i));
             let (r, near, certain) = s.look(o, d);
             if near && !certain && r < t[i] && s.edges(o, d) {
                 (t[i], prim[i]) = (r, id);
@@ -77,8 +65,7 @@ fn nearest_flat(s: &Flat, id: u32, o: &[Lane; 3], d: &[Lane; 3], t: &mut Lane, p
 #[inline(always)]
 pub(crate) fn closest_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], rays: &'a mut Rays, n: usize) {
     for at in (0..n).step_by(LANES) {
-        let o = [load(&rays.o.x, at), load(&rays.o.y, at), load(&rays.o.z, at)];
-        let d = [load(&rays.d.x, at), load(&rays.d.y, at), load(&rays.d.z, at)];
+        let (o, d) = (load3(&rays.o, at), load3(&rays.d, at));
         let (mut t, mut prim) = ([f32::INFINITY; LANES], [u32::MAX; LANES]);
         for (id, shape) in shapes.iter().enumerate() {
             match shape {
@@ -94,28 +81,26 @@ pub(crate) fn closest_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], rays
 }
 
 #[inline(always)]
-fn block(meet: impl Fn(Vec3, Vec3) -> (f32, bool), r: &[Lane; 6], blocked: &mut [u32; LANES]) {
-    for i in 0..LANES {
-        let (s, met) = meet(Vec3::new(r[0][i], r[1][i], r[2][i]), Vec3::new(r[3][i], r[4][i], r[5][i]));
-        blocked[i] |= u32::from(met & (s < 1.0));
+fn block(meet: impl Fn(Vec3, Vec3) -> (f32, bool), o: &Lane3, d: &Lane3, blocked: &mut [u32; LANES]) {
+    for (i, blocked) in blocked.iter_mut().enumerate() {
+        let (s, met) = meet(get(o, i), get(d, i));
+        *blocked |= u32::from(met & (s < 1.0));
     }
 }
 
 /// The same for a parallelogram.
 #[inline(always)]
-fn block_flat(s: &Flat, r: &[Lane; 6], blocked: &mut [u32; LANES]) {
-    let at = |i: usize| (Vec3::new(r[0][i], r[1][i], r[2][i]), Vec3::new(r[3][i], r[4][i], r[5][i]));
+fn block_flat(s: &Flat, o: &Lane3, d: &Lane3, blocked: &mut [u32; LANES]) {
     let mut any = 0;
     for (i, blocked) in blocked.iter_mut().enumerate() {
-        let (o, d) = at(i);
-        let (t, near, certain) = s.look(o, d);
+        let (t, near, certain) = s.look(get(o, i), get(d, i));
         let near = near & (t < 1.0);
         *blocked |= u32::from(near & certain);
         any |= u32::from(near & !certain);
     }
     if any != 0 {
         for (i, blocked) in blocked.iter_mut().enumerate() {
-            let (o, d) = at(i);
+            let (o, d) = (get(o, i), get(d, i));
             let (t, near, certain) = s.look(o, d);
             *blocked |= u32::from(near && !certain && t < 1.0 && s.edges(o, d));
         }
@@ -129,20 +114,21 @@ fn block_flat(s: &Flat, r: &[Lane; 6], blocked: &mut [u32; LANES]) {
 pub(crate) fn occluded_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], rays: &'a mut Rays, n: usize) {
     for at in (0..n).step_by(LANES) {
         let list = &rays.list[at..n.min(at + LANES)];
-        let mut r = [[0.0; LANES]; 6];
-        let columns = [&rays.o.x, &rays.o.y, &rays.o.z, &rays.d.x, &rays.d.y, &rays.d.z];
-        for (lane, column) in r.iter_mut().zip(columns) {
-            for (a, &ray) in lane.iter_mut().zip(list) {
-                *a = column[ray as usize];
+        let (mut o, mut d) = (ZERO3, ZERO3);
+        for (lanes, c) in [(&mut o, &rays.o), (&mut d, &rays.d)] {
+            for (lane, column) in lanes.iter_mut().zip([&c.x, &c.y, &c.z]) {
+                for (a, &ray) in lane.iter_mut().zip(list) {
+                    *a = column[ray as usize];
+                }
             }
         }
         let mut blocked = [0; LANES];
         for shape in shapes {
             match shape {
-                Shape::Flat(s) => block_flat(s, &r, &mut blocked),
-                Shape::Triangle(s) => block(|o, d| s.meet(o, d), &r, &mut blocked),
-                Shape::Ball(s) => block(|o, d| s.meet(o, d), &r, &mut blocked),
-                Shape::Disc(s) => block(|o, d| s.meet(o, d), &r, &mut blocked),
+                Shape::Flat(s) => block_flat(s, &o, &d, &mut blocked),
+                Shape::Triangle(s) => block(|o, d| s.meet(o, d), &o, &d, &mut blocked),
+                Shape::Ball(s) => block(|o, d| s.meet(o, d), &o, &d, &mut blocked),
+                Shape::Disc(s) => block(|o, d| s.meet(o, d), &o, &d, &mut blocked),
             }
         }
         for (&ray, &b) in list.iter().zip(&blocked) {
@@ -168,25 +154,5 @@ pub(crate) fn numbers_with_simd<'a, S: Simd>(_simd: S, streams: Streams<'a>, u: 
     }
     for i in 0..n {
         [a[i], b[i], c[i], d[i]] = streams.first_draw(i);
-    }
-}
-
-/// Cosine-distributed directions about the normals, computed from the first two columns of random numbers.
-#[pulp::with_simd(cosine_directions = Arch::new())]
-#[inline(always)]
-pub(crate) fn cosine_directions_with_simd<'a, S: Simd>(
-    _simd: S,
-    normals: &'a Columns,
-    u: &'a [Vec<f32>; 4],
-    d: &'a mut Columns,
-    cosine: &'a mut [f32],
-    n: usize,
-) {
-    let (nx, ny, nz) = (&normals.x[..n], &normals.y[..n], &normals.z[..n]);
-    let (dx, dy, dz, cosine) = (&mut d.x[..n], &mut d.y[..n], &mut d.z[..n], &mut cosine[..n]);
-    let (u0, u1) = (&u[0][..n], &u[1][..n]);
-    for i in 0..n {
-        let (v, z) = crate::math::direction::cosine_hemisphere(Vec3::new(nx[i], ny[i], nz[i]), [u0[i], u1[i]]);
-        (dx[i], dy[i], dz[i], cosine[i]) = (v.x, v.y, v.z, z);
     }
 }

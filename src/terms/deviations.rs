@@ -108,15 +108,7 @@ impl Deviations {
     /// Computes mean and deviations of one slot.
     pub(super) fn slot(&mut self, piece: &Piece<'_>, slot: usize) {
         let rows: Vec<&[f64]> = (0..self.replicates).map(|r| piece.film.row(&piece.pixels, r, slot)).collect();
-        spread(Spread {
-            rows: &rows,
-            samples: &self.samples,
-            counts: &self.counts,
-            all: &mut self.all,
-            mean: &mut self.mean,
-            of: &mut self.of,
-            square: &mut self.square,
-        });
+        self.spread(&rows);
     }
 
     /// Adds a slot to the sum of slots.
@@ -129,16 +121,16 @@ impl Deviations {
 
     /// Computes mean and deviations of the slots that were added.
     pub(super) fn sum(&mut self) {
-        let rows: Vec<&[f64]> = self.added.chunks(self.mean.len()).collect();
-        spread(Spread {
-            rows: &rows,
-            samples: &self.samples,
-            counts: &self.counts,
-            all: &mut self.all,
-            mean: &mut self.mean,
-            of: &mut self.of,
-            square: &mut self.square,
-        });
+        let added = std::mem::take(&mut self.added);
+        let rows: Vec<&[f64]> = added.chunks(self.mean.len()).collect();
+        self.spread(&rows);
+        self.added = added;
+    }
+
+    /// Computes mean and deviations of the sums `rows[r]`.
+    fn spread(&mut self, rows: &[&[f64]]) {
+        let Self { samples, counts, all, mean, of, square, .. } = self;
+        spread(Spread { rows, samples, counts, all, mean, of, square });
     }
 
     /// The same for some neighbouring slots.

@@ -24,6 +24,7 @@ struct Default {
     /// The command's name in the default output folder; empty for the tour.
     name: &'static str,
     worlds: &'static [World],
+    both_estimators: bool,
     size: Option<[u32; 2]>,
     roulette: Roulette,
     patches: u32,
@@ -36,6 +37,7 @@ struct Default {
 const SERIES: Default = Default {
     name: "-series",
     worlds: &World::ALL,
+    both_estimators: false,
     size: None,
     roulette: Roulette::Albedo { from: 2 },
     patches: 600,
@@ -46,9 +48,9 @@ const SERIES: Default = Default {
 /// The suggestions at the end of the tour.
 const NEXT: &str = "Next: fredholm chapter 1, series veach-ajar, diagnose YOURS.exr --against cornell";
 
-/// `tour`: all three results.
+/// `tour`: all three results, the terms by two estimators.
 pub fn tour(args: &Tour) -> Result<Ending, Failure> {
-    let tour = Default { name: "", size: Some([192, 192]), patches: 3600, next: NEXT, ..SERIES };
+    let tour = Default { name: "", both_estimators: true, size: Some([192, 192]), patches: 3600, next: NEXT, ..SERIES };
     solve(&args.into(), &tour)
 }
 
@@ -99,7 +101,7 @@ fn plan(args: &Request, default: &Default, opened: Opened) -> Result<Run, Failur
     let by_name = !args.worlds.is_empty() || default.worlds.len() == 1;
     preflight::suits_a_matrix(&description, &mut worlds, by_name)?;
     preflight::fits_in_a_matrix(&scene, factors, &mut worlds, by_name)?;
-    let estimators = estimators(args, &worlds)?;
+    let estimators = estimators(args, default, &worlds)?;
     can_be_exposed(args.pictures.exposure, settings.max_bounces, &worlds)?;
     for &estimator in &estimators {
         preflight::tree_can_be_walked(estimator, &settings, description.camera.size)?;
@@ -141,13 +143,14 @@ fn can_be_exposed(exposure: Exposure, last: usize, worlds: &[World]) -> Result<(
 }
 
 /// The estimators of the terms, if these are asked for.
-fn estimators(args: &Request, worlds: &[World]) -> Result<Vec<Estimator>, Failure> {
+fn estimators(args: &Request, default: &Default, worlds: &[World]) -> Result<Vec<Estimator>, Failure> {
     match (worlds.contains(&World::Terms), args.estimator()) {
         (false, Some(_)) => Err(usage(
             "--estimator selects how the terms T^k E are estimated, but --worlds asks for no terms",
             "leave --estimator out, or add terms to --worlds",
         )),
         (false, None) => Ok(vec![]),
+        _ if default.both_estimators => Ok(vec![Estimator::Single, Estimator::Prefix]),
         (_, asked) => Ok(vec![asked.unwrap_or(Estimator::Prefix)]),
     }
 }
