@@ -31,10 +31,12 @@ use fredholm::{
             typeset::Caption,
             zmap,
         },
+        page::data::{Data, Image, Slot},
         page::html::{self, Plate},
         plot::{Curve, Figure, Look, Point},
         text::{
             grid::Grid,
+            pixel_errors::PixelErrors,
             summary::{self, Bounds, Radiosity, Summary, VerdictRecord},
             table,
         },

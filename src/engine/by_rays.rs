@@ -18,7 +18,7 @@ use crate::terms::functional::Replicates;
 use crate::terms::norms::SquaredNorm;
 use crate::terms::statistics::Statistics;
 use crate::terms::variance::{Snapshot, snapshot};
-use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, Variance, World};
+use crate::terms::{Cost, Estimate, Series, TermFilm, TermImage, TileSums, Variance, World};
 use std::time::{Duration, Instant};
 
 /// Result of a render by rays: means with errors, images, and variances against samples.
@@ -36,6 +36,8 @@ pub struct Sampled {
     pub total: TermImage,
     /// The image mean by replicate, from which covariances between terms follow.
     pub replicates: Replicates,
+    /// Sums over tiles by replicate, from which the means of blocks of tiles follow with their errors.
+    pub tiles: TileSums,
     /// Rays requested, by slot.
     pub rays: Vec<u64>,
     /// Number of events behind the median pixel: of every slot, of the sum over k ≤ K, and of the whole.
@@ -265,7 +267,7 @@ impl<'a, 'l> Passes<'a, 'l> {
         let (seconds, read) = self.last.unwrap_or_else(|| (self.started.elapsed().as_secs_f64(), Statistics::of(film)));
         let paths = film.samples.iter().map(|&n| u64::from(n)).sum();
         let cost = Cost { paths, rays: film.rays.iter().sum(), non_finite: film.non_finite, seconds };
-        let Statistics { images, mut events, norms, functionals, replicates, .. } = read;
+        let Statistics { images, mut events, norms, functionals, replicates, tiles, .. } = read;
         let mut images = images.into_iter();
         let terms = images.by_ref().take(slots - 1).collect();
         let mut next = || images.next().unwrap_or_default();
@@ -291,6 +293,7 @@ impl<'a, 'l> Passes<'a, 'l> {
             sum,
             total: next(),
             replicates,
+            tiles,
             rays: film.rays.clone(),
             pixel_events: events,
             snapshots: self.snapshots,

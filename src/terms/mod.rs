@@ -5,6 +5,7 @@
 //! | sum of the samples, by replicate | [`TermFilm`] | [`film`] |
 //! | image of T^k E with its standard error | [`TermImage`] | [`image`] |
 //! | φ(T^k E), a linear functional of the image | [`Functional`] | [`functional`] |
+//! | sums over 16 × 16 tiles, replicate by replicate | [`TileSums`] | [`tile_sums`] |
 //! | ‖T^k E‖₂ of the image | [`norms::SquaredNorm`] | [`norms`] |
 //! | the largest contributions, and the index of their tail | [`largest::Largest`] | [`largest`] |
 //! | all of these in one pass over a film | [`statistics::Statistics`] | [`statistics`] |
@@ -23,6 +24,7 @@ pub mod norms;
 pub mod scatter;
 pub mod series;
 pub mod statistics;
+pub mod tile_sums;
 mod tiles;
 pub mod variance;
 
@@ -30,3 +32,4 @@ pub use cross_moments::{CrossMoments, Recorded};
 pub use film::{Shape, TermFilm};
 pub use image::TermImage;
 pub use series::{Channel, Cost, Doubt, Estimate, Events, Functional, Series, UnsampledPaths, Variance, World};
+pub use tile_sums::TileSums;

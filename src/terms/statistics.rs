@@ -10,6 +10,7 @@
 //! | variances | [`Snapshot`] |
 //! | squared norms of the terms | [`norms`](super::norms) |
 //! | image mean, regions, projections | [`functional`](mod@super::functional) |
+//! | sums over tiles | [`tile_sums`](super::tile_sums) |
 
 use super::deviations::{Deviations, Piece, bands};
 use super::film::TermFilm;
@@ -18,6 +19,7 @@ use super::image::{PixelEvents, TermImage};
 use super::norms::{NormSums, SquaredNorm};
 use super::scatter::{self, Scatter};
 use super::series::Functional;
+use super::tile_sums::TileSums;
 use super::tiles::{TileRow, Tiles, parts};
 use super::variance::Snapshot;
 use rayon::prelude::*;
@@ -38,6 +40,8 @@ pub struct Statistics {
     pub functionals: Vec<Functional>,
     /// The image mean, replicate by replicate.
     pub replicates: Replicates,
+    /// Sums over tiles, replicate by replicate.
+    pub tiles: TileSums,
 }
 
 /// What is added up for one image.
@@ -71,6 +75,7 @@ impl Statistics {
             norms: (0..slots - 1).map(norm).collect(),
             functionals: functional::all(&tiles),
             replicates: functional::image(&tiles),
+            tiles: TileSums::of(&tiles, !film.shared),
         }
     }
 }

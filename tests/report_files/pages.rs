@@ -39,6 +39,7 @@ fn page_is_self_contained_and_escapes() {
     let mut grid = Grid::new("a <p> b", ["<q>", "x"]);
     grid.push(["<s>".into(), "1".into()]);
     let page = html::Page {
+        data: None,
         title: "<script>alert(1)</script>".into(),
         command: "fredholm series 'a&b.toml' --set x=\"<b>\"".into(),
         facts: vec![("se<ed".into(), "1 > 0".into())],
@@ -79,10 +80,44 @@ fn page_is_self_contained_and_escapes() {
         let opened = text.matches(&format!("<{tag}>")).count() + text.matches(&format!("<{tag} ")).count();
         assert_eq!(opened, text.matches(&format!("</{tag}>")).count(), "<{tag}>");
     }
-    // Pictures come before the comparisons, and every table behind a comparison or a series is folded.
-    let place = |what: &str| text.find(what).unwrap();
-    assert!(place("data:image/png") < place("Do the answers agree?"));
+    // Every table behind a comparison or a series is folded.
     assert_eq!(text.matches("<table class=\"stack\">").count() + 1, text.matches("<details>").count());
     let missing = Plate::terms(Path::new("absent.png"));
     assert!(html::render(&html::Page { plates: vec![missing], ..html::Page::default() }).is_err());
+}
+
+/// With data, the images come first; what scripts need is in the page, and still plots are marked as such.
+#[test]
+fn page_with_data_holds_its_scripts_and_images() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = (0..4).map(|k| Point::exact(f64::from(k), 0.5f64.powi(k))).collect();
+    let decay = Decay { surface: vec![curve(points)], ..Decay::default() };
+    decay::draw(&decay, &caption()).unwrap().write(folder.path(), "decay").unwrap();
+    let mut data = Data::new([4, 2]);
+    data.command = "fredholm series 'a&b.toml' --set x=\"<b>\"".into();
+    let trust = PixelErrors { layer: "path".into(), trusted: false, events: 2.0, why: "not trusted".into() };
+    let pixels = [[0.5f32; 3]; 8];
+    let image = Image { mean: Some(&pixels), std_error: &pixels, trust: &trust, apart: true };
+    data.push("path".into(), World::Path, Slot::Whole, 16, image);
+    let svg = folder.path().join("decay.svg");
+    let page = html::Page {
+        data: Some(&data),
+        comparisons: vec![("they agree".into(), full_summary().verdicts.clone())],
+        plates: vec![Plate::decay(&svg)],
+        ..html::Page::default()
+    };
+    let text = html::render(&page).unwrap();
+    assert!(!text.contains("http"), "the page refers to the network");
+    let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what} is missing"));
+    assert!(place("id=\"canvas\"") < place("Do the answers agree?"));
+    assert!(place("id=\"px-path\"") < place("data-module=\"#page/main.js\""));
+    assert!(text.contains("<figure data-still><svg") && text.contains("id=\"plot-decay\""));
+    assert!(text.contains("x=&quot;&lt;b&gt;&quot;") && !text.contains("x=\"<b>"), "the command is not escaped");
+    // every element that is opened is closed, before the sources of the scripts begin
+    let markup = &text[..place("<script id=\"run\"")];
+    for tag in ["section", "div", "button", "p", "label", "canvas", "dialog", "fieldset", "select", "form"] {
+        let opened = markup.matches(&format!("<{tag}>")).count() + markup.matches(&format!("<{tag} ")).count();
+        assert!(opened > 0, "no <{tag}>");
+        assert_eq!(opened, markup.matches(&format!("</{tag}>")).count(), "<{tag}>");
+    }
 }

@@ -1,5 +1,6 @@
 //! The files that a run writes: `terms.exr`, pictures, plots, `summary.json`, `index.html`.
 
+mod data;
 mod files;
 mod mesh;
 mod page;

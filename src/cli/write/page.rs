@@ -1,5 +1,6 @@
 //! Collects the content of `index.html` from a run.
 
+use super::data::data;
 use super::files::Files;
 use crate::cli::answer;
 use crate::cli::base::Failure;
@@ -17,49 +18,10 @@ pub(super) fn write_page(
     summary: &summary::Summary,
 ) -> Result<(), Failure> {
     let each = exposure == Exposure::Auto;
-    let path = |name: &str| out.path(name);
-    let [sheet, direct, decay, variance, z] =
-        ["terms.png", "direct.png", "decay.svg", "variance.svg", "z.png"].map(path);
-    let mut plates = vec![];
-    let three = out.path("three.png");
-    let only = ["path.png", "radiosity.png"].into_iter().find(|name| out.has(name)).unwrap_or_default();
-    let alone = out.path(only);
-    let candidates = [
-        (
-            "three.png",
-            Plate {
-                heading: "Three answers",
-                text: "The same picture by three programs: the sum of the terms, the full path tracer, and the solution of a linear \
-                       system over patches. One exposure for all.",
-                alt: "The scene by the series, by the path tracer and by radiosity",
-                path: &three,
-            },
-        ),
-        (
-            if out.has("three.png") { "" } else { only },
-            Plate {
-                heading: "The picture",
-                text: "The whole image at its own exposure.",
-                alt: "The scene as the camera sees it",
-                path: &alone,
-            },
-        ),
-        ("terms.png", if each { Plate::terms(&sheet) } else { Plate::terms_at_one_exposure(&sheet) }),
-        ("direct.png", Plate::direct_and_indirect(&direct)),
-        ("decay.svg", Plate::decay(&decay)),
-        ("variance.svg", Plate::variance(&variance)),
-        (
-            "z.png",
-            Plate {
-                heading: "Where terms and path tracer differ",
-                text: "The difference of the two images in units of its standard error, pixel by pixel. Noise has no pattern here; \
-                       a bias would.",
-                alt: "Map of the standardised difference between the sum of the terms and the path tracer",
-                path: &z,
-            },
-        ),
-    ];
-    plates.extend(candidates.into_iter().filter(|(name, _)| out.has(name)).map(|(_, plate)| plate));
+    let [decay, variance] = ["decay.svg", "variance.svg"].map(|name| out.path(name));
+    let candidates = [("decay.svg", Plate::decay(&decay)), ("variance.svg", Plate::variance(&variance))];
+    let plates = candidates.into_iter().filter(|(name, _)| out.has(name)).map(|(_, plate)| plate).collect();
+    let data = data(run, out, summary);
     let s = &run.settings;
     let facts = [
         ("seed", s.seed.to_string()),
@@ -77,6 +39,7 @@ pub(super) fn write_page(
     let page = Page {
         title: run.description.name.clone(),
         answer: answer::head(run),
+        data: (!data.layers.is_empty()).then_some(&data),
         plates,
         comparisons: run.verdicts.iter().map(comparison).collect(),
         grids: answer::grids(run),

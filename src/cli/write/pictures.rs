@@ -9,49 +9,64 @@ use fredholm::report::image::exr;
 use fredholm::report::image::picture;
 use fredholm::report::image::typeset::{Caption, superscript};
 use fredholm::report::image::zmap;
+use fredholm::report::page::data::Slot;
 use fredholm::report::text::pixel_errors::{self, PixelErrors};
 use fredholm::study::run::Run;
 use fredholm::terms::{Estimate, TermImage};
 
-/// A layer with errors: its name, its image, and whether the errors can be trusted.
-type Layer<'a> = (String, &'a TermImage, PixelErrors);
+/// A layer with errors.
+pub(super) struct Layer<'a> {
+    pub name: String,
+    pub image: &'a TermImage,
+    /// Whether the errors can be trusted.
+    pub errors: PixelErrors,
+    /// The result that it is a part of.
+    pub of: &'a Sampled,
+    /// Which part; none for the sum of the first terms beside the whole.
+    pub slot: Option<Slot>,
+}
 
 /// The layers of a run that have errors.
-fn layers(run: &Run) -> Vec<Layer<'_>> {
+pub(super) fn layers<'a>(run: &'a Run) -> Vec<Layer<'a>> {
     let mut layers = vec![];
-    let mut push = |name: String, image, s: &Sampled, part: usize, mean: &Estimate| {
+    let mut push = |name: String, image: &'a TermImage, s: &'a Sampled, part: usize, mean: &Estimate, slot| {
         // light that is found only by chance: a pixel gets at most its share of the expected hits
         let share = s.series.cost.paths as f64 / s.total.mean.len() as f64;
         let concerned = s.series.doubts.iter().filter(|d| part >= s.terms.len() || d.from <= part);
         let events = concerned.map(|d| d.per_path * share).fold(s.pixel_events[part], f64::min);
         let errors = pixel_errors::of(&name, mean, events, u64::from(s.spp.min(16)));
-        layers.push((name, image, errors));
+        layers.push(Layer { name, image, errors, of: s, slot });
     };
     let series = |s: &'_ Sampled| s.series.image().clone();
     if let Some(t) = run.terms.first() {
         let (f, last) = (series(t), t.terms.len());
-        t.terms.iter().enumerate().for_each(|(k, image)| push(format!("T{k:02}"), image, t, k, &f.terms[k]));
-        push("Tsum".into(), &t.sum, t, last + 1, &f.sum);
-        if !f.tail.is_none() {
-            push("tail".into(), &t.tail, t, last, &f.tail);
-            push("Tall".into(), &t.total, t, last + 2, &f.total);
+        t.terms.iter().enumerate().for_each(|(k, image)| {
+            push(format!("T{k:02}"), image, t, k, &f.terms[k], Some(Slot::Term(k)));
+        });
+        let cut = f.tail.is_none();
+        push("Tsum".into(), &t.sum, t, last + 1, &f.sum, cut.then_some(Slot::Whole));
+        if !cut {
+            push("tail".into(), &t.tail, t, last, &f.tail, Some(Slot::Rest));
+            push("Tall".into(), &t.total, t, last + 2, &f.total, Some(Slot::Whole));
         }
     }
     if let Some(p) = &run.path {
-        push("path".into(), &p.total, p, 0, &p.series.image().total);
+        push("path".into(), &p.total, p, 0, &p.series.image().total, Some(Slot::Whole));
     }
     if let Some(r) = run.radiosity.as_ref().map(|r| &r.fine) {
         let (f, last) = (series(r), r.terms.len());
-        r.terms.iter().enumerate().for_each(|(k, image)| push(format!("R{k:02}"), image, r, k, &f.terms[k]));
-        push("Rsum".into(), &r.sum, r, last + 1, &f.sum);
-        push("Rfull".into(), &r.total, r, last + 2, &f.total);
+        r.terms.iter().enumerate().for_each(|(k, image)| {
+            push(format!("R{k:02}"), image, r, k, &f.terms[k], Some(Slot::Term(k)));
+        });
+        push("Rsum".into(), &r.sum, r, last + 1, &f.sum, None);
+        push("Rfull".into(), &r.total, r, last + 2, &f.total, Some(Slot::Whole));
     }
     layers
 }
 
 /// For each layer with errors, whether they can be trusted.
 pub(super) fn pixel_errors(run: &Run) -> Vec<PixelErrors> {
-    layers(run).into_iter().map(|l| l.2).collect()
+    layers(run).into_iter().map(|l| l.errors).collect()
 }
 
 pub(super) fn write_exr<'a>(run: &'a Run, trust: &[PixelErrors], out: &mut Files<'a>, size: [u32; 2]) {
@@ -65,10 +80,10 @@ pub(super) fn write_exr<'a>(run: &'a Run, trust: &[PixelErrors], out: &mut Files
     let attributes = out.attributes(run);
     out.later("terms.exr", move |path| {
         let all = layers(run);
-        let names: Vec<String> = all.iter().map(|l| format!("{}_se", l.0)).collect();
+        let names: Vec<String> = all.iter().map(|l| format!("{}_se", l.name)).collect();
         let mut layers: Vec<exr::Layer> =
             beauty.into_iter().map(|image| exr::Layer { name: "", pixels: &image.mean }).collect();
-        for ((name, image, _), errors) in all.iter().zip(&names) {
+        for (Layer { name, image, .. }, errors) in all.iter().zip(&names) {
             layers.push(exr::Layer { name, pixels: &image.mean });
             layers.push(exr::Layer { name: errors, pixels: &image.std_error });
         }

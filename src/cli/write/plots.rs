@@ -6,23 +6,24 @@ use fredholm::math::CHANNELS;
 use fredholm::report::figures::decay::{self, Decay, RateLine, independent_ratios};
 use fredholm::report::figures::variance::{self, Falling, Variance};
 use fredholm::report::image::typeset::{Caption, superscript};
+use fredholm::report::page::data::Slot;
 use fredholm::report::plot::{Curve, Look, Point};
 use fredholm::stats::TermMeans;
 use fredholm::study::convergence::NoiseCurve;
 use fredholm::study::run::Run;
-use fredholm::terms::{scatter::Scatter, variance::Snapshot};
+use fredholm::terms::{World, scatter::Scatter, variance::Snapshot};
 
 pub(super) fn write_plots<'a>(run: &'a Run, out: &mut Files<'a>, caption: &'a Caption) {
     if !run.surface.is_empty() || run.radiosity.is_some() {
         out.figure("decay", move || decay::draw(&decay_of(run), caption));
     }
-    let figure = variance_of(run);
+    let (figure, _) = variance_of(run);
     if !figure.curves.is_empty() {
         out.figure("variance", move || variance::draw(&figure, caption));
     }
 }
 
-fn decay_of(run: &Run) -> Decay {
+pub(super) fn decay_of(run: &Run) -> Decay {
     // one channel for all of it, so that the measured rate can be compared with the spectral radius
     let c = run.slowest_channel();
     let title = format!("How the terms decay, in the {} channel", CHANNELS[c]);
@@ -81,7 +82,9 @@ fn lines(run: &Run, c: usize) -> Vec<RateLine> {
     lines
 }
 
-fn variance_of(run: &Run) -> Variance {
+/// The figure, and for each of its curves the image that it belongs to.
+pub(super) fn variance_of(run: &Run) -> (Variance, Vec<(World, Slot)>) {
+    let mut images = vec![];
     let mut figure = Variance { title: "How the noise falls".into(), curves: vec![] };
     // one slot of the snapshots, or with no slot their sum
     let mut curve = |label: String, s: &Sampled, slot: Option<usize>| {
@@ -98,6 +101,7 @@ fn variance_of(run: &Run) -> Variance {
         if !points.is_empty() {
             let look = Look::nth(figure.curves.len());
             let slope = part.slope().map(|s| (s.slope, s.std_error));
+            images.push((s.series.world, slot.map_or(Slot::Whole, Slot::Term)));
             figure.curves.push(Falling { curve: Curve { label, points, look }, slope });
         }
     };
@@ -110,5 +114,5 @@ fn variance_of(run: &Run) -> Variance {
     if let Some(p) = &run.path {
         curve("path tracer".into(), p, None);
     }
-    figure
+    (figure, images)
 }

@@ -1,16 +1,17 @@
-//! `index.html`: the report of a run as one file that opens from disk, with no network and no script.
+//! `index.html`: the report of a run as one file that opens from disk, with no network.
 //!
 //! ```text
-//! title, answer → pictures → comparisons, tables folded → small tables → plots → numbers, folded → how it was made
+//! title, answer → the images, in the hands of the reader → comparisons, tables folded → small tables → plots → numbers, folded → how it was made
 //! ```
 //!
-//! Pictures are embedded as data URIs and plots as inline SVG, so that the page can be mailed or handed in. The colours of the
-//! page and of its plots follow the reader's light or dark setting.
+//! Images are embedded as floats ([`data`](super::data)), plots as inline SVG, so that the page can be mailed or handed in. Scripts
+//! ([`script`](super::script)) draw both; without them the plots are still there. The colours of the page follow the reader's light
+//! or dark setting.
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 use std::{fmt::Write, path::Path};
 
-use super::tables;
+use super::{data::Data, script, tables};
 use crate::report::{
     ReportError, files,
     image::typeset::escape,
@@ -31,7 +32,9 @@ pub struct Page<'a> {
     pub title: String,
     /// The answer: one sentence.
     pub answer: String,
-    /// Pictures and plots. The first [`PICTURES`] stand above everything else.
+    /// The images and numbers that the scripts draw.
+    pub data: Option<&'a Data>,
+    /// Plots, and pictures for a page without data.
     pub plates: Vec<Plate<'a>>,
     /// One sentence for each comparison, with the numbers behind it.
     pub comparisons: Vec<(String, Vec<VerdictRecord>)>,
@@ -47,9 +50,6 @@ pub struct Page<'a> {
     pub files: Vec<(String, String)>,
 }
 
-/// Plates above the comparisons.
-pub const PICTURES: usize = 2;
-
 /// A picture (`.png`) or plot (`.svg`) with heading and text.
 #[derive(Clone, Debug)]
 pub struct Plate<'a> {
@@ -61,6 +61,8 @@ pub struct Plate<'a> {
     pub alt: &'a str,
     /// The file to embed.
     pub path: &'a Path,
+    /// The name of the plot that replaces it where scripts run; none for a picture.
+    pub plot: Option<&'a str>,
 }
 
 impl<'a> Plate<'a> {
@@ -72,6 +74,7 @@ impl<'a> Plate<'a> {
                    exposure, printed beneath it: without the gain the later terms would be black.",
             alt: "Contact sheet of the terms of the Neumann series",
             path,
+            plot: None,
         }
     }
 
@@ -89,6 +92,7 @@ impl<'a> Plate<'a> {
             text: "Left, lamps and direct light only (k ≤ 1); right, the whole series. Both have the same exposure.",
             alt: "Direct illumination beside full illumination",
             path,
+            plot: None,
         }
     }
 
@@ -101,6 +105,7 @@ impl<'a> Plate<'a> {
                    only for the surface norm.",
             alt: "Norms of the terms against the number of bounces, on a logarithmic axis",
             path,
+            plot: Some("plot-decay"),
         }
     }
 
@@ -112,6 +117,7 @@ impl<'a> Plate<'a> {
                    the dashed line of slope −1: four times the work halves the error.",
             alt: "Variance against samples per pixel on doubly logarithmic axes",
             path,
+            plot: Some("plot-variance"),
         }
     }
 }
@@ -132,22 +138,28 @@ pub fn render(page: &Page) -> Result<String, ReportError> {
     let title = escape(&page.title);
     let mut body = format!("<header>\n<h1>{title}</h1>\n<p class=\"equation\">L = E + T L = Σ T<sup>k</sup> E</p>\n");
     body += &format!("<p class=\"answer\">{}</p>\n</header>\n<main>\n", escape(&page.answer));
-    let (pictures, plots) = page.plates.split_at(page.plates.len().min(PICTURES));
-    for plate in pictures {
-        body += &plate_section(plate)?;
+    if page.data.is_some() {
+        body += VIEW;
     }
     body += &comparison_section(&page.comparisons);
     body += &grid_section(&page.grids);
-    for plate in plots {
-        body += &plate_section(plate)?;
+    for plate in &page.plates {
+        body += &plate_section(plate, page.data)?;
     }
     body += &series_section(&page.series);
     body += &made_section(page);
+    let scripts = match page.data {
+        Some(data) => {
+            data.elements().map_err(|e| ReportError::new(Path::new("index.html"), e, "report this defect"))?
+                + &script::elements()
+        }
+        None => String::new(),
+    };
     Ok(format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title} · fredholm</title>\n\
-         <style>{STYLE}</style>\n</head>\n<body>\n{body}</main>\n</body>\n</html>\n"
+         <style>{STYLE}</style>\n</head>\n<body>\n{body}</main>\n{scripts}</body>\n</html>\n"
     ))
 }
 
@@ -193,7 +205,7 @@ fn made_section(page: &Page) -> String {
     out + &file_list(&page.files) + "</section>\n"
 }
 
-fn plate_section(plate: &Plate) -> Result<String, ReportError> {
+fn plate_section(plate: &Plate, data: Option<&Data>) -> Result<String, ReportError> {
     let unsuitable = |cause: &str| ReportError::new(plate.path, cause, "embed a .png picture or a .svg plot");
     let bytes = files::read(plate.path)?;
     let alt = escape(plate.alt);
@@ -209,7 +221,21 @@ fn plate_section(plate: &Plate) -> Result<String, ReportError> {
         _ => return Err(unsuitable("neither .png nor .svg")),
     };
     let (heading, text) = (escape(plate.heading), escape(plate.text));
-    Ok(format!("<section>\n<h2>{heading}</h2>\n<p>{text}</p>\n<figure>{picture}</figure>\n</section>\n"))
+    // where scripts run, a plot that answers replaces the still one
+    let (still, plot) = match (plate.plot, data) {
+        (Some(id), Some(data)) => (" data-still", answering(id, &data.command)),
+        _ => ("", String::new()),
+    };
+    Ok(format!("<section>\n<h2>{heading}</h2>\n<p>{text}</p>\n<figure{still}>{picture}</figure>\n{plot}</section>\n"))
+}
+
+/// The place of a plot that a script draws, and the command that makes it.
+fn answering(id: &str, command: &str) -> String {
+    let command = escape(command);
+    format!(
+        "<div class=\"plot\" id=\"{id}\"></div>\n<p class=\"made\"><code>{command}</code> \
+         <button type=\"button\" data-save-svg=\"{id}\">Save plot (SVG)</button></p>\n"
+    )
 }
 
 fn series_section(series: &[(String, &Functional)]) -> String {
@@ -259,3 +285,4 @@ fn address(name: &str) -> String {
 }
 
 const STYLE: &str = include_str!("page.css");
+const VIEW: &str = include_str!("view.html");

@@ -9,10 +9,12 @@
 //! | settings of the run | [`Asked`], [`Settings`] |
 //! | the work, in the order above | [`Run::solve`] |
 //! | results | the fields of [`Run`] |
+//! | images of the first samples | [`Early`] |
 //! | how many paths the results without images get | `share` |
 //! | comparison of two results | [`RunVerdict`] |
 //! | rates, bounds and orders that follow | [`facts`] |
 
+mod early;
 pub mod facts;
 mod share;
 mod verdicts;
@@ -31,7 +33,8 @@ use crate::study::roulette::{self, Radii};
 use crate::study::strategies::{self, Strategy};
 use crate::study::surface;
 use crate::terms::functional::Replicates;
-use crate::terms::{Recorded, Variance, World};
+use crate::terms::{Recorded, TermFilm, Variance, World};
+pub use early::Early;
 use rayon::prelude::*;
 use share::{Share, Together};
 pub use verdicts::RunVerdict;
@@ -111,6 +114,8 @@ pub struct Run {
     pub asked: Asked,
     /// The terms, one result for each estimator, in the order of [`Asked::estimators`].
     pub terms: Vec<Sampled>,
+    /// Images of the first samples of the first result in [`Run::terms`]; none if the paths are guided.
+    pub early: Vec<Early>,
     /// The result of the path tracer.
     pub path: Option<Sampled>,
     /// The guide of the paths, if there is one.
@@ -146,6 +151,7 @@ impl Run {
             settings,
             asked,
             terms: vec![],
+            early: vec![],
             path: None,
             guide: None,
             radiosity: None,
@@ -202,8 +208,19 @@ impl Run {
         for &estimator in estimators.iter().rev() {
             if !progress.stopped() {
                 let guided = self.guide.as_ref().and_then(|g| g.terms(scene, estimator, settings, progress));
-                let result = guided.unwrap_or_else(|| by_rays::terms(scene, estimator, settings, progress));
+                // only the images of the first estimator are shown
+                let shown = estimators.first() == Some(&estimator);
+                let mut early = vec![];
+                let mut look = |film: &TermFilm| {
+                    if shown {
+                        early::copied(film, settings.spp, &mut early);
+                    }
+                    None
+                };
+                let result = guided
+                    .unwrap_or_else(|| by_rays::watched(scene, Some(estimator), settings, progress, Some(&mut look)));
                 self.terms.insert(0, result);
+                self.early = early;
             }
         }
         if self.asked.strategies && !progress.stopped() {

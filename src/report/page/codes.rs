@@ -1,0 +1,92 @@
+//! Images as bytes for the page: means as half floats, errors and early images as 8-bit logarithms.
+//!
+//! ```text
+//! mean      v = 2^e · h,  h a half float with 11 significant bits       relative error ≤ 2⁻¹¹
+//! positive  v = 2^(l + s (code − 1)),  code = 1, …, 253                 relative error ≤ 2^(s/2) − 1
+//! ```
+//!
+//! The exponent e brings the largest value of an image just below 2¹⁵, so that values 2²⁹ times smaller still have their 11 bits.
+//! Numbers that are not finite keep their kind.
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | e | exponent of an image | [`Means::exponent`] |
+//! | l, s | logarithm (base 2) of the smallest value, and step | [`Logarithms::lowest`], [`Logarithms::step`] |
+//! | code | 0: zero, 254: infinite, 255: NaN | [`Logarithms`] |
+//!
+//! The bytes are ordered by plane, because equal kinds of bytes side by side compress better: for means the high bytes of
+//! the red pixels, of the green and of the blue ones, then the low bytes; for logarithms the red codes, then green minus
+//! red and blue minus red.
+
+use base64::prelude::{BASE64_STANDARD, Engine};
+use flate2::{Compression, write::ZlibEncoder};
+use half::f16;
+use std::io::Write;
+
+/// Pixels as half floats.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Means {
+    /// The exponent e.
+    pub exponent: i32,
+    /// Six bytes per pixel.
+    pub bytes: Vec<u8>,
+}
+
+impl Means {
+    /// The half floats of an image.
+    pub fn of(pixels: &[[f32; 3]]) -> Self {
+        let largest = pixels.iter().flatten().filter(|v| v.is_finite()).fold(0.0f32, |a, v| a.max(v.abs()));
+        let exponent = if largest > 0.0 { f64::from(largest).log2().floor() as i32 - 14 } else { 0 };
+        let scale = f64::from(-exponent).exp2();
+        let half = |v: f32| f16::from_f64(f64::from(v) * scale).to_bits().to_be_bytes();
+        let plane = |byte: usize, c: usize| pixels.iter().map(move |p| half(p[c])[byte]);
+        let bytes = (0..2).flat_map(|byte| (0..3).flat_map(move |c| plane(byte, c))).collect();
+        Self { exponent, bytes }
+    }
+}
+
+/// Pixels that are not negative, as logarithms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Logarithms {
+    /// Logarithm of the smallest value, base 2.
+    pub lowest: f64,
+    /// Logarithm of the ratio of neighbouring codes, base 2.
+    pub step: f64,
+    /// Three bytes per pixel.
+    pub bytes: Vec<u8>,
+}
+
+/// The largest code of a finite value.
+const LAST: f64 = 253.0;
+const INFINITE: u8 = 254;
+const NOT_KNOWN: u8 = 255;
+
+impl Logarithms {
+    /// The codes of an image. Values more than `octaves` powers of two below the largest get the smallest code.
+    /// Steps are not smaller than `finest`: digits that are noise do not compress.
+    pub fn of(pixels: &[[f32; 3]], octaves: f64, finest: f64) -> Self {
+        let logs = pixels.iter().flatten().filter(|v| v.is_finite() && **v > 0.0).map(|v| f64::from(*v).log2());
+        let (low, high) = logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        // an image without a positive value has only the codes of zero and of what is not finite
+        let lowest = if high >= low { low.max(high - octaves) } else { 0.0 };
+        let step = if high > lowest { ((high - lowest) / (LAST - 1.0)).max(finest) } else { 0.0 };
+        let code = |v: f32| match v {
+            v if v.is_nan() => NOT_KNOWN,
+            v if v.is_infinite() => INFINITE,
+            v if v <= 0.0 => 0,
+            _ if step == 0.0 => 1,
+            v => (1.0 + ((f64::from(v).log2() - lowest) / step).round()).clamp(1.0, LAST) as u8,
+        };
+        let codes: Vec<[u8; 3]> = pixels.iter().map(|p| p.map(code)).collect();
+        let plane = |c: usize| codes.iter().map(move |p| if c == 0 { p[0] } else { p[c].wrapping_sub(p[0]) });
+        Self { lowest, step, bytes: (0..3).flat_map(plane).collect() }
+    }
+}
+
+/// Compresses (zlib) and writes as text (base64).
+pub fn text(bytes: &[u8]) -> String {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(6));
+    // writing to memory cannot fail
+    let packed = encoder.write_all(bytes).and_then(|()| encoder.finish()).unwrap_or_default();
+    BASE64_STANDARD.encode(packed)
+}

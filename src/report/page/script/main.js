@@ -1,0 +1,220 @@
+// The page of a run: reads the data, draws the image that the reader has chosen, and starts everything around it.
+
+import { Composer } from '#page/compose.js';
+import { byId, controls, subjectsOf, tagText } from '#page/controls.js';
+import { symbol, meaning, significant } from '#page/format.js';
+import { Gains, lookOf } from '#page/gains.js';
+import { keys } from '#page/keys.js';
+import { own } from '#page/own.js';
+import { plots } from '#page/plots.js';
+import { probe } from '#page/probe.js';
+import { meanOf, reading, words } from '#page/reading.js';
+import { Run } from '#page/run.js';
+import { samples } from '#page/samples.js';
+import { share } from '#page/share.js';
+import { Store, initial, nameOf, read, subjectOf, written } from '#page/state.js';
+import { OCTAVES, gradient, tone } from '#page/tone.js';
+import { tries } from '#page/tries.js';
+import { Viewer } from '#page/viewer.js';
+import { whatIf, worldWithTerms } from '#page/what_if.js';
+
+/** @import { Counts } from '#page/tone.js' */
+/** @import { State, Subject, World } from '#page/types.js' */
+
+/** Time between two partial sums that play, in milliseconds. */
+const BEAT = 700;
+
+export class App {
+  /** True while the strip shows partial sums in place of terms. */
+  sums = false;
+  /** Gain of the image on the canvas. */
+  gain = 1;
+  /** @type {Counts | null} */
+  counts = null;
+  /** True while Shift is held. */
+  #peeking = false;
+  /** @type {ReturnType<typeof setInterval> | undefined} */
+  #playing;
+  #asked = false;
+
+  /** @param {Run} run */
+  constructor(run) {
+    this.run = run;
+    this.composer = new Composer(run);
+    this.gains = new Gains(this.composer);
+    this.start = initial(run.data);
+    this.store = new Store(read(location.hash, this.start, run.data));
+    this.sums = this.store.state.subject.kind === 'sum';
+    const { store } = this;
+    this.viewer = new Viewer(/** @type {HTMLCanvasElement} */ (byId('canvas')), run.data.width, run.data.height, {
+      click: (x, y) => store.set({ pixel: [x, y], tiles: null }),
+      block: (tiles) => {
+        this.peek(false);
+        store.set({ tiles, pixel: null });
+      },
+      frame: (frame) => store.set({ frame }),
+      wipe: (wipe) => store.set({ wipe }),
+    });
+  }
+
+  /** Draws at the next frame of the screen. */
+  ask() {
+    if (this.#asked) return;
+    this.#asked = true;
+    requestAnimationFrame(() => {
+      this.#asked = false;
+      const begin = performance.now();
+      this.draw();
+      performance.measure('frame', { start: begin, end: performance.now() });
+    });
+  }
+
+  draw() {
+    const { store, viewer, composer, gains } = this;
+    const peeking = this.#peeking;
+    /** @type {State} */
+    const state = peeking ? { ...store.state, metric: 'value', spp: null } : store.state;
+    const subject = peeking ? state.reference : state.subject;
+    const pixels = composer.shown(state, subject);
+    const look = lookOf(state);
+    const colours = (/** @type {Float32Array} */ of, /** @type {Subject} */ s, /** @type {State} */ by, /** @type {number} */ which) => {
+      const gain = gains.of(s, by) * 2 ** state.exposure;
+      const counts = tone(of, { gain, offset: state.offset, look: lookOf(by) }, viewer.colours(which));
+      viewer.changed(which);
+      return { gain, counts };
+    };
+    if (pixels) {
+      const { gain, counts } = colours(pixels, subject, state, 0);
+      [this.gain, this.counts] = [gain, counts];
+    } else {
+      viewer.colours(0).fill(0);
+      viewer.changed(0);
+    }
+    if (state.wipe !== null) {
+      const plain = /** @type {State} */ ({ ...state, metric: 'value' });
+      colours(composer.pixels(state.reference, plain, 'reference'), state.reference, plain, 1);
+    }
+    viewer.frame = state.frame;
+    viewer.over = { pixels, wipe: state.wipe, pixel: state.pixel, tiles: state.tiles };
+    viewer.draw();
+    this.#label(state, subject, pixels !== null, look);
+  }
+
+  /** @param {State} state @param {Subject} subject @param {boolean} known @param {import('#page/types.js').Look} look */
+  #label(state, subject, known, look) {
+    const against = state.metric === 'value' ? '' : ` − ${symbol(state.reference)} · ${state.reference.world} (${state.metric})`;
+    const why = state.metric === 'z' && !known ? 'z needs two answers from different paths, both with known errors' : '';
+    byId('tag').textContent = why || `${tagText(subject, this.gain)}${against}${state.spp ? ` · ${state.spp} samples` : ''}`;
+    byId('tag-right').hidden = state.wipe === null;
+    byId('tag-right').textContent = `${symbol(state.reference)} · ${state.reference.world}`;
+    byId('ramp').hidden = look === 'srgb' || !known;
+    if (look !== 'srgb') {
+      const [from, bar, to] = byId('ramp').children;
+      /** @type {HTMLElement} */ (bar).style.background = `linear-gradient(to right, ${gradient(look)})`;
+      from.textContent = significant(look === 'false' ? 2 ** -OCTAVES / this.gain : -1 / this.gain, 2);
+      to.textContent = significant(1 / this.gain, 2);
+    }
+    if (this.counts) byId('reading').innerHTML = reading(this, state, subject, this.counts, this.gain);
+    byId('canvas').setAttribute('aria-label', `${symbol(subject)}: ${meaning(subject, this.run.data.max_bounces)}`);
+  }
+
+  /** Tells a screen reader what is shown. */
+  speak() {
+    const { subject } = this.store.state;
+    const mean = meanOf(this, subject, this.store.state);
+    byId('spoken').textContent = `${meaning(subject, this.run.data.max_bounces)}${mean ? `, mean radiance ${words(mean)}` : ''}`;
+  }
+
+  /** True if there is such an image. @param {Subject} subject */
+  known(subject) {
+    return subject.world === 'own' ? this.composer.own !== null : subjectOf(nameOf(subject), this.run.data) !== undefined;
+  }
+
+  /** Shows a world: the same part of it, if it has that part. @param {World} world */
+  show(world) {
+    const subject = { ...this.store.state.subject, world };
+    this.store.set({ subject: this.known(subject) && world !== 'own' ? subject : { world, kind: 'whole', k: 0 } });
+  }
+
+  /** Shows term k, or the partial sum up to it. @param {number} k */
+  term(k) {
+    const { world } = this.store.state.subject;
+    const subject = /** @type {Subject} */ ({ world: this.run.hasTerms(world) ? world : worldWithTerms(this), kind: this.sums ? 'sum' : 'term', k });
+    if (this.known(subject)) this.store.set({ subject });
+  }
+
+  /** Shows partial sums, or terms. @param {boolean} on */
+  summing(on) {
+    const { subject } = this.store.state;
+    const [from, to] = on ? ['term', 'sum'] : ['sum', 'term'];
+    this.sums = on;
+    this.store.set({ subject: subject.kind === from ? /** @type {Subject} */ ({ ...subject, kind: to }) : { ...subject } });
+  }
+
+  /** Shows the reference as long as Shift is held. @param {boolean} on */
+  peek(on) {
+    if (on === this.#peeking) return;
+    this.#peeking = on;
+    this.ask();
+  }
+
+  /** Plays the partial sums, or stops. */
+  play() {
+    if (this.#playing) {
+      clearInterval(this.#playing);
+      this.#playing = undefined;
+      return;
+    }
+    const world = worldWithTerms(this);
+    this.sums = true;
+    const all = subjectsOf(this, world).filter((s) => s.kind === 'sum' || s.kind === 'whole');
+    let at = 0;
+    const beat = () => {
+      this.store.set({ subject: all[at], gain: 'one' });
+      at += 1;
+      if (at === all.length) this.play();
+    };
+    this.#playing = setInterval(beat, BEAT);
+    beat();
+  }
+
+  /** The map of z between two answers. */
+  bias() {
+    const { state } = this.store;
+    if (state.metric === 'z') return this.store.set({ metric: 'value' });
+    const worlds = this.run.data.worlds.map((a) => a.world);
+    const first = worldWithTerms(this);
+    const other = worlds.includes('path') ? 'path' : worlds.find((w) => w !== first);
+    if (!other) return undefined;
+    return this.store.set({
+      metric: 'z',
+      subject: { world: first, kind: 'whole', k: 0 },
+      reference: { world: other, kind: 'whole', k: 0 },
+      spp: null,
+    });
+  }
+}
+
+/** Starts the page. */
+export async function start() {
+  const run = new Run(JSON.parse(byId('run').textContent ?? ''));
+  await run.load();
+  byId('view').hidden = false;
+  for (const still of document.querySelectorAll('[data-still]')) still.remove();
+  const app = new App(run);
+  [controls, whatIf, samples, probe, plots, own, share, keys, tries].forEach((part) => part(app));
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let later;
+  app.store.drawnBy((state) => {
+    app.ask();
+    clearTimeout(later);
+    later = setTimeout(() => {
+      history.replaceState(null, '', `#${written(state, app.start)}`);
+      app.speak();
+    }, 250);
+  });
+  window.addEventListener('hashchange', () => app.store.set(read(location.hash, app.start, run.data)));
+  app.draw();
+  document.documentElement.dataset.ready = 'true';
+  performance.mark('ready');
+}

@@ -1,0 +1,100 @@
+// Decay of the terms and variance against samples, linked to the image: a click on a mark shows its term.
+
+import { COLORS, draw } from '#page/chart.js';
+import { byId } from '#page/controls.js';
+import { significant } from '#page/format.js';
+
+/** @import { App } from '#page/main.js' */
+/** @import { Curve, Plot, State, Subject, World } from '#page/types.js' */
+
+/** @param {App} app */
+export function plots(app) {
+  app.store.drawnBy((state, before) => {
+    if (state.subject !== before.subject) show(app, state);
+  });
+  show(app, app.store.state);
+}
+
+/** @param {App} app @param {State} state */
+function show(app, state) {
+  const { decay, variance } = app.run.data;
+  if (decay) {
+    drawn(app, 'plot-decay', decay, {
+      x: 'bounce k',
+      y: 'mean radiance over all surfaces',
+      logX: false,
+      subject: (_, x) => ({ world: termsOf(app, state), kind: 'term', k: Math.round(x) }),
+      chosen: (_, x) => state.subject.kind === 'term' && state.subject.k === x,
+    });
+  }
+  if (variance) {
+    const subject = (/** @type {Curve} */ { of }) => (of ? subjectOf(of) : undefined);
+    drawn(app, 'plot-variance', variance, {
+      x: 'samples per pixel n',
+      y: 'variance of the mean of n samples',
+      logX: true,
+      subject,
+      chosen: (curve) => {
+        const s = subject(curve);
+        return s !== undefined && s.world === state.subject.world && s.kind === state.subject.kind && s.k === state.subject.k;
+      },
+    });
+  }
+}
+
+/** @param {App} app @param {State} state @returns {World} */
+function termsOf(app, { subject }) {
+  return app.run.hasTerms(subject.world) ? subject.world : (app.run.data.worlds.find((a) => app.run.hasTerms(a.world))?.world ?? 'terms');
+}
+
+/** @param {[World, import('#page/types.js').Slot]} of @returns {Subject} */
+const subjectOf = ([world, slot]) => (typeof slot === 'number' ? { world, kind: 'term', k: slot } : { world, kind: slot, k: 0 });
+
+/**
+ * @param {App} app @param {string} id @param {Plot} plot
+ * @param {{x: string, y: string, logX: boolean, subject: (c: Curve, x: number) => Subject | undefined, chosen: (c: Curve, x: number) => boolean}} how
+ */
+function drawn(app, id, plot, how) {
+  const into = byId(id);
+  if (!into) return;
+  const marks = (/** @type {Curve} */ curve) =>
+    curve.points.map(([x, y, half]) => {
+      const subject = how.subject(curve, x);
+      return { x, y, half, chosen: how.chosen(curve, x), open: () => subject && app.known(subject) && app.store.set({ subject }) };
+    });
+  draw(into, {
+    title: plot.title,
+    x: how.x,
+    y: how.y,
+    logX: how.logX,
+    logY: true,
+    series: plot.curves.map((c, i) => ({
+      label: c.label,
+      color: COLORS[i % COLORS.length],
+      form: how.logX ? 'line' : 'dot',
+      dashed: i >= COLORS.length,
+      marks: marks(c),
+    })),
+    lines: plot.lines.map((l, i) => ({
+      label: l.label,
+      color: COLORS[(plot.curves.length + i) % COLORS.length],
+      at: (x) => l.value * l.ratio ** (x - l.x0),
+    })),
+  });
+}
+
+/**
+ * Variance of one sample of a term, averaged over the pixels, if it was measured.
+ * @param {App} app @param {import('#page/types.js').Slot} slot
+ */
+export function varianceOfOne(app, slot) {
+  const curve = app.run.data.variance?.curves.find((c) => c.of?.[0] === 'terms' && c.of[1] === slot);
+  const last = curve?.points.at(-1);
+  return last && last[0] * last[1];
+}
+
+/** The noise of one sample in units of the mean. @param {App} app @param {number} k @param {number} mean */
+export function relativeNoise(app, k, mean) {
+  const variance = varianceOfOne(app, k);
+  return variance === undefined ? undefined : significant(Math.sqrt(variance) / mean, 2);
+}

@@ -1,0 +1,83 @@
+// What is known of the image on the canvas: its meaning, its mean with error, its gain, and the pixels that a screen cannot show.
+
+import { gainText, meaning, percent, plusMinus, significant, symbol } from '#page/format.js';
+import { weights } from '#page/scale.js';
+import { average, blockMean, imageMean } from '#page/statistics.js';
+
+/** @import { App } from '#page/main.js' */
+/** @import { State, Subject, Slot } from '#page/types.js' */
+/** @import { Counts } from '#page/tone.js' */
+
+/**
+ * Mean of a subject over the image or a block, per channel, with 95 % half widths (NaN where none is known).
+ * @typedef {{mean: number[], half: number[], all: [number, number]}} Reading
+ */
+
+/**
+ * @param {App} app @param {Subject} subject @param {State} state
+ * @param {[number, number, number, number]} [block]
+ * @returns {Reading | null}
+ */
+export function meanOf(app, subject, state, block) {
+  const answer = app.run.answer(subject.world);
+  if (!answer) return null;
+  const w = weights(app.run, subject, state);
+  const found = block ? blockMean(app.run, answer, block, w) : imageMean(answer, w);
+  const rest = subject.kind === 'rest' || subject.kind === 'whole';
+  // the tail of a path may have an infinite variance; its error bar would mean nothing
+  const t = rest && answer.variance === 'infinite' ? Infinity : rest && answer.variance === 'unknown' ? NaN : answer.t95 ?? NaN;
+  const [mean, error] = average(found);
+  return { mean: found.mean, half: found.error.map((e) => t * e), all: [mean, t * error] };
+}
+
+/** `0.1234 ± 0.0012`, from a reading. @param {Reading} r */
+export const words = (r) => plusMinus(r.all[0], r.all[1]);
+
+/** The layer whose pixel errors a subject uses, if it says that they cannot be trusted. @param {App} app @param {Subject} s */
+export function doubtOf(app, { world, kind, k }) {
+  const slot = /** @type {Slot} */ (kind === 'term' ? k : kind === 'rest' ? 'rest' : 'whole');
+  return app.run.layer(world, slot)?.doubt ?? '';
+}
+
+/**
+ * @param {App} app @param {State} state @param {Subject} subject @param {Counts} counts @param {number} gain
+ */
+export function reading(app, state, subject, counts, gain) {
+  const { data } = app.run;
+  const lines = [];
+  lines.push(`<strong>${symbol(subject)}</strong>: ${escaped(meaning(subject, data.max_bounces))}.`);
+  const first = app.composer.isFirst(subject, state);
+  const mean = first ? null : meanOf(app, subject, state);
+  if (mean) {
+    const channels = ['red', 'green', 'blue'].map((name, c) => `${name} ${plusMinus(mean.mean[c], mean.half[c])}`);
+    lines.push(`Mean radiance <b id="mean">${words(mean)}</b> W sr⁻¹ m⁻² (95 %); ${channels.join(', ')}.`);
+    const mesh = app.run.answer(subject.world)?.mesh.reduce((a, m) => a + m / 3, 0) ?? 0;
+    if (mesh > 0) lines.push(`The error of the mesh is about ${significant(mesh, 2)}; the interval does not contain it.`);
+  } else {
+    lines.push(`Mean radiance <b id="mean">${significant(meanOfPixels(app, subject, state))}</b>, from the pixels; its error is not known.`);
+  }
+  if (first) lines.push(`These are the first ${state.spp} samples of each pixel.`);
+  lines.push(`Shown ${gainText(gain)}. ${counted(counts, app.run.pixels)}`);
+  const doubt = doubtOf(app, subject);
+  if (doubt) lines.push(`<span class="flag">⚑ The errors of single pixels of this image are ${escaped(doubt)}.</span>`);
+  if (data.reduced > 1) {
+    lines.push(`Every pixel is the mean of ${data.reduced} × ${data.reduced} pixels of the run; terms.exr has all of them.`);
+  }
+  return lines.map((l) => `<p>${l}</p>`).join('');
+}
+
+/** @param {Counts} counts @param {number} pixels */
+function counted({ clipped, negative, nonFinite }, pixels) {
+  const some = (/** @type {number} */ n, /** @type {string} */ what) => (n ? `${n} pixels (${percent(n / pixels)}) are ${what}.` : '');
+  const words = [some(clipped, 'too bright for the screen'), some(negative, 'negative'), some(nonFinite, 'not finite (magenta)')];
+  return words.filter(Boolean).join(' ') || 'No pixel is clipped.';
+}
+
+/** Mean of the pixels and channels. @param {App} app @param {Subject} subject @param {State} state */
+export function meanOfPixels(app, subject, state) {
+  const pixels = app.composer.pixels(subject, state);
+  return pixels.reduce((a, v) => a + v, 0) / pixels.length;
+}
+
+/** @param {string} text */
+export const escaped = (text) => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;');

@@ -1,0 +1,132 @@
+// The sliders of s, one for all channels and one for each, and the switches of the terms.
+
+import { byId, inputById } from '#page/controls.js';
+import { percent, plusMinus, significant, symbol } from '#page/format.js';
+import { escaped, meanOf } from '#page/reading.js';
+import { cut, largest, physical, restFactor, untouched } from '#page/scale.js';
+
+/** @import { App } from '#page/main.js' */
+/** @import { State, Subject, World } from '#page/types.js' */
+
+const CHANNELS = ['red', 'green', 'blue'];
+/** Shares of the extrapolated rest above this are said to rule the picture. */
+const MUCH = 0.1;
+
+/** @param {App} app */
+export function whatIf(app) {
+  const { store, run } = app;
+  const [most, limit] = [largest(run.data), physical(run.data)];
+  const sliders = ['all', ...CHANNELS].map((name, i) => {
+    const [max, at] = i === 0 ? [Math.min(...most), Math.min(...limit)] : [most[i - 1], limit[i - 1]];
+    const row = document.createElement('div');
+    row.innerHTML = `<label for="s-${name}">s, ${name === 'all' ? 'all channels' : name}</label>
+      <span class="range"><input id="s-${name}" type="range" min="0" max="${max.toFixed(3)}" step="0.005" list="s-ticks-${name}">
+      <i class="limit" style="left:${(100 * at) / max}%" ${at < max ? '' : 'hidden'} title="no real surface reflects more: s = ${significant(at, 3)}"></i></span>
+      <output id="s-${name}-value"></output>`;
+    const input = /** @type {HTMLInputElement} */ (row.querySelector('input'));
+    input.addEventListener('input', () => {
+      const s = snapped(Number(input.value));
+      const scale = [...store.state.scale];
+      if (i === 0) scale.fill(s);
+      else scale[i - 1] = s;
+      store.set({ scale, spp: null });
+    });
+    return row;
+  });
+  byId('sliders').replaceChildren(...sliders);
+  const last = run.data.max_bounces;
+  const fields = Array.from({ length: last + 2 }, (_, j) => {
+    const label = document.createElement('label');
+    const name = j > last ? 'rest' : symbol({ world: 'terms', kind: 'term', k: j });
+    label.innerHTML = `<input type="checkbox" id="on-${j}" checked> ${name}`;
+    label.firstElementChild?.addEventListener('change', (e) => {
+      const on = [...store.state.on];
+      on[j] = /** @type {HTMLInputElement} */ (e.target).checked;
+      // a changed sum is seen in the whole image only
+      store.set({ on, spp: null, subject: summed(app, store.state) });
+    });
+    return label;
+  });
+  byId('terms-on').append(...fields);
+  byId('what-if-reset').addEventListener('click', () => store.set({ scale: [1, 1, 1], on: store.state.on.map(() => true) }));
+  byId('what-if').hidden = !run.data.worlds.some((a) => run.hasTerms(a.world));
+  store.drawnBy((state) => show(app, state));
+  show(app, store.state);
+}
+
+/** Close to 1 the slider is at 1. @param {number} s */
+const snapped = (s) => (Math.abs(s - 1) < 0.004 ? 1 : s);
+
+/** The whole of a world with terms. @param {App} app @param {State} state @returns {Subject} */
+export function summed(app, { subject }) {
+  const world = app.run.hasTerms(subject.world) ? subject.world : worldWithTerms(app);
+  return subject.kind === 'sum' && world === subject.world ? subject : { world, kind: 'whole', k: 0 };
+}
+
+/** @param {App} app @returns {World} */
+export const worldWithTerms = (app) => app.run.data.worlds.find((a) => app.run.hasTerms(a.world))?.world ?? 'terms';
+
+/** @param {App} app @param {State} state */
+function show(app, state) {
+  const { scale, on } = state;
+  const alike = scale.every((s) => s === scale[0]);
+  [scale[0], ...scale].forEach((s, i) => {
+    const name = ['all', ...CHANNELS][i];
+    inputById(`s-${name}`).value = String(s);
+    byId(`s-${name}-value`).textContent = i === 0 && !alike ? 'mixed' : s.toFixed(2);
+  });
+  on.forEach((o, j) => (inputById(`on-${j}`).checked = o));
+  byId('what-if-text').innerHTML = told(app, state);
+  byId('residual').innerHTML = residual(app, state);
+}
+
+/** What L(s) is, and how well it is known. @param {App} app @param {State} state */
+function told(app, state) {
+  const { run } = app;
+  const { bounds, max_bounces: last } = run.data;
+  const subject = /** @type {Subject} */ ({ world: summed(app, state).world, kind: 'whole', k: 0 });
+  const [now, before] = [meanOf(app, subject, state), meanOf(app, subject, { ...state, scale: [1, 1, 1], on: state.on.map(() => true) })];
+  if (!now || !before) return '';
+  if (untouched(state)) {
+    return `Mean radiance of the picture: ${plusMinus(...before.all)}. The terms give any other s at once: L(s) = Σ sᵏTᵏE, for
+      reflection and transmission alike.`;
+  }
+  const { scale } = state;
+  const lines = [];
+  if (!Number.isFinite(now.all[0])) return 'Beyond this s the series diverges: the light would never stop growing.';
+  const share = now.all[0] / before.all[0];
+  const known = meanOf(app, subject, { ...state, on: state.on.map((o, j) => o && j <= last) });
+  const rest = now.all[0] - (known?.all[0] ?? NaN);
+  if (cut(run, subject.world)) {
+    lines.push(`The first ${last + 1} terms have the mean ${plusMinus(...now.all)}; paths were cut there, so what lies beyond is not known.`);
+  } else if (scale.every((s) => s <= 1)) {
+    const low = significant(now.all[0] - rest);
+    lines.push(`Mean radiance between ${low} and ${significant(now.all[0])} (each ± ${significant(now.all[1], 2)}); the picture shows the upper end.`);
+    lines.push('Only the rest is not known exactly: it lies between 0 and s<sup>K+1</sup> times its value at s = 1.');
+  } else {
+    lines.push(`Mean radiance ${plusMinus(...now.all)}, of which ${percent(rest / now.all[0])} is extrapolated:
+      beyond T${last} the terms are assumed to fall by the factor s r, where r = ${bounds.rate.map((r) => significant(r, 3)).join(', ')}
+      in red, green, blue is the ${escaped(bounds.rate_is)}.`);
+    if (rest / now.all[0] > MUCH) lines.push('<span class="flag">⚑ The extrapolation rules this picture.</span>');
+  }
+  lines.push(`That is <b id="share">${percent(share)}</b> of the light at s = 1.`);
+  const limit = physical(run.data);
+  if (scale.some((s, c) => s > limit[c] * (1 + 1e-9))) {
+    lines.push(`<span class="flag">⚑ Not physical: some surface would reflect more than it receives (s > ${significant(Math.min(...limit), 3)}).</span>`);
+  }
+  const factor = scale.map((s, c) => restFactor(s, last, bounds.rate[c]));
+  if (factor.some((f) => Number.isNaN(f))) lines.push('The series diverges in a channel; nothing is shown there.');
+  return lines.join(' ');
+}
+
+/** What the sum lacks of the path tracer's image. @param {App} app @param {State} state */
+function residual(app, state) {
+  const path = app.run.answer('path');
+  const subject = summed(app, state);
+  const sum = meanOf(app, subject, state);
+  const whole = path && meanOf(app, { world: 'path', kind: 'whole', k: 0 }, state);
+  if (!whole || !sum || state.scale.some((s) => s !== 1)) return path ? '' : 'This run has no path tracer to compare with.';
+  const [difference, half] = [whole.all[0] - sum.all[0], Math.hypot(whole.all[1], sum.all[1])];
+  const name = subject.kind === 'sum' ? symbol(subject) : 'this sum';
+  return `Path tracer − ${name} = ${plusMinus(difference, half)} (${percent(difference / whole.all[0])} of the image).`;
+}
