@@ -81,7 +81,7 @@ test('keys choose terms, sums, answers, exposure and metric, and the address rem
   await expect(tag).toHaveText(/series/);
   await page.keyboard.press('Shift+Digit2');
   await page.keyboard.press('w');
-  await expect(page.locator('#tag-right')).toHaveText('T²E · terms');
+  await expect(page.locator('#tag-right')).toHaveText(/^T²E ×\d+ · series$/);
 });
 
 test('zoom and pan stay when the image changes', async ({ page }) => {
@@ -173,9 +173,10 @@ test('the sliders give the scaled series with its error', async ({ page }) => {
   const { functionals } = summary.series[0];
   const known = functionals[0].terms.reduce((/** @type {number} */ a, /** @type {any} */ t, /** @type {number} */ k) => a + 0.5 ** k * average(t.mean), 0);
   const upper = known + 0.5 ** 9 * average(functionals[0].tail.mean);
-  const [, low, high] = /between ([\d.]+) and ([\d.]+)/.exec((await page.locator('#what-if-text').textContent()) ?? '') ?? [];
-  expect(Number(low) / known).toBeCloseTo(1, 3);
-  expect(Number(high) / upper).toBeCloseTo(1, 3);
+  const said = /Mean radiance ([\d.]+) ±/.exec((await page.locator('#what-if-text').textContent()) ?? '');
+  expect(Number(said?.[1]) / upper).toBeCloseTo(1, 3);
+  const slack = Number(((await page.locator('#slack').textContent()) ?? '').replace('−', '-'));
+  expect(slack / (upper - known)).toBeCloseTo(1, 1);
   const mean = Number.parseFloat((await page.locator('#mean').textContent()) ?? '');
   expect(mean / upper).toBeCloseTo(1, 3);
   // beyond what surfaces can reflect it is said

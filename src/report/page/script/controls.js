@@ -1,6 +1,7 @@
 // The controls around the canvas: answers, terms, exposure, gain, colours, reference.
 
 import { WORLD_NAMES, gainText, meaning, symbol } from '#page/format.js';
+import { doubtOf } from '#page/reading.js';
 import { lookOf } from '#page/gains.js';
 import { autoGain, tone } from '#page/tone.js';
 import { WORLDS, nameOf, subjectOf } from '#page/state.js';
@@ -74,7 +75,10 @@ export function fill(app) {
     element.addEventListener('click', () => app.show(world));
     return element;
   };
-  worlds.replaceChildren(...worldsOf(app).map(button));
+  const sums = document.createElement('button');
+  [sums.type, sums.id, sums.textContent] = ['button', 'sums', 'Partial sums Sₖ'];
+  sums.addEventListener('click', () => app.summing(!app.sums));
+  worlds.replaceChildren(...worldsOf(app).map(button), sums);
   const reference = byId('reference');
   const option = (/** @type {Subject} */ s) => {
     const words = s.world === 'own' ? 'your picture' : `${symbol(s)}, ${WORLD_NAMES[s.world]}`;
@@ -93,7 +97,9 @@ export function strip(app, state) {
     button.type = 'button';
     button.dataset.name = nameOf(subject);
     button.title = meaning(subject, app.run.data.max_bounces);
-    button.append(small(app, subject), symbol(subject));
+    const doubt = doubtOf(app, subject) && subject.kind !== 'sum';
+    button.append(small(app, subject), `${symbol(subject)}${doubt ? ' ⚑' : ''}`);
+    if (doubt) button.title += '; ⚑ errors of single pixels cannot be trusted';
     button.addEventListener('click', () => app.store.set({ subject }));
     return button;
   };
@@ -137,9 +143,11 @@ function show(app, state) {
   field('metric', state.metric);
   field('reference', nameOf(state.reference));
   inputById('wipe').checked = state.wipe !== null;
-  for (const button of byId('worlds').children) {
+  for (const button of byId('worlds').querySelectorAll('[data-world]')) {
     button.setAttribute('aria-pressed', String(/** @type {HTMLElement} */ (button).dataset.world === subject.world));
   }
+  byId('sums').setAttribute('aria-pressed', String(app.sums));
+  byId('sums').hidden = !app.run.hasTerms(subject.world);
   if (byId('strip').dataset.shows !== `${subject.world} ${app.sums}`) strip(app, state);
   for (const button of byId('strip').children) {
     button.setAttribute('aria-pressed', String(/** @type {HTMLElement} */ (button).dataset.name === nameOf(subject)));

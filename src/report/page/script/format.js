@@ -49,7 +49,7 @@ export function plusMinus(mean, half) {
 export const percent = (fraction) => `${significant(100 * fraction, 2)} %`;
 
 /** @param {number} gain */
-export const gainText = (gain) => (gain >= 1 ? `×${significant(gain, 3)}` : `÷${significant(1 / gain, 3)}`);
+export const gainText = (gain) => (gain >= 1 ? `×${+gain.toPrecision(3)}` : `÷${+(1 / gain).toPrecision(3)}`);
 
 /** @type {Record<World, string>} */
 export const WORLD_NAMES = { terms: 'series', path: 'path tracer', radiosity: 'radiosity', own: 'your picture' };

@@ -27,6 +27,7 @@ const BINDINGS = [
   { keys: ['w'], says: '<kbd>w</kbd> a movable edge between image and reference', does: ({ store }) => store.set({ wipe: store.state.wipe === null ? 0.5 : null }) },
   { keys: ['+', '=', '-'], says: '<kbd>+</kbd> <kbd>−</kbd> or the wheel: zoom; drag moves the image', does: ({ viewer }, key) => viewer.zoomBy(key === '-' ? 1 / 1.5 : 1.5) },
   { keys: ['f'], says: '<kbd>f</kbd> the whole image', does: ({ store }) => store.set({ frame: null }) },
+  { keys: ['F'], says: '<kbd>F</kbd> the image on the whole screen, for a projector', does: () => fullScreen() },
   { keys: ['r'], says: '<kbd>r</kbd> everything as at the start', does: ({ store, start }) => store.set(start) },
   { keys: ['i'], says: '<kbd>i</kbd> what is known of this image', does: () => byId('reading-card').scrollIntoView({ block: 'nearest' }) },
   { keys: ['d'], says: '<kbd>d</kbd> the plot of the decay', does: () => byId('plot-decay')?.scrollIntoView({ block: 'center' }) },
@@ -46,6 +47,7 @@ const OTHERS = [
 /** @param {App} app */
 export function keys(app) {
   byId('help-body').innerHTML = `<ul>${[...BINDINGS.map((b) => b.says), ...OTHERS].map((w) => `<li>${w}</li>`).join('')}</ul>`;
+  byId('full-screen').addEventListener('click', fullScreen);
   byId('help-open').addEventListener('click', help);
   document.addEventListener('keydown', (e) => {
     const target = /** @type {HTMLElement} */ (e.target);
@@ -83,6 +85,13 @@ function isOwn(target, key) {
   if (['SELECT', 'TEXTAREA', 'text', 'number'].includes(type)) return true;
   if (['range', 'checkbox', 'file'].includes(type)) return moves;
   return ['BUTTON', 'SUMMARY', 'A'].includes(type) && (key === ' ' || key === 'Enter');
+}
+
+/** The image on the whole screen, and back. */
+export function fullScreen() {
+  const frame = byId('canvas').parentElement;
+  if (document.fullscreenElement) document.exitFullscreen();
+  else frame?.requestFullscreen?.();
 }
 
 const help = () => /** @type {HTMLDialogElement} */ (byId('help')).showModal();

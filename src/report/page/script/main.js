@@ -2,7 +2,7 @@
 
 import { Composer } from '#page/compose.js';
 import { byId, controls, subjectsOf, tagText } from '#page/controls.js';
-import { symbol, meaning, significant } from '#page/format.js';
+import { WORLD_NAMES, meaning, plusMinus, significant, symbol } from '#page/format.js';
 import { Gains, lookOf } from '#page/gains.js';
 import { keys } from '#page/keys.js';
 import { own } from '#page/own.js';
@@ -54,6 +54,7 @@ export class App {
       },
       frame: (frame) => store.set({ frame }),
       wipe: (wipe) => store.set({ wipe }),
+      over: (pixel) => this.#under(pixel),
     });
   }
 
@@ -92,7 +93,8 @@ export class App {
     }
     if (state.wipe !== null) {
       const plain = /** @type {State} */ ({ ...state, metric: 'value' });
-      colours(composer.pixels(state.reference, plain, 'reference'), state.reference, plain, 1);
+      const { gain } = colours(composer.pixels(state.reference, plain, 'reference'), state.reference, plain, 1);
+      byId('tag-right').textContent = tagText(state.reference, gain);
     }
     viewer.frame = state.frame;
     viewer.over = { pixels, wipe: state.wipe, pixel: state.pixel, tiles: state.tiles };
@@ -102,11 +104,9 @@ export class App {
 
   /** @param {State} state @param {Subject} subject @param {boolean} known @param {import('#page/types.js').Look} look */
   #label(state, subject, known, look) {
-    const against = state.metric === 'value' ? '' : ` − ${symbol(state.reference)} · ${state.reference.world} (${state.metric})`;
     const why = state.metric === 'z' && !known ? 'z needs two answers from different paths, both with known errors' : '';
-    byId('tag').textContent = why || `${tagText(subject, this.gain)}${against}${state.spp ? ` · ${state.spp} samples` : ''}`;
+    byId('tag').textContent = why || (state.metric === 'value' ? `${tagText(subject, this.gain)}${state.spp ? ` · ${state.spp} samples` : ''}` : compared(state, subject));
     byId('tag-right').hidden = state.wipe === null;
-    byId('tag-right').textContent = `${symbol(state.reference)} · ${state.reference.world}`;
     byId('ramp').hidden = look === 'srgb' || !known;
     if (look !== 'srgb') {
       const [from, bar, to] = byId('ramp').children;
@@ -116,6 +116,20 @@ export class App {
     }
     if (this.counts) byId('reading').innerHTML = reading(this, state, subject, this.counts, this.gain);
     byId('canvas').setAttribute('aria-label', `${symbol(subject)}: ${meaning(subject, this.run.data.max_bounces)}`);
+  }
+
+  /** The value under the pointer with its standard error. @param {[number, number] | null} pixel */
+  #under(pixel) {
+    const { state } = this.store;
+    const pixels = this.viewer.over.pixels;
+    byId('under').hidden = !pixel || !pixels;
+    if (!pixel || !pixels) return;
+    const [x, y] = pixel;
+    const i = 3 * (y * this.run.data.width + x);
+    const own = state.metric === 'value' && state.spp === null && !this.#peeking;
+    const { errors } = own ? this.composer.at(state.subject, state, i) : { errors: [NaN, NaN, NaN] };
+    const value = state.metric === 'z' ? significant(pixels[i], 3) : [0, 1, 2].map((c) => plusMinus(pixels[i + c], errors[c])).join(', ');
+    byId('under').textContent = `${x}, ${y}: ${value}`;
   }
 
   /** Tells a screen reader what is shown. */
@@ -193,6 +207,12 @@ export class App {
       spp: null,
     });
   }
+}
+
+/** What a difference is, in words. @param {State} state @param {Subject} subject */
+function compared({ metric, reference }, subject) {
+  const [a, b] = [subject, reference].map((s) => `${symbol(s)} (${WORLD_NAMES[s.world]})`);
+  return { value: a, difference: `${a} − ${b}`, absolute: `|${a} − ${b}|`, relative: `relative: ${a} − ${b}`, z: `z of ${a} − ${b}` }[metric];
 }
 
 /** Starts the page. */

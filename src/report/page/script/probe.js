@@ -5,6 +5,7 @@ import { draw } from '#page/chart.js';
 import { WORLD_NAMES, percent, plusMinus, significant, symbol } from '#page/format.js';
 import { doubtOf, meanOf } from '#page/reading.js';
 import { TILES } from '#page/run.js';
+import { untouched } from '#page/scale.js';
 import { summed } from '#page/what_if.js';
 
 /** @import { App } from '#page/main.js' */
@@ -88,8 +89,9 @@ function sums(app, state, terms) {
   const all = terms.filter((s) => s.kind === 'term').map(({ k }) => /** @type {Subject} */ ({ world, kind: 'sum', k }));
   if (app.run.layer(world, 'rest')) all.push({ world, kind: 'whole', k: 0 });
   const bands = /** @type {const} */ ([['path', 'var(--c3)'], ['radiosity', 'var(--c4)']]).flatMap(([other, color]) => {
-    if (other === world || !app.run.answer(other)) return [];
-    const found = valueAt(app, { world: other, kind: 'whole', k: 0 }, { ...state, scale: [1, 1, 1] });
+    // the path tracer has no terms, so it is known at s = 1 only
+    if (other === world || !app.run.answer(other) || (!app.run.hasTerms(other) && !untouched(state))) return [];
+    const found = valueAt(app, { world: other, kind: 'whole', k: 0 }, state);
     return found ? [{ label: WORLD_NAMES[other], color, from: found.value - found.half, to: found.value + found.half }] : [];
   });
   draw(byId('probe-sums'), {
@@ -130,7 +132,8 @@ function table(app, state, terms, values, whole) {
   const rows = terms.map((s, i) => row(symbol(s), values[i], percent((values[i]?.value ?? NaN) / whole)));
   const wholes = app.run.data.worlds.map((a) => {
     const subject = /** @type {Subject} */ ({ world: a.world, kind: 'whole', k: 0 });
-    return row(`L, ${WORLD_NAMES[a.world]}`, valueAt(app, subject, a.world === 'path' ? { ...state, scale: [1, 1, 1] } : state), '');
+    const at = app.run.hasTerms(a.world) || untouched(state) ? '' : ' at s = 1';
+    return row(`L, ${WORLD_NAMES[a.world]}${at}`, valueAt(app, subject, state), '');
   });
   if (app.composer.own && state.pixel) rows.push(row('your picture', valueAt(app, { world: 'own', kind: 'whole', k: 0 }, state), ''));
   const notes = [];
@@ -142,7 +145,7 @@ function table(app, state, terms, values, whole) {
     notes.push(`<span class="flag">⚑ The errors of single pixels cannot be trusted for ${names}: light is found there too seldom.</span>`);
   }
   const largest = values.reduce((a, v, k) => ((v?.value ?? 0) > (values[a]?.value ?? 0) && terms[k].k > 0 ? k : a), Math.min(1, values.length - 1));
-  const lead = terms.length > 2 ? `<p id="probe-lead">Most of the reflected light here is ${symbol(terms[largest])}: ${percent((values[largest]?.value ?? NaN) / (whole - (values[0]?.value ?? 0)))} of all that is not emitted. Radiance ${significant(whole)} in all.</p>` : '';
+  const lead = terms.length > 2 ? `<p id="probe-lead">${symbol(terms[largest])} adds most here: ${percent((values[largest]?.value ?? NaN) / (whole - (values[0]?.value ?? 0)))} of the light that was scattered. All terms together: ${significant(whole)}.</p>` : '';
   return `${lead}<p>${notes.join(' ')}</p><details><summary>All values by channel</summary><div class="wide"><table><thead><tr><th scope="col">term</th>
     <th scope="col">red</th><th scope="col">green</th><th scope="col">blue</th><th scope="col">share</th></tr></thead><tbody>${rows.join('')}${wholes.join('')}</tbody></table></div></details>`;
 }

@@ -1,5 +1,6 @@
 // What is known of the image on the canvas: its meaning, its mean with error, its gain, and the pixels that a screen cannot show.
 
+import { lookOf } from '#page/gains.js';
 import { gainText, meaning, percent, plusMinus, significant, symbol } from '#page/format.js';
 import { weights } from '#page/scale.js';
 import { average, blockMean, imageMean } from '#page/statistics.js';
@@ -57,7 +58,7 @@ export function reading(app, state, subject, counts, gain) {
     lines.push(`Mean radiance <b id="mean">${significant(meanOfPixels(app, subject, state))}</b>, from the pixels; its error is not known.`);
   }
   if (first) lines.push(`These are the first ${state.spp} samples of each pixel.`);
-  lines.push(`Shown ${gainText(gain)}. ${counted(counts, app.run.pixels)}`);
+  lines.push(`Shown ${gainText(gain)}. ${counted(counts, app.run.pixels, lookOf(state) === 'srgb')}`);
   const doubt = doubtOf(app, subject);
   if (doubt) lines.push(`<span class="flag">⚑ The errors of single pixels of this image are ${escaped(doubt)}.</span>`);
   if (data.reduced > 1) {
@@ -66,10 +67,14 @@ export function reading(app, state, subject, counts, gain) {
   return lines.map((l) => `<p>${l}</p>`).join('');
 }
 
-/** @param {Counts} counts @param {number} pixels */
-function counted({ clipped, negative, nonFinite }, pixels) {
-  const some = (/** @type {number} */ n, /** @type {string} */ what) => (n ? `${n} pixels (${percent(n / pixels)}) are ${what}.` : '');
-  const words = [some(clipped, 'too bright for the screen'), some(negative, 'negative'), some(nonFinite, 'not finite (magenta)')];
+/** @param {Counts} counts @param {number} pixels @param {boolean} seen true for the colours of the scene */
+function counted({ clipped, negative, nonFinite }, pixels, seen) {
+  const some = (/** @type {number} */ n, /** @type {string} */ what) => (n ? `${n === 1 ? '1 pixel is' : `${n} pixels (${percent(n / pixels)}) are`} ${what}.` : '');
+  const words = [
+    some(clipped, seen ? 'too bright for the screen' : 'above the range of the colours'),
+    some(negative, seen ? 'negative' : 'below the range of the colours'),
+    some(nonFinite, 'not finite (magenta)'),
+  ];
   return words.filter(Boolean).join(' ') || 'No pixel is clipped.';
 }
 

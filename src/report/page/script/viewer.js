@@ -9,7 +9,7 @@ import { significant } from '#page/format.js';
 import { TILES } from '#page/run.js';
 
 /** @typedef {{zoom: number, x: number, y: number}} Frame zoom in CSS pixels per pixel, and the pixel in the middle */
-/** @typedef {{click: (x: number, y: number) => void, block: (tiles: [number, number, number, number]) => void, frame: (f: Frame) => void, wipe: (at: number) => void}} Asked */
+/** @typedef {{click: (x: number, y: number) => void, block: (tiles: [number, number, number, number]) => void, frame: (f: Frame) => void, wipe: (at: number) => void, over: (pixel: [number, number] | null) => void}} Asked */
 
 /** From this zoom on the values are written on the pixels. */
 const WITH_VALUES = 56;
@@ -179,7 +179,11 @@ export class Viewer {
       const kind = near ? 'wipe' : e.shiftKey || this.choosing ? 'block' : 'move';
       drag = { kind, from: place(e), frame: this.now(), moved: false };
     });
+    const inside = (/** @type {number[]} */ [x, y]) => x >= 0 && y >= 0 && x < this.width && y < this.height;
+    canvas.addEventListener('pointerleave', () => this.asked.over(null));
     canvas.addEventListener('pointermove', (e) => {
+      const [u, v] = this.pixelAt(e.offsetX, e.offsetY).map(Math.floor);
+      this.asked.over(inside([u, v]) ? [u, v] : null);
       if (!drag || !down.has(e.pointerId)) return;
       const before = /** @type {[number, number]} */ (down.get(e.pointerId));
       const other = [...down].find(([id]) => id !== e.pointerId)?.[1];
@@ -204,7 +208,7 @@ export class Viewer {
       down.delete(e.pointerId);
       if (click) {
         const [x, y] = this.pixelAt(e.offsetX, e.offsetY).map(Math.floor);
-        if (x >= 0 && y >= 0 && x < this.width && y < this.height) this.asked.click(x, y);
+        if (inside([x, y])) this.asked.click(x, y);
       }
       if (down.size === 0) drag = null;
     };

@@ -100,9 +100,10 @@ function told(app, state) {
   if (cut(run, subject.world)) {
     lines.push(`The first ${last + 1} terms have the mean ${plusMinus(...now.all)}; paths were cut there, so what lies beyond is not known.`);
   } else if (scale.every((s) => s <= 1)) {
-    const low = significant(now.all[0] - rest);
-    lines.push(`Mean radiance between ${low} and ${significant(now.all[0])} (each ± ${significant(now.all[1], 2)}); the picture shows the upper end.`);
-    lines.push('Only the rest is not known exactly: it lies between 0 and s<sup>K+1</sup> times its value at s = 1.');
+    lines.push(`Mean radiance ${plusMinus(...now.all)} (95 %).`);
+    if (hasRest(state, last)) {
+      lines.push(`That is an upper bound: the rest is known exactly only at s = 1, and less of it may be left, by up to <span id="slack">${significant(rest, 2)}</span>.`);
+    }
   } else {
     lines.push(`Mean radiance ${plusMinus(...now.all)}, of which ${percent(rest / now.all[0])} is extrapolated:
       beyond T${last} the terms are assumed to fall by the factor s r, where r = ${bounds.rate.map((r) => significant(r, 3)).join(', ')}
@@ -118,6 +119,9 @@ function told(app, state) {
   if (factor.some((f) => Number.isNaN(f))) lines.push('The series diverges in a channel; nothing is shown there.');
   return lines.join(' ');
 }
+
+/** True if the rest is part of the sum. @param {State} state @param {number} last K */
+const hasRest = ({ on }, last) => on[last + 1];
 
 /** What the sum lacks of the path tracer's image. @param {App} app @param {State} state */
 function residual(app, state) {
