@@ -97,8 +97,16 @@ fn page_with_data_holds_its_scripts_and_images() {
     data.command = "fredholm series 'a&b.toml' --set x=\"<b>\"".into();
     let trust = PixelErrors { layer: "path".into(), trusted: false, events: 2.0, why: "not trusted".into() };
     let pixels = [[0.5f32; 3]; 8];
-    let image = Image { mean: Some(&pixels), std_error: &pixels, trust: &trust, apart: true };
-    data.push("path".into(), World::Path, Slot::Whole, 16, image);
+    data.push(&[Image {
+        id: "path".into(),
+        world: World::Path,
+        slot: Slot::Whole,
+        spp: 16,
+        mean: Some(&pixels),
+        std_error: &pixels,
+        trust,
+        apart: true,
+    }]);
     let svg = folder.path().join("decay.svg");
     let page = html::Page {
         data: Some(&data),

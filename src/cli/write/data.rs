@@ -13,34 +13,34 @@ use fredholm::study::run::Run;
 use fredholm::terms::{TermImage, Variance, World};
 
 /// The images and numbers of a run.
-pub(super) fn data(run: &Run, out: &Files, summary: &Summary) -> Data {
+pub(super) fn data<'a>(run: &'a Run, out: &Files, summary: &Summary) -> Data {
     let mut data = Data::new(run.description.camera.size.map(|s| s as usize));
     data.scene = run.description.name.clone();
     data.command = out.record.command.clone();
     (data.seed, data.spp, data.max_bounces) = (run.settings.seed, summary.spp, run.settings.max_bounces);
+    let mut images = vec![];
     for Layer { name, image, errors, of, slot } in layers(run) {
         let Some(slot) = slot else { continue };
         let world = of.series.world;
-        // the whole follows from its terms, but its error does not
-        let mean = slot != Slot::Whole || world == World::Path;
-        let (trust, apart) = (&errors, apart(of, run));
-        let mut push = |name: &str, slot, image: &TermImage, mean: bool| {
+        let mut add = |id: &str, slot: Slot, image: &'a TermImage, mean: bool| {
             let mean = mean.then_some(image.mean.as_slice());
-            let image = Image { mean, std_error: &image.std_error, trust, apart };
-            data.push(name.to_owned(), world, slot, of.spp, image);
+            let (id, trust, std_error) = (id.to_owned(), errors.clone(), image.std_error.as_slice());
+            images.push(Image { id, world, slot, spp: of.spp, mean, std_error, trust, apart: apart(of, run) });
         };
-        push(&name, slot, image, mean);
+        // the whole follows from its terms, but its error does not
+        add(&name, slot, image, slot != Slot::Whole || world == World::Path);
         // the matrix knows what lies beyond K as well
         if world == World::Radiosity && slot == Slot::Whole {
-            push("Rrest", Slot::Rest, &of.tail, true);
+            add("Rrest", Slot::Rest, &of.tail, true);
         }
     }
-    for early in run.early.iter().filter(|e| u64::from(e.spp) < summary.spp) {
-        for (i, term) in early.terms.iter().enumerate() {
-            data.push_early(Slot::Term(i + 1), early.spp, term);
-        }
-        data.push_early(Slot::Whole, early.spp, &early.whole);
-    }
+    data.push(&images);
+    let before_the_end = run.early.iter().filter(|e| u64::from(e.spp) < summary.spp);
+    let early = before_the_end.flat_map(|e| {
+        let terms = e.terms.iter().enumerate().map(|(i, term)| (Slot::Term(i + 1), e.spp, term.as_slice()));
+        terms.chain([(Slot::Whole, e.spp, e.whole.as_slice())])
+    });
+    data.push_early(&early.collect::<Vec<_>>());
     answers(run, &mut data);
     data.bounds = bounds(run, summary);
     data.decay = (!run.surface.is_empty() || run.radiosity.is_some()).then(|| decay(run));

@@ -83,9 +83,9 @@ impl Logarithms {
     }
 }
 
-/// Compresses (zlib) and writes as text (base64).
+/// Compresses (zlib) and writes as text (base64). Level 3 takes half the time of level 6 and is 1.4 % larger.
 pub fn text(bytes: &[u8]) -> String {
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(6));
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(3));
     // writing to memory cannot fail
     let packed = encoder.write_all(bytes).and_then(|()| encoder.finish()).unwrap_or_default();
     BASE64_STANDARD.encode(packed)

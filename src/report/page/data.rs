@@ -13,6 +13,7 @@ use super::codes::{Logarithms, Means, text};
 use crate::report::{half_width_95, text::pixel_errors::PixelErrors};
 use crate::terms::functional::Replicates;
 use crate::terms::{Estimate, Functional, TileSums, Variance, World};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -160,14 +161,22 @@ pub struct Line {
 }
 
 /// An image for [`Data::push`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Image<'a> {
+    /// Its name.
+    pub id: String,
+    /// The world that it belongs to.
+    pub world: World,
+    /// What it shows.
+    pub slot: Slot,
+    /// Samples per pixel.
+    pub spp: u32,
     /// Its means, unless the page derives them.
     pub mean: Option<&'a [[f32; 3]]>,
     /// Its standard errors.
     pub std_error: &'a [[f32; 3]],
     /// Whether the errors can be trusted.
-    pub trust: &'a PixelErrors,
+    pub trust: PixelErrors,
     /// True if the errors of pixels may be added.
     pub apart: bool,
 }
@@ -191,29 +200,50 @@ impl Data {
         Self { version: VERSION, width, height, reduced, full, ..Self::default() }
     }
 
-    /// Adds an image.
-    pub fn push(&mut self, id: String, world: World, slot: Slot, spp: u32, image: Image<'_>) {
+    /// Adds images. They are packed side by side.
+    pub fn push(&mut self, images: &[Image<'_>]) {
+        let packed: Vec<_> = images.par_iter().map(|image| self.packed(image)).collect();
+        for (layer, bytes) in packed {
+            self.chunks.push((format!("px-{}", layer.id), bytes));
+            self.layers.push(layer);
+        }
+    }
+
+    /// An image and its bytes as text.
+    fn packed(&self, image: &Image<'_>) -> (Layer, String) {
         let mean = image.mean.map(|pixels| Means::of(&self.mean_of_blocks(pixels)));
         let errors = self.errors_of_blocks(image.std_error, image.apart);
         let errors = Logarithms::of(&errors, OCTAVES_OF_ERRORS, STEP_OF_ERRORS);
         let bytes = [mean.as_ref().map_or(&[][..], |m| &m.bytes), &errors.bytes].concat();
-        self.chunks.push((format!("px-{id}"), text(&bytes)));
-        let doubt = if image.trust.trusted { String::new() } else { image.trust.why.clone() };
-        let codes = Some((errors.lowest, errors.step));
-        self.layers.push(Layer { id, world, slot, spp, exponent: mean.map(|m| m.exponent), codes, doubt });
+        let layer = Layer {
+            id: image.id.clone(),
+            world: image.world,
+            slot: image.slot,
+            spp: image.spp,
+            exponent: mean.map(|m| m.exponent),
+            codes: Some((errors.lowest, errors.step)),
+            doubt: if image.trust.trusted { String::new() } else { image.trust.why.clone() },
+        };
+        (layer, text(&bytes))
     }
 
-    /// Adds an early image of the terms.
-    pub fn push_early(&mut self, slot: Slot, spp: u32, pixels: &[[f32; 3]]) {
-        let name = match slot {
-            Slot::Term(k) => format!("T{k:02}"),
-            _ => "whole".into(),
+    /// Adds early images of the terms: what they show, samples per pixel, pixels.
+    pub fn push_early(&mut self, images: &[(Slot, u32, &[[f32; 3]])]) {
+        let pack = |&(slot, spp, pixels): &(Slot, u32, &[[f32; 3]])| {
+            let codes = Logarithms::of(&self.mean_of_blocks(pixels), OCTAVES_OF_IMAGES, STEP_OF_IMAGES);
+            (slot, spp, (codes.lowest, codes.step), text(&codes.bytes))
         };
-        let id = format!("{name}-{spp}");
-        let codes = Logarithms::of(&self.mean_of_blocks(pixels), OCTAVES_OF_IMAGES, STEP_OF_IMAGES);
-        self.chunks.push((format!("px-{id}"), text(&codes.bytes)));
-        let codes = Some((codes.lowest, codes.step));
-        self.early.push(Layer { id, world: World::Terms, slot, spp, exponent: None, codes, doubt: String::new() });
+        let packed: Vec<_> = images.par_iter().map(pack).collect();
+        for (slot, spp, codes, bytes) in packed {
+            let name = match slot {
+                Slot::Term(k) => format!("T{k:02}"),
+                _ => "whole".into(),
+            };
+            let id = format!("{name}-{spp}");
+            self.chunks.push((format!("px-{id}"), bytes));
+            let (world, codes) = (World::Terms, Some(codes));
+            self.early.push(Layer { id, world, slot, spp, exponent: None, codes, doubt: String::new() });
+        }
     }
 
     /// Adds the numbers of a world.

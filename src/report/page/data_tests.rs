@@ -23,8 +23,16 @@ fn means_keep_eleven_bits_and_errors_their_logarithm() {
     let (pixels, n) = (image(), 48);
     let trust = PixelErrors { layer: "T00".into(), trusted: true, events: 9.0, why: "trusted".into() };
     let mut data = Data::new([8, 6]);
-    let image = Image { mean: Some(&pixels), std_error: &pixels, trust: &trust, apart: true };
-    data.push("T00".into(), World::Terms, Slot::Term(0), 16, image);
+    data.push(&[Image {
+        id: "T00".into(),
+        world: World::Terms,
+        slot: Slot::Term(0),
+        spp: 16,
+        mean: Some(&pixels),
+        std_error: &pixels,
+        trust,
+        apart: true,
+    }]);
     let (layer, bytes) = (&data.layers[0], unpacked(&data.chunks[0].1));
     assert_eq!(bytes.len(), 9 * n);
     let exponent = layer.exponent.unwrap();

@@ -75,7 +75,7 @@ export function symbol({ world, kind, k }) {
  */
 export function meaning({ world, kind, k }, last) {
   if (world === 'own') return 'your picture';
-  const by = `by the ${WORLD_NAMES[world]}`;
+  const by = world === 'radiosity' ? 'by radiosity' : `by the ${WORLD_NAMES[world]}`;
   switch (kind) {
     case 'term':
       if (k === 0) return `light of the lamps, seen directly (${by})`;
