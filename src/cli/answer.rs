@@ -27,9 +27,9 @@ pub fn head(run: &Run) -> String {
             let largest = run.verdicts.iter().filter_map(|v| bound(&v.comparison)).fold(0.0, f64::max);
             let mean = run.results().next().map_or(f64::NAN, |r| average(&r.series.image().total).0);
             format!(
-                "{name}, solved in {ways} ways: all agree; the mean radiance is {} to ± {} %.",
-                significant(mean, 4),
-                significant(100.0 * largest, 2)
+                "{name}, solved in {ways} ways: all agree to ± {} %; the mean radiance is {}.",
+                significant(100.0 * largest, 2),
+                significant(mean, 4)
             )
         }
         Some(Outcome::Inconclusive) => {

@@ -83,6 +83,7 @@ pub fn run(args: &Compare) -> Result<Ending, Failure> {
     let mut session = Session::new(manner, 0)?;
     session.about(&format!("{} | {}", a.1.scene, b.1.scene), &a.1.scene_hash);
     session.sized([a.1.width, a.1.height].map(|side| side as u32));
+    [&args.a, &args.b].into_iter().for_each(|input| session.reads(input));
     session.make_folder("compare")?;
     let map = z_map((&a, x.world), (&b, y.world), &session)?;
     let files = map.iter().map(|_| "z.png".to_string()).chain(["summary.json".to_string()]).collect();

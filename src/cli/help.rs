@@ -26,8 +26,8 @@ pub const EXAMPLES: &str = "Examples:
 
 Options of a command: fredholm COMMAND -h for the usual ones, fredholm COMMAND --help for all.
 
-Exit codes: 0 ok, 1 a comparison failed, 2 wrong usage, 3 something is wrong with a scene or a file, 130 interrupted (results so \
-far are saved).";
+Exit codes: 0 ok, 1 a comparison failed, 2 wrong usage, 3 something is wrong with a scene or a file, 130 interrupted; \
+143 and 129 ended by SIGTERM and SIGHUP (results so far are saved).";
 
 /// The command with its help laid out. `brief` is true for `-h`, which names the values of an option in the text only.
 pub fn arranged(command: Command, brief: bool) -> Command {

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Results go to stdout, progress and errors to stderr. Exit codes: 0 ok, 1 a comparison failed, 2 usage, 3 scene or file,
-//! 130 interrupted with what exists saved.
+//! 130, 143 or 129 ended by a signal (Ctrl-C, SIGTERM, SIGHUP) with what exists saved.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 #![allow(unreachable_pub)] // in a binary `pub` reaches no further than `pub(crate)` and reads better
 
@@ -16,6 +16,7 @@ mod book;
 mod chapter;
 mod check;
 mod choices;
+mod claim;
 mod compare;
 mod diagnose;
 mod exercise;
@@ -35,6 +36,7 @@ mod progress;
 mod radiosity;
 mod roulette;
 mod session;
+mod signals;
 mod solve;
 mod suggest;
 mod sweep;
@@ -137,7 +139,7 @@ pub fn main() -> ExitCode {
     match result {
         Ok(Ending::Ok) => ExitCode::SUCCESS,
         Ok(Ending::Failed) => ExitCode::from(1),
-        Ok(Ending::Interrupted) => ExitCode::from(130),
+        Ok(Ending::Interrupted) => ExitCode::from(signals::exit_code()),
         Err(Failure::Usage(text)) => {
             note(&text);
             ExitCode::from(2)

@@ -1,47 +1,80 @@
-//! The output folder: the same command replaces its own output, another run's is never overwritten without `--force`.
+//! The output folder: the same command replaces its own output, another run's is never overwritten without `--force`, and an input
+//! never at all.
 
 use super::base::Failure;
+use super::claim::{self, Claim, Denied};
 use fredholm::report::text::summary;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// The output folder of this command: exists, and holds nothing of another run.
-pub fn folder(asked: Option<&Path>, name: &str, command: &str, force: bool) -> Result<PathBuf, Failure> {
-    let folder = match asked {
-        Some(dir) if dir.exists() && !dir.is_dir() => {
+/// The output folder of this command, claimed for this process: it holds nothing of another run and none of the inputs.
+pub fn folder(
+    asked: Option<&Path>,
+    name: &str,
+    command: &str,
+    force: bool,
+    inputs: &[PathBuf],
+) -> Result<(PathBuf, Claim), Failure> {
+    if let Some(dir) = asked {
+        if dir.exists() && !dir.is_dir() {
             return Err(refused("the output folder is a file", dir, "choose another with -o"));
         }
-        Some(dir) if !force && !ours(dir, command) => {
+        if let Some(input) = inputs.iter().find(|input| is_in(input, dir)) {
+            let what = format!("the output folder holds an input, {}", input.display());
+            return Err(refused(&what, dir, "choose another with -o"));
+        }
+        if !force && !ours(dir, command) {
             let help = "choose another with -o, or replace it with --force";
             return Err(refused("the output folder holds another run's output", dir, help));
         }
-        Some(dir) => dir.to_path_buf(),
-        None => {
-            let base = PathBuf::from("fredholm-out");
-            let numbered = (2..).map(|i| base.join(format!("{name}-{i}")));
-            let free = |dir: &PathBuf| force || ours(dir, command);
-            std::iter::once(base.join(name)).chain(numbered).find(free).unwrap_or(base)
+        return match claimed(dir, command)? {
+            Some(claim) => Ok((dir.to_path_buf(), claim)),
+            None => {
+                let help = "wait until it ends, or choose another with -o";
+                Err(refused("another run is writing into the output folder", dir, help))
+            }
+        };
+    }
+    let base = PathBuf::from("fredholm-out");
+    let numbered = (2..).map(|i| base.join(format!("{name}-{i}")));
+    let free = |dir: &PathBuf| (force || ours(dir, command)) && !inputs.iter().any(|input| is_in(input, dir));
+    for dir in std::iter::once(base.join(name)).chain(numbered).filter(free) {
+        if let Some(claim) = claimed(&dir, command)? {
+            return Ok((dir, claim));
         }
-    };
-    // finds a folder that cannot be written before the render, not after it
-    let probe = folder.join(format!(".fredholm.{}.tmp", std::process::id()));
-    std::fs::create_dir_all(&folder)
-        .and_then(|()| std::fs::write(&probe, "").and_then(|()| std::fs::remove_file(&probe)))
-        .map_err(|e| {
-            refused(&format!("cannot write into the output folder: {e}"), &folder, "choose another with -o")
-        })?;
-    Ok(folder)
+    }
+    Err(refused("no folder is free", &base, "choose one with -o"))
+}
+
+/// Makes and claims a folder. None if another run has it. Finds a folder that cannot be written before the render, not after it.
+fn claimed(dir: &Path, command: &str) -> Result<Option<Claim>, Failure> {
+    let claim = std::fs::create_dir_all(dir).map_err(Denied::Failed).and_then(|()| Claim::folder(dir, command));
+    match claim {
+        Ok(claim) => Ok(Some(claim)),
+        Err(Denied::Taken) => Ok(None),
+        Err(Denied::Failed(e)) => {
+            Err(refused(&format!("cannot write into the output folder: {e}"), dir, "choose another with -o"))
+        }
+    }
+}
+
+/// True if an input, a file or the folder of a result, would be among the files of an output folder.
+fn is_in(input: &Path, dir: &Path) -> bool {
+    let [input, dir] = [input, dir].map(|p| p.canonicalize().ok());
+    input.zip(dir).is_some_and(|(input, dir)| if input.is_dir() { input == dir } else { input.parent() == Some(&dir) })
 }
 
 fn refused(what: &str, dir: &Path, help: &str) -> Failure {
     Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", dir.display()))
 }
 
-/// Returns true if a folder is empty, absent, or the output of the same command.
+/// Returns true if a folder is empty, absent, the output of the same command, or where the same command was killed.
 fn ours(dir: &Path, command: &str) -> bool {
-    if std::fs::read_dir(dir).map_or(!dir.exists(), |mut files| files.next().is_none()) {
-        return true;
-    }
-    summary::read(&dir.join("summary.json")).is_ok_and(|s| s.command == command)
+    let Ok(mut files) = std::fs::read_dir(dir) else { return !dir.exists() };
+    let trace = |name: &OsStr| name.to_str().is_some_and(claim::is_trace);
+    files.all(|file| file.is_ok_and(|f| trace(&f.file_name())))
+        || summary::read(&dir.join("summary.json")).is_ok_and(|s| s.command == command)
+        || claim::left_behind(dir).is_some_and(|killed| killed == command)
 }
 
 /// The files of the last run in this folder, from its summary.

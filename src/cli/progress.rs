@@ -1,29 +1,13 @@
-//! Progress on stderr with the estimated time left, and Ctrl-C.
+//! Progress on stderr with the estimated time left.
 
 use super::base::note;
+use super::signals::stop_flag;
 use fredholm::progress::{Listener, Progress};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-
-/// The flag that Ctrl-C sets. A second Ctrl-C ends the program at once.
-pub fn stop_flag() -> &'static AtomicBool {
-    static FLAG: OnceLock<Arc<AtomicBool>> = OnceLock::new();
-    FLAG.get_or_init(|| {
-        let flag = Arc::new(AtomicBool::new(false));
-        let set = Arc::clone(&flag);
-        // without a handler Ctrl-C ends the program at once, without saving
-        let _ = ctrlc::set_handler(move || {
-            if set.swap(true, Ordering::SeqCst) {
-                std::process::exit(130);
-            }
-            note("\ninterrupted: saving what exists (Ctrl-C again: stop without saving)");
-        });
-        flag
-    })
-}
 
 /// A progress bar on a terminal; elsewhere one line per 10 % for work that takes more than two seconds.
 pub struct Bar {
@@ -53,7 +37,7 @@ impl Bar {
         Self::new(quiet, |_| ())
     }
 
-    /// The progress value for library calls: it moves this bar, and Ctrl-C stops it.
+    /// The progress value for library calls: it moves this bar, and a [signal](super::signals) stops it.
     pub fn progress(&self) -> Progress<'_> {
         Progress::to(self).stopped_by(stop_flag())
     }

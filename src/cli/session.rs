@@ -6,6 +6,7 @@
 //! ```
 
 use super::base::{Ending, Failure, note, paragraphs, print};
+use super::claim::Claim;
 use super::open::{self, Opened};
 use super::options::{Changes, Manner};
 use super::output;
@@ -31,6 +32,10 @@ pub struct Session {
     bar: Bar,
     /// The part of the record that is known from the start.
     record: Summary,
+    /// Files that the command reads, and folders of results.
+    inputs: Vec<PathBuf>,
+    /// The folder belongs to this process while it works.
+    claim: Option<Claim>,
 }
 
 impl Session {
@@ -41,12 +46,21 @@ impl Session {
             rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
         }
         let record = Summary { command: output::canonical_command(), seed, ..Summary::default() };
-        Ok(Self { folder: PathBuf::new(), bar: Bar::plain(manner.quiet), manner, started, record })
+        Ok(Self {
+            folder: PathBuf::new(),
+            bar: Bar::plain(manner.quiet),
+            manner,
+            started,
+            record,
+            inputs: vec![],
+            claim: None,
+        })
     }
 
     /// Loads the scene of that name and applies the options that change it. Warnings go to stderr.
     pub fn open(&mut self, name: &str, changes: &Changes, size: Option<[u32; 2]>) -> Result<Opened, Failure> {
         let opened = open::scene(name, changes, size)?;
+        self.reads(name);
         self.about(&opened.description.name, &opened.hash);
         self.sized(opened.description.camera.size);
         self.record.threads = rayon::current_num_threads();
@@ -66,7 +80,8 @@ impl Session {
     /// Makes the output folder: the one of `-o`, or else one of that name in `fredholm-out`.
     pub fn make_folder(&mut self, name: &str) -> Result<(), Failure> {
         let Manner { out, force, .. } = &self.manner;
-        self.folder = output::folder(out.as_deref(), name, self.command(), *force)?;
+        let (folder, claim) = output::folder(out.as_deref(), name, self.command(), *force, &self.inputs)?;
+        (self.folder, self.claim) = (folder, Some(claim));
         Ok(())
     }
 
@@ -80,12 +95,12 @@ impl Session {
         &self.record.command
     }
 
-    /// The progress value for library calls: it moves the progress bar, and Ctrl-C stops it.
+    /// The progress value for library calls: it moves the progress bar, and a signal stops it.
     pub fn progress(&self) -> Progress<'_> {
         self.bar.progress()
     }
 
-    /// Returns true if Ctrl-C was pressed.
+    /// Returns true if a signal has asked the command to end.
     pub fn stopped(&self) -> bool {
         self.progress().stopped()
     }
@@ -106,15 +121,21 @@ impl Session {
     }
 
     /// Ends an interrupted command that has no result yet, and says why.
-    pub fn nothing_to_save(&self, why: &str) -> Ending {
+    pub fn nothing_to_save(&mut self, why: &str) -> Ending {
         self.clear();
         note(&format!("nothing to save yet{why}"));
         self.abandon();
         Ending::Interrupted
     }
 
+    /// Tells that the command reads a file, or the folder of a result: it will not be written into.
+    pub fn reads(&mut self, input: impl Into<PathBuf>) {
+        self.inputs.push(input.into());
+    }
+
     /// Removes the output folder if it is empty.
-    pub fn abandon(&self) {
+    pub fn abandon(&mut self) {
+        self.claim = None;
         let _ = std::fs::remove_dir(&self.folder);
     }
 

@@ -1,6 +1,9 @@
 //! Files are written completely or not at all.
 
-use std::{fs, path::Path};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::{fs, io};
 
 use super::ReportError;
 
@@ -15,11 +18,48 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
         return Err(ReportError::new(path, "this path has no file name", "name a file, not a folder"));
     };
     let temporary = path.with_file_name(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));
-    fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, path)).map_err(|e| {
+    write(&temporary, bytes, path).map_err(|e| {
         // Report the first error. The rest of the temporary file is useless.
         let _ = fs::remove_file(&temporary);
         ReportError::new(path, e, HELP)
     })
+}
+
+/// Writes the temporary file and renames it.
+fn write(temporary: &Path, bytes: &[u8], path: &Path) -> io::Result<()> {
+    unfinished().insert(temporary.to_path_buf());
+    let written = fs::write(temporary, bytes).and_then(|()| fs::rename(temporary, path));
+    unfinished().remove(temporary);
+    written
+}
+
+/// The temporary files that exist at this moment.
+fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    static FILES: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    FILES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes all files that are half-written, for a program that ends at once. While the returned value is held, no other file is
+/// begun.
+pub fn abandon_files() -> impl Sized {
+    let files = unfinished();
+    for file in files.iter() {
+        let _ = fs::remove_file(file);
+    }
+    files
+}
+
+/// True for the name of a temporary file of [`write_atomically`], of any process.
+///
+/// ```
+/// use fredholm::report::is_temporary;
+/// assert!(is_temporary(".terms.exr.4711.tmp"));
+/// assert!(!is_temporary("terms.exr") && !is_temporary(".notes.tmp"));
+/// ```
+pub fn is_temporary(name: &str) -> bool {
+    let rest = name.strip_prefix('.').and_then(|n| n.strip_suffix(".tmp"));
+    let process = rest.and_then(|n| n.rsplit_once('.')).filter(|(name, _)| !name.is_empty()).map(|n| n.1);
+    process.is_some_and(|p| !p.is_empty() && p.bytes().all(|b| b.is_ascii_digit()))
 }
 
 /// Reads a whole file.

@@ -53,4 +53,4 @@ pub mod text;
 
 pub use crate::stats::half_width_95;
 pub use error::ReportError;
-pub use files::write_atomically;
+pub use files::{abandon_files, is_temporary, write_atomically};

@@ -209,6 +209,6 @@ fn help_says_how_k_counts() {
     Options of a command: fredholm COMMAND -h for the usual ones, fredholm COMMAND --help for all.
 
     Exit codes: 0 ok, 1 a comparison failed, 2 wrong usage, 3 something is wrong with a scene or a file,
-    130 interrupted (results so far are saved).
+    130 interrupted; 143 and 129 ended by SIGTERM and SIGHUP (results so far are saved).
     "#);
 }

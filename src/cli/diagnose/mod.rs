@@ -41,6 +41,9 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
         return Err(size_mismatch("--scale", large.pictures.size, first.file.pictures.size));
     }
     session.about(&source.name, &source.hash);
+    let inputs = args.renders.iter().chain(args.scale.iter().map(|(_, file)| file));
+    inputs.for_each(|input| session.reads(input));
+    session.reads(&args.against);
     session.make_folder(&format!("{}-diagnose", source.name))?;
     let judged = judge(args, &suspects, scaled.as_ref(), &source, session.progress())?;
     session.clear();

@@ -24,7 +24,7 @@ const SHOWN: usize = 10;
 
 /// Finds the spectrum of T in every channel, writes the files and prints the text.
 pub fn run(args: &Radiosity, count: usize) -> Result<Ending, Failure> {
-    let Some(lab) = Laboratory::new(args, "modes")? else { return Ok(Ending::Interrupted) };
+    let Some(mut lab) = Laboratory::new(args, "modes")? else { return Ok(Ending::Interrupted) };
     let settings = Settings {
         spp: args.frame.spp.unwrap_or(64),
         seed: args.frame.seed,

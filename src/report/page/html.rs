@@ -101,7 +101,7 @@ impl<'a> Plate<'a> {
         Self {
             heading: "How fast the series converges",
             text: "The norm of each term against k. On this logarithmic axis a geometric series is a straight line; \
-                   its slope settles at the spectral radius. Only the bound by the largest albedo is a guarantee, and \
+                   the ratio of successive terms approaches the spectral radius. Only the bound by the largest albedo is a guarantee, and \
                    only for the surface norm.",
             alt: "Norms of the terms against the number of bounces, on a logarithmic axis",
             path,
@@ -182,9 +182,11 @@ fn comparison_section(comparisons: &[(String, Vec<VerdictRecord>)]) -> String {
     let all: String = comparisons.iter().map(one).collect();
     format!(
         "<section>\n<h2>Do the answers agree?</h2>\n{all}<p><em>Agrees</em> means that the whole interval of the difference \
-         lies inside a margin of 2 % of the term. <em>Differs</em> means that the difference is proved not to be zero. \
-         Otherwise the comparison is <em>inconclusive</em>, and more samples decide. <em>Detectable</em> is the smallest \
-         difference that the comparison would have found.</p>\n</section>\n"
+         lies inside a margin of 2 % of the term. <em>Differs</em> means that the difference is proved not to be zero, \
+         however small. Otherwise the comparison is <em>inconclusive</em>, and more samples would decide. Each row shows the channel \
+         in which the answers may be furthest apart, with a 99.9 % interval that includes the error of the mesh. <em>p</em> is the \
+         probability of such a difference by chance, corrected for the number of comparisons: 1 is no sign of a difference. \
+         <em>Detectable</em> is the smallest difference that would have been found.</p>\n</section>\n"
     )
 }
 

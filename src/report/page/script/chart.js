@@ -17,7 +17,6 @@ import { significant } from '#page/format.js';
  * @property {string} label
  * @property {string} color
  * @property {'dot' | 'bar' | 'line'} [form]
- * @property {boolean} [dashed]
  * @property {Mark[]} marks
  */
 
@@ -34,7 +33,7 @@ import { significant } from '#page/format.js';
  * @property {{label: string, color: string, from: number, to: number}[]} [bands]
  */
 
-export const COLORS = ['var(--c1)', 'var(--c2)', 'var(--c3)', 'var(--c4)', 'var(--c5)', 'var(--c6)', 'var(--c7)', 'var(--c8)'];
+export const COLORS = ['var(--c1)', 'var(--c2)', 'var(--c3)', 'var(--c4)', 'var(--c5)', 'var(--c6)', 'var(--c7)', 'var(--c8)', 'var(--c9)', 'var(--c10)', 'var(--c11)', 'var(--c12)'];
 const [WIDTH, HEIGHT] = [520, 300];
 const [LEFT, RIGHT, TOP, BOTTOM] = [62, 12, 12, 44];
 
@@ -48,7 +47,8 @@ const [LEFT, RIGHT, TOP, BOTTOM] = [62, 12, 12, 44];
 export function draw(into, chart) {
   const marks = chart.series.flatMap((s) => s.marks);
   const [x, xTicks] = axis(marks.map((m) => m.x), LEFT, WIDTH - RIGHT, chart.logX ? 2 : chart.names ? 'names' : 'counts');
-  const ys = [...marks.flatMap((m) => [m.y - m.half, m.y, m.y + m.half]), ...(chart.bands ?? []).flatMap((b) => [b.from, b.to])];
+  const limits = chart.logY && chart.logX ? (chart.lines ?? []).flatMap((l) => marks.map((m) => l.at(m.x))) : [];
+  const ys = [...limits, ...marks.flatMap((m) => [m.y - m.half, m.y, m.y + m.half]), ...(chart.bands ?? []).flatMap((b) => [b.from, b.to])];
   const [y, yTicks] = axis(ys, HEIGHT - BOTTOM, TOP, chart.logY ? 10 : 'linear');
   const parts = [frame(chart, x, y, xTicks, yTicks)];
   for (const { from, to, color } of chart.bands ?? []) {
@@ -126,11 +126,11 @@ function frame(chart, x, y, xTicks, yTicks) {
 }
 
 /** @param {Series} s @param {Place} x @param {Place} y @param {number} shift */
-function one({ color, form, dashed, marks }, x, y, shift) {
+function one({ color, form, marks }, x, y, shift) {
   const interval = (/** @type {Mark} */ m) => (m.half > 0 ? `<path d="M${f(x(m.x) + shift)} ${f(y(m.y - m.half))}V${f(y(m.y + m.half))}" stroke="${form === 'bar' ? 'var(--ink)' : color}" stroke-width="2"/>` : '');
   if (form === 'line') {
     const path = marks.filter((m) => m.y > 0).map((m, i) => `${i ? 'L' : 'M'}${f(x(m.x))} ${f(y(m.y))}`).join('');
-    return `<path d="${path}" fill="none" stroke="${color}" stroke-width="2"${dashed ? ' stroke-dasharray="5 3"' : ''}/>${marks.map(interval).join('')}`;
+    return `<path d="${path}" fill="none" stroke="${color}" stroke-width="2"/>${marks.map((m) => `<circle cx="${f(x(m.x))}" cy="${f(y(m.y))}" r="${m.chosen ? 5 : 2.5}" fill="${color}"/>`).join('')}${marks.map(interval).join('')}`;
   }
   const place = (/** @type {Mark} */ m) =>
     form === 'bar'
@@ -152,7 +152,7 @@ function listen(into, chart, x, y) {
   let at = -1;
   const tell = (/** @type {(typeof all)[0]} */ m) => {
     at = ordered.indexOf(m);
-    const name = chart.names?.[m.x] ?? `${chart.x.split(' ').at(-1)} = ${significant(m.x, 5)}`;
+    const name = chart.names?.[m.x] ?? `${chart.x.split(' ').at(-1)} = ${+m.x.toPrecision(5)}`;
     const half = m.half > 0 ? ` ± ${significant(m.half, 2)}` : '';
     says.textContent = m.says ?? `${m.label ? `${m.label}, ` : ''}${name}: ${significant(m.y)}${half}`;
     svg.querySelector('.ring')?.remove();

@@ -66,6 +66,8 @@ export function subjectsOf(app, world, sums = app.sums) {
 
 /** Builds the buttons of the answers, the list of references and the strip. @param {App} app */
 export function fill(app) {
+  letGo(byId('worlds'));
+  letGo(byId('strip'));
   const worlds = byId('worlds');
   const button = (/** @type {World} */ world) => {
     const element = document.createElement('button');
@@ -87,6 +89,13 @@ export function fill(app) {
   reference.replaceChildren(...worldsOf(app).flatMap((w) => subjectsOf(app, w, false).reverse().map(option)));
   strip(app, app.store.state);
   show(app, app.store.state);
+}
+
+/** A click with a pointer does not keep the focus, so that Space plays. @param {HTMLElement} group */
+function letGo(group) {
+  group.onclick = (e) => {
+    if (e.detail > 0 && document.activeElement instanceof HTMLElement) document.activeElement.blur();
+  };
 }
 
 /** One small picture for each image of the world, each at its own gain. @param {App} app @param {State} state */

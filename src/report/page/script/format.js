@@ -40,7 +40,7 @@ export function plusMinus(mean, half) {
   if (!(half > 0)) return significant(mean);
   // both with the same decimals, of which the error has two that say something
   const decimals = 1 - Math.floor(Math.log10(Number(half.toPrecision(2))));
-  if (decimals >= 0 && decimals <= 7) return `${mean.toFixed(decimals).replace('-', '−')} ± ${half.toFixed(decimals)}`;
+  if (decimals >= 0 && Math.abs(mean) >= 1e-3) return `${mean.toFixed(decimals).replace('-', '−')} ± ${half.toFixed(decimals)}`;
   const digits = Math.ceil(Math.log10(Math.abs(mean) / half)) + 2;
   return `${significant(mean, Math.min(Math.max(digits, 2), 6))} ± ${significant(half, 2)}`;
 }

@@ -12,12 +12,12 @@ const next = (all, now) => all[(all.indexOf(now) + 1) % all.length];
 
 /** What each key does, with words for the help. @type {{keys: string[], says: string, does: (app: App, key: string) => void}[]} */
 const BINDINGS = [
-  { keys: [...'0123456789'], says: '<kbd>0</kbd>–<kbd>9</kbd> the term of that number; 0 is E, the light of the lamps', does: (app, key) => app.term(Number(key)) },
+  { keys: [...'0123456789'], says: '<kbd>0</kbd>–<kbd>9</kbd> the term of that number, if the run has it; 0 is E, the light of the lamps', does: (app, key) => app.term(Number(key)) },
   { keys: ['ArrowLeft', 'ArrowRight'], says: '<kbd>←</kbd> <kbd>→</kbd> the term before, the term after', does: (app, key) => step(app, key === 'ArrowRight' ? 1 : -1) },
   { keys: ['ArrowUp', 'ArrowDown'], says: '<kbd>↑</kbd> <kbd>↓</kbd> another answer: series, path tracer, radiosity', does: (app, key) => turn(app, key === 'ArrowDown' ? 1 : -1) },
   { keys: ['s'], says: '<kbd>s</kbd> terms or partial sums', does: (app) => app.summing(!app.sums) },
   { keys: [' '], says: '<kbd>Space</kbd> plays the partial sums S₀, S₁, …', does: (app) => app.play() },
-  { keys: ['e', 'E'], says: '<kbd>e</kbd> brighter, <kbd>E</kbd> darker, by half a power of two', does: ({ store }, key) => store.set({ exposure: store.state.exposure + (key === 'e' ? 0.5 : -0.5) }) },
+  { keys: ['e', 'E'], says: '<kbd>e</kbd> brighter, <kbd>E</kbd> darker, by half a stop', does: ({ store }, key) => store.set({ exposure: store.state.exposure + (key === 'e' ? 0.5 : -0.5) }) },
   { keys: ['o', 'O'], says: '<kbd>o</kbd> <kbd>O</kbd> adds to the image or takes from it', does: ({ store }, key) => store.set({ offset: +(store.state.offset + (key === 'o' ? 0.05 : -0.05)).toFixed(2) }) },
   { keys: ['n'], says: '<kbd>n</kbd> each image has its own gain', does: ({ store }) => store.set({ gain: 'each', exposure: 0 }) },
   { keys: ['l'], says: '<kbd>l</kbd> all images have one gain', does: ({ store }) => store.set({ gain: store.state.gain === 'one' ? 'each' : 'one' }) },
@@ -28,8 +28,8 @@ const BINDINGS = [
   { keys: ['+', '=', '-'], says: '<kbd>+</kbd> <kbd>−</kbd> or the wheel: zoom; drag moves the image', does: ({ viewer }, key) => viewer.zoomBy(key === '-' ? 1 / 1.5 : 1.5) },
   { keys: ['f'], says: '<kbd>f</kbd> the whole image', does: ({ store }) => store.set({ frame: null }) },
   { keys: ['F'], says: '<kbd>F</kbd> the image on the whole screen, for a projector', does: () => fullScreen() },
-  { keys: ['r'], says: '<kbd>r</kbd> everything as at the start', does: ({ store, start }) => store.set(start) },
-  { keys: ['i'], says: '<kbd>i</kbd> what is known of this image', does: () => byId('reading-card').scrollIntoView({ block: 'nearest' }) },
+  { keys: ['r'], says: '<kbd>r</kbd> everything as at the start', does: (app) => app.reset() },
+  { keys: ['i'], says: '<kbd>i</kbd> what is known of this image', does: () => byId('reading-card').focus() },
   { keys: ['d'], says: '<kbd>d</kbd> the plot of the decay', does: () => byId('plot-decay')?.scrollIntoView({ block: 'center' }) },
   { keys: ['y'], says: '<kbd>y</kbd> copies a link to this view', does: () => byId('copy-link').click() },
   { keys: ['?'], says: '<kbd>?</kbd> this help', does: () => help() },
@@ -44,9 +44,22 @@ const OTHERS = [
   'Two fingers zoom. A picture of your own can be dropped onto the page.',
 ];
 
+/** The words of the page. */
+const WORDS = [
+  ['T', 'the operator of one scattering: it turns light that arrives at surfaces into light that leaves them'],
+  ['E, TᵏE', 'the light of the lamps, and the light that was scattered exactly k times; Tₕ is T on a mesh of patches'],
+  ['Sₖ, rest, L', 'the sum of the terms 0 to k, everything beyond the last term, and the whole image'],
+  ['s', 'a factor for every scattering: the term k is multiplied by sᵏ'],
+  ['z', 'the difference of two images in a pixel, divided by its standard error'],
+  ['±', 'half of an interval that contains the exact value with 95 % probability'],
+  ['⚑', 'light reaches so few samples of a pixel that their scatter does not tell the error'],
+  ['prefix, single', 'one path gives all terms, or each term has its own paths'],
+  ['mis', 'lamps are found both by choosing a point on them and by hitting them; the two are weighted'],
+];
+
 /** @param {App} app */
 export function keys(app) {
-  byId('help-body').innerHTML = `<ul>${[...BINDINGS.map((b) => b.says), ...OTHERS].map((w) => `<li>${w}</li>`).join('')}</ul>`;
+  byId('help-body').innerHTML = `<ul>${[...BINDINGS.map((b) => b.says), ...OTHERS].map((w) => `<li>${w}</li>`).join('')}</ul><h3>Words</h3><dl>${WORDS.map(([w, says]) => `<div><dt>${w}</dt><dd>${says}</dd></div>`).join('')}</dl>`;
   byId('full-screen').addEventListener('click', fullScreen);
   byId('help-open').addEventListener('click', help);
   document.addEventListener('keydown', (e) => {

@@ -36,6 +36,10 @@ export class App {
   /** @type {ReturnType<typeof setInterval> | undefined} */
   #playing;
   #asked = false;
+  /** The pixel under the pointer. @type {[number, number] | null} */
+  #pointed = null;
+  /** In a map of z, the share of pixels beyond 2. @type {number | null} */
+  far = null;
 
   /** @param {Run} run */
   constructor(run) {
@@ -54,7 +58,10 @@ export class App {
       },
       frame: (frame) => store.set({ frame }),
       wipe: (wipe) => store.set({ wipe }),
-      over: (pixel) => this.#under(pixel),
+      over: (pixel) => {
+        this.#pointed = pixel;
+        this.#under(pixel);
+      },
     });
   }
 
@@ -99,20 +106,23 @@ export class App {
     viewer.frame = state.frame;
     viewer.over = { pixels, wipe: state.wipe, pixel: state.pixel, tiles: state.tiles };
     viewer.draw();
+    this.far = state.metric === 'z' && pixels ? farOut(pixels) : null;
     this.#label(state, subject, pixels !== null, look);
+    this.#under(this.#pointed);
   }
 
   /** @param {State} state @param {Subject} subject @param {boolean} known @param {import('#page/types.js').Look} look */
   #label(state, subject, known, look) {
     const why = state.metric === 'z' && !known ? 'z needs two answers from different paths, both with known errors' : '';
-    byId('tag').textContent = why || (state.metric === 'value' ? `${tagText(subject, this.gain)}${state.spp ? ` · ${state.spp} samples` : ''}` : compared(state, subject));
+    byId('tag').textContent = why || (state.metric === 'value' ? `${tagText(subject, this.gain)}${this.composer.isFirst(subject, state) ? ` · ${state.spp} samples` : ''}${changed(state)}` : compared(state, subject));
     byId('tag-right').hidden = state.wipe === null;
     byId('ramp').hidden = look === 'srgb' || !known;
     if (look !== 'srgb') {
       const [from, bar, to] = byId('ramp').children;
       /** @type {HTMLElement} */ (bar).style.background = `linear-gradient(to right, ${gradient(look)})`;
+      const unit = state.metric === 'z' ? 'standard errors' : state.metric === 'relative' ? 'of the reference' : 'W sr⁻¹ m⁻²';
       from.textContent = significant(look === 'false' ? 2 ** -OCTAVES / this.gain : -1 / this.gain, 2);
-      to.textContent = significant(1 / this.gain, 2);
+      to.textContent = `${significant(1 / this.gain, 2)} ${unit}${look === 'false' ? ', logarithmic' : ''}`;
     }
     if (this.counts) byId('reading').innerHTML = reading(this, state, subject, this.counts, this.gain);
     byId('canvas').setAttribute('aria-label', `${symbol(subject)}: ${meaning(subject, this.run.data.max_bounces)}`);
@@ -142,6 +152,13 @@ export class App {
   /** True if there is such an image. @param {Subject} subject */
   known(subject) {
     return subject.world === 'own' ? this.composer.own !== null : subjectOf(nameOf(subject), this.run.data) !== undefined;
+  }
+
+  /** Everything as at the start. */
+  reset() {
+    this.sums = false;
+    byId('hint').hidden = true;
+    this.store.set(this.start);
   }
 
   /** Shows a world: the same part of it, if it has that part. @param {World} world */
@@ -209,10 +226,23 @@ export class App {
   }
 }
 
+/** How the series was changed, in words. @param {State} state */
+function changed({ scale, on }) {
+  const s = scale.every((v) => v === scale[0]) ? scale[0].toFixed(2) : scale.map((v) => v.toFixed(2)).join(', ');
+  return `${scale.some((v) => v !== 1) ? ` · s = ${s}` : ''}${on.every(Boolean) ? '' : ' · some terms off'}`;
+}
+
 /** What a difference is, in words. @param {State} state @param {Subject} subject */
 function compared({ metric, reference }, subject) {
   const [a, b] = [subject, reference].map((s) => `${symbol(s)} (${WORLD_NAMES[s.world]})`);
   return { value: a, difference: `${a} − ${b}`, absolute: `|${a} − ${b}|`, relative: `relative: ${a} − ${b}`, z: `z of ${a} − ${b}` }[metric];
+}
+
+/** Share of the pixels with |z| > 2. @param {Float32Array} z three equal values per pixel */
+function farOut(z) {
+  let count = 0;
+  for (let i = 0; i < z.length; i += 3) count += Math.abs(z[i]) > 2 ? 1 : 0;
+  return (3 * count) / z.length;
 }
 
 /** Starts the page. */

@@ -89,6 +89,10 @@ function fitted(app, picture) {
     const pixels = blocks(picture.pixels, full, reduced, width, height);
     return { ...picture, width, height, pixels, errors: null, said: `${picture.said} Reduced like all images of this page.` };
   }
+  if (picture.width === width && picture.height > height && picture.height < 1.5 * height) {
+    const pixels = picture.pixels.slice(0, 3 * width * height);
+    return { ...picture, height, pixels, errors: null, said: `${picture.said} The lowest ${picture.height - height} rows, a caption, are left out.` };
+  }
   throw new Error(`it has ${picture.width} × ${picture.height} pixels, and this page ${full[0]} × ${full[1]}`);
 }
 

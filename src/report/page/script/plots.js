@@ -60,7 +60,12 @@ function drawn(app, id, plot, how) {
   const marks = (/** @type {Curve} */ curve) =>
     curve.points.map(([x, y, half]) => {
       const subject = how.subject(curve, x);
-      return { x, y, half, chosen: how.chosen(curve, x), open: () => subject && app.known(subject) && app.store.set({ subject }) };
+      const open = () => {
+        if (!subject || !app.known(subject)) return;
+        app.store.set({ subject });
+        byId('canvas').scrollIntoView({ block: 'center', behavior: 'smooth' });
+      };
+      return { x, y, half, chosen: how.chosen(curve, x), open };
     });
   draw(into, {
     title: plot.title,
@@ -72,15 +77,20 @@ function drawn(app, id, plot, how) {
       label: c.label,
       color: COLORS[i % COLORS.length],
       form: how.logX ? 'line' : 'dot',
-      dashed: i >= COLORS.length,
       marks: marks(c),
     })),
-    lines: plot.lines.map((l, i) => ({
+    lines: how.logX ? [slope(plot)] : plot.lines.map((l, i) => ({
       label: l.label,
       color: COLORS[(plot.curves.length + i) % COLORS.length],
       at: (x) => l.value * l.ratio ** (x - l.x0),
     })),
   });
+}
+
+/** Independent samples: the variance falls like 1/n; drawn above the largest curve. @param {Plot} plot */
+function slope(plot) {
+  const level = 1.6 * Math.max(...plot.curves.flatMap((c) => c.points.map(([n, v]) => n * v)));
+  return { label: 'slope −1: independent samples', color: 'var(--soft)', at: (/** @type {number} */ n) => level / n };
 }
 
 /**

@@ -42,7 +42,7 @@ export function valueAt(app, subject, state) {
 function show(app, state) {
   const into = byId('probe');
   if (!state.pixel && !state.tiles) {
-    into.innerHTML = '<p>Click a pixel to see its own series, or drag with Shift to see that of a block.</p>';
+    into.innerHTML = '<p>Click a pixel of the image to see its own series. For a block of pixels, hold Shift and drag, or tick “Drag to choose a block”.</p>';
     byId('probe-title').textContent = 'One pixel, or a block';
     return;
   }

@@ -2,7 +2,7 @@
 
 import { lookOf } from '#page/gains.js';
 import { gainText, meaning, percent, plusMinus, significant, symbol } from '#page/format.js';
-import { weights } from '#page/scale.js';
+import { untouched, weights } from '#page/scale.js';
 import { average, blockMean, imageMean } from '#page/statistics.js';
 
 /** @import { App } from '#page/main.js' */
@@ -48,15 +48,19 @@ export function reading(app, state, subject, counts, gain) {
   const lines = [];
   lines.push(`<strong>${symbol(subject)}</strong>: ${escaped(meaning(subject, data.max_bounces))}.`);
   const first = app.composer.isFirst(subject, state);
+  const difference = differenceOf(app, subject, state);
+  if (difference) lines.push(difference);
   const mean = first ? null : meanOf(app, subject, state);
   if (mean) {
     const channels = ['red', 'green', 'blue'].map((name, c) => `${name} ${plusMinus(mean.mean[c], mean.half[c])}`);
     lines.push(`Mean radiance <b id="mean">${words(mean)}</b> W sr⁻¹ m⁻² (95 %); ${channels.join(', ')}.`);
     const mesh = app.run.answer(subject.world)?.mesh.reduce((a, m) => a + m / 3, 0) ?? 0;
-    if (mesh > 0) lines.push(`The error of the mesh is about ${significant(mesh, 2)}; the interval does not contain it.`);
+    if (mesh > 0) lines.push(`The error of the mesh is about ${significant(mesh, 2)}; it is not included in the interval.`);
   } else {
-    lines.push(`Mean radiance <b id="mean">${significant(meanOfPixels(app, subject, state))}</b>, from the pixels; its error is not known.`);
+    const own = subject.world === 'own' && app.composer.own?.errors ? 'the errors of its pixels are known, that of the mean is not' : 'its error is not known';
+    lines.push(`Mean radiance <b id="mean">${significant(meanOfPixels(app, subject, state))}</b>, from the pixels; ${own}.`);
   }
+  if (!untouched(state) && !app.run.hasTerms(subject.world)) lines.push('It has no terms, so it is shown at s = 1, with all its light.');
   if (first) lines.push(`These are the first ${state.spp} samples of each pixel.`);
   lines.push(`Shown ${gainText(gain)}. ${counted(counts, app.run.pixels, lookOf(state) === 'srgb')}`);
   const doubt = doubtOf(app, subject);
@@ -65,6 +69,16 @@ export function reading(app, state, subject, counts, gain) {
     lines.push(`Every pixel is the mean of ${data.reduced} × ${data.reduced} pixels of the run; terms.exr has all of them.`);
   }
   return lines.map((l) => `<p>${l}</p>`).join('');
+}
+
+/** The mean of a difference, and for z how often it is large. @param {App} app @param {Subject} subject @param {State} state */
+function differenceOf(app, subject, state) {
+  const { metric, reference } = state;
+  if (metric === 'z') return app.far === null ? '' : `|z| is above 2 in <b id="far">${percent(app.far)}</b> of the pixels; without a difference about 5 %. Few bright paths make one sign more frequent far out, so the comparisons below test means.`;
+  if (metric === 'value' || metric === 'relative' || subject.world === reference.world) return '';
+  const [a, b] = [subject, reference].map((s) => meanOf(app, s, state));
+  if (!a || !b) return '';
+  return `Mean difference from the reference: ${plusMinus(a.all[0] - b.all[0], Math.hypot(a.all[1], b.all[1]))} (95 %). The image itself:`;
 }
 
 /** @param {Counts} counts @param {number} pixels @param {boolean} seen true for the colours of the scene */

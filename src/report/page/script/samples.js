@@ -19,12 +19,18 @@ export function samples(app) {
   const all = [...counts, spp];
   byId('samples').innerHTML = `<label for="spp">Samples per pixel</label>
     <span class="range"><input id="spp" type="range" min="0" max="${all.length - 1}" step="1" list="spp-list"></span><output id="spp-value"></output>
-    <p>Kept for ${kept(app).map((s) => `<button type="button" data-k="${s.kind === 'whole' ? 'whole' : s.k}">${symbol(s)}</button>`).join(' ')}</p>
+    <p>Available for ${kept(app).map((s) => `<button type="button" data-k="${s.kind === 'whole' ? 'whole' : s.k}">${symbol(s)}</button>`).join(' ')}</p>
     <p id="samples-text"></p>`;
   const slider = /** @type {HTMLInputElement} */ (byId('spp'));
   slider.addEventListener('input', () => {
     const n = all[Number(slider.value)];
-    app.store.set({ spp: n === spp ? null : n, subject: keptOr(app, app.store.state.subject), metric: 'value' });
+    app.store.set({
+      spp: n === spp ? null : n,
+      subject: keptOr(app, app.store.state.subject),
+      metric: 'value',
+      scale: app.start.scale,
+      on: app.start.on,
+    });
   });
   byId('samples').addEventListener('click', (e) => {
     const { k } = /** @type {HTMLElement} */ (e.target).dataset;
@@ -32,8 +38,9 @@ export function samples(app) {
     if (subject) app.store.set({ subject });
   });
   const show = (/** @type {State} */ state) => {
-    slider.value = String(state.spp === null ? all.length - 1 : all.indexOf(state.spp));
-    byId('spp-value').textContent = String(state.spp ?? spp);
+    const shown = app.composer.isFirst(state.subject, state) ? state.spp : null;
+    slider.value = String(shown === null ? all.length - 1 : all.indexOf(shown));
+    byId('spp-value').textContent = String(shown ?? spp);
     byId('samples-text').innerHTML = told(app, state);
   };
   app.store.drawnBy(show);
@@ -62,9 +69,9 @@ function told(app, state) {
     const clipped = percent((app.counts?.clipped ?? 0) / app.run.pixels);
     lines.push(`${symbol(subject)} with ${state.spp} samples: mean ${significant(now)} before clipping, ${clipped} of the pixels clipped.`);
     lines.push(`With all ${app.run.data.spp} samples: mean ${plusMinus(...(mean?.all ?? [NaN, NaN]))}.`);
-    lines.push('A noisy image may look darker: the screen clips its bright pixels. Its mean is the same.');
+    lines.push('A noisy image may look darker: the screen clips its bright pixels. Its mean is the same but for noise.');
   } else {
-    lines.push('Move the slider to see the noise of fewer samples. The mean does not change.');
+    lines.push('Move the slider to see the noise of fewer samples. The expected mean does not change.');
   }
   const noise = [1, 2].map((k) => {
     const m = meanOf(app, { world: 'terms', kind: 'term', k }, { ...state, scale: [1, 1, 1] });

@@ -1,6 +1,6 @@
 // Links, pictures and reports to hand in.
 
-import { byId, tagText } from '#page/controls.js';
+import { byId } from '#page/controls.js';
 import { WORLD_NAMES, meaning, percent, plusMinus, symbol } from '#page/format.js';
 import { meanOf, words } from '#page/reading.js';
 import { valueAt } from '#page/probe.js';
@@ -64,7 +64,7 @@ function saved(blob, name) {
 function picture(app) {
   const { width, height, command } = app.run.data;
   const scale = Math.max(1, Math.round(512 / Math.max(width, height)));
-  const [w, lines] = [width * scale, [tagText(app.store.state.subject, app.gain), command, address(app).split('#')[1] ?? '']];
+  const [w, lines] = [width * scale, [byId('tag').textContent ?? '', ramp(), command, address(app).split('#')[1] ?? '']];
   const out = new OffscreenCanvas(w, height * scale + 16 * lines.length + 12);
   const context = /** @type {OffscreenCanvasRenderingContext2D} */ (out.getContext('2d'));
   context.fillStyle = '#fff';
@@ -73,8 +73,14 @@ function picture(app) {
   context.drawImage(app.viewer.images[0].canvas, 0, 0, w, height * scale);
   context.fillStyle = '#000';
   context.font = '12px system-ui, sans-serif';
-  lines.forEach((line, i) => context.fillText(line, 6, height * scale + 18 + 16 * i, w - 12));
+  lines.filter(Boolean).forEach((line, i) => context.fillText(line, 6, height * scale + 18 + 16 * i, w - 12));
   return out.convertToBlob({ type: 'image/png' });
+}
+
+/** The range of the colours, if they are not those of the scene. */
+function ramp() {
+  const [from, , to] = [...byId('ramp').children].map((e) => e.textContent);
+  return byId('ramp').hidden ? '' : `colours from ${from} to ${to}`;
 }
 
 /** A plot as a file of its own. @param {App} app @param {string} id */

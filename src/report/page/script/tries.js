@@ -9,7 +9,7 @@ import { worldWithTerms } from '#page/what_if.js';
 /** @type {Record<string, {says: string, set: (app: App) => Partial<State> | undefined}>} */
 const TRIES = {
   bounce: {
-    says: 'Press 1, 2, 3 to see the light that was scattered once, twice, three times. Then click a surface: the bars below the image say how much each bounce adds there. Shift and a drag choose a block of pixels, which has less noise.',
+    says: 'Press 1, 2, 3 to see the light that was scattered once, twice, three times. Then click a surface: the bars beside the image say how much each bounce adds there. Shift and a drag (or the box “Drag to choose a block”) choose a block of pixels, which has less noise.',
     set: (app) => ({ subject: { world: worldWithTerms(app), kind: 'term', k: 1 }, metric: 'value', gain: 'each', spp: null }),
   },
   half: {
@@ -26,7 +26,7 @@ const TRIES = {
   bias: {
     says: 'z is the difference of two answers in units of its standard error. Where they agree it is noise, with about 1 pixel in 20 beyond 2. A pattern would be a bias. Press b to leave.',
     set: (app) => {
-      if (app.store.state.metric !== 'z') app.bias();
+      app.bias();
       return {};
     },
   },
@@ -37,7 +37,7 @@ export function tries(app) {
   for (const button of document.querySelectorAll('[data-try]')) {
     const { says, set } = TRIES[/** @type {HTMLElement} */ (button).dataset.try ?? ''];
     button.addEventListener('click', () => {
-      app.summing(false);
+      app.reset();
       const change = set(app);
       if (!change) return;
       app.store.set(change);

@@ -74,7 +74,7 @@ export class Viewer {
   /** Changes the zoom so that the pixel under a place stays there. @param {number} factor @param {number} [left] @param {number} [top] */
   zoomBy(factor, left = this.canvas.clientWidth / 2, top = this.canvas.clientHeight / 2) {
     const [px, py] = this.pixelAt(left, top);
-    const zoom = Math.min(Math.max(this.now().zoom * factor, this.whole().zoom / 2), LARGEST);
+    const zoom = Math.min(Math.max(this.now().zoom * factor, Math.min(this.whole().zoom, 1)), LARGEST);
     const { clientWidth: w, clientHeight: h } = this.canvas;
     this.asked.frame({ zoom, x: px - (left - w / 2) / zoom, y: py - (top - h / 2) / zoom });
   }
@@ -217,6 +217,8 @@ export class Viewer {
     canvas.addEventListener(
       'wheel',
       (e) => {
+        // the whole image is seen: the page scrolls
+        if (e.deltaY > 0 && this.now().zoom <= this.whole().zoom * 1.001) return;
         e.preventDefault();
         this.zoomBy(2 ** (-e.deltaY / 240), e.offsetX, e.offsetY);
       },

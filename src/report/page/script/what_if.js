@@ -16,20 +16,27 @@ const MUCH = 0.1;
 export function whatIf(app) {
   const { store, run } = app;
   const [most, limit] = [largest(run.data), physical(run.data)];
+  // one range for all, so that equal values are at equal places
+  const range = Math.max(...most);
   const sliders = ['all', ...CHANNELS].map((name, i) => {
     const [max, at] = i === 0 ? [Math.min(...most), Math.min(...limit)] : [most[i - 1], limit[i - 1]];
     const row = document.createElement('div');
+    const tick = (/** @type {string} */ kind, /** @type {number} */ s, /** @type {string} */ says) =>
+      s < range ? `<i class="${kind}" style="left:calc(8px + (100% - 16px) * ${s / range})" title="${says}"></i>` : '';
     row.innerHTML = `<label for="s-${name}">s, ${name === 'all' ? 'all channels' : name}</label>
-      <span class="range"><input id="s-${name}" type="range" min="0" max="${max.toFixed(3)}" step="0.005" list="s-ticks-${name}">
-      <i class="limit" style="left:${(100 * at) / max}%" ${at < max ? '' : 'hidden'} title="no real surface reflects more: s = ${significant(at, 3)}"></i></span>
+      <span class="range">${tick('one', 1, 's = 1: the scene as it is')}${tick('limit', at, `no real surface reflects more: s = ${significant(at, 3)}`)}${tick('end', max, 'just below the s at which the series diverges')}
+      <input id="s-${name}" type="range" min="0" max="${range.toFixed(3)}" step="0.005"></span>
       <output id="s-${name}-value"></output>`;
     const input = /** @type {HTMLInputElement} */ (row.querySelector('input'));
     input.addEventListener('input', () => {
-      const s = snapped(Number(input.value));
+      const s = Math.min(snapped(Number(input.value)), max);
+      input.value = String(s);
       const scale = [...store.state.scale];
       if (i === 0) scale.fill(s);
       else scale[i - 1] = s;
-      store.set({ scale, spp: null });
+      // only a world with terms can be scaled
+      const subject = run.hasTerms(store.state.subject.world) ? store.state.subject : summed(app, store.state);
+      store.set({ scale, subject, spp: null });
     });
     return row;
   });
@@ -102,15 +109,15 @@ function told(app, state) {
   } else if (scale.every((s) => s <= 1)) {
     lines.push(`Mean radiance ${plusMinus(...now.all)} (95 %).`);
     if (hasRest(state, last)) {
-      lines.push(`That is an upper bound: the rest is known exactly only at s = 1, and less of it may be left, by up to <span id="slack">${significant(rest, 2)}</span>.`);
+      lines.push(`It may be up to <span id="slack">${significant(rest, 2)}</span> too high, because the rest is known exactly only at s = 1.`);
     }
   } else {
     lines.push(`Mean radiance ${plusMinus(...now.all)}, of which ${percent(rest / now.all[0])} is extrapolated:
-      beyond T${last} the terms are assumed to fall by the factor s r, where r = ${bounds.rate.map((r) => significant(r, 3)).join(', ')}
-      in red, green, blue is the ${escaped(bounds.rate_is)}.`);
-    if (rest / now.all[0] > MUCH) lines.push('<span class="flag">⚑ The extrapolation rules this picture.</span>');
+      beyond k = ${last} the terms are assumed to fall by the factor s r, where r = ${bounds.rate.map((r) => significant(r, 3)).join(', ')}
+      in red, green, blue is the ${escaped(bounds.rate_is)}. The interval does not include the error of this assumption.`);
+    if (rest / now.all[0] > MUCH) lines.push('<span class="flag">⚑ The extrapolation dominates this picture.</span>');
   }
-  lines.push(`That is <b id="share">${percent(share)}</b> of the light at s = 1.`);
+  lines.push(`That is <b id="share">${percent(share)}</b> of the picture at s = 1${scattered(app, state, subject)}.`);
   const limit = physical(run.data);
   if (scale.some((s, c) => s > limit[c] * (1 + 1e-9))) {
     lines.push(`<span class="flag">⚑ Not physical: some surface would reflect more than it receives (s > ${significant(Math.min(...limit), 3)}).</span>`);
@@ -118,6 +125,13 @@ function told(app, state) {
   const factor = scale.map((s, c) => restFactor(s, last, bounds.rate[c]));
   if (factor.some((f) => Number.isNaN(f))) lines.push('The series diverges in a channel; nothing is shown there.');
   return lines.join(' ');
+}
+
+/** The share of the scattered light, without what the lamps send to the camera. @param {App} app @param {State} state @param {Subject} subject */
+function scattered(app, state, subject) {
+  const without = (/** @type {State} */ s) => meanOf(app, subject, { ...s, on: s.on.map((o, j) => o && j > 0) })?.all[0] ?? NaN;
+  const share = without(state) / without({ ...state, scale: [1, 1, 1], on: state.on.map(() => true) });
+  return Number.isFinite(share) && state.on[0] ? `; of the light that surfaces scatter, <b id="scattered">${percent(share)}</b>` : '';
 }
 
 /** True if the rest is part of the sum. @param {State} state @param {number} last K */
