@@ -9,6 +9,8 @@ mod materials_and_lights;
 mod meaning;
 #[path = "scene_files/obj.rs"]
 mod obj;
+#[path = "scene_files/obj_in_the_wild.rs"]
+mod obj_in_the_wild;
 #[path = "scene_files/overrides.rs"]
 mod overrides;
 

@@ -1,5 +1,7 @@
 //! How a command ends and what it prints: results to stdout, everything else to stderr.
 
+use fredholm::math::names::printable;
+
 /// An error that ends a command.
 pub enum Failure {
     /// Something is wrong with the scene or a file: exit code 3.
@@ -37,11 +39,11 @@ pub enum Ending {
     Interrupted,
 }
 
-/// Prints to stdout, with a final newline. A closed pipe (`| head`) is no error.
+/// Prints to stdout, with a final newline. Control characters, which a terminal may obey, are printed as `\u{…}`. A closed pipe (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), Failure> {
     use std::io::{ErrorKind, Write};
     let mut out = std::io::stdout().lock();
-    match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
+    match writeln!(out, "{}", printable(text.trim_end())).and_then(|()| out.flush()) {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::Input(format!("error: cannot print the result: {e}\nhelp: check where stdout goes")))
         }
@@ -49,10 +51,10 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints a note to stderr. A closed stderr is no error.
+/// Prints a note to stderr, control characters as `\u{…}`. A closed stderr is no error.
 pub fn note(text: &str) {
     use std::io::Write;
-    let _ = writeln!(std::io::stderr(), "{text}");
+    let _ = writeln!(std::io::stderr(), "{}", printable(text));
 }
 
 /// Joins blocks of text with one blank line between them; empty blocks are left out.

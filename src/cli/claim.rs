@@ -112,7 +112,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let [half, picture] = [".terms.exr.123.tmp", "terms.png"].map(|n| folder.path().join(n));
         std::fs::write(folder.path().join(NAME), "fredholm series a.toml\n123\n").unwrap();
-        [&half, &picture].map(|p| std::fs::write(p, "").unwrap());
+        for file in [&half, &picture] {
+            std::fs::write(file, "").unwrap();
+        }
         assert_eq!(left_behind(folder.path()).as_deref(), Some("fredholm series a.toml"));
         let _claim = Claim::folder(folder.path(), "fredholm series a.toml").unwrap();
         assert!(!half.exists() && picture.exists());

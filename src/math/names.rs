@@ -81,6 +81,42 @@ pub fn either(names: &[&str]) -> String {
     joined(&names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>(), "or")
 }
 
+/// True for the characters that change the direction of writing (Unicode Standard Annex 9, table 2): with them a name looks like
+/// another one.
+pub fn turns(c: char) -> bool {
+    matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// The text with every control character, and every character that changes the direction of writing, as `\u{…}`.
+///
+/// ```
+/// use fredholm::math::names::visible;
+/// assert_eq!(visible("red\u{1b}[0m\n"), r"red\u{1b}[0m\u{a}");
+/// ```
+pub fn visible(text: &str) -> String {
+    text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
+        if c.is_control() || turns(c) {
+            out.extend(c.escape_unicode())
+        } else {
+            out.push(c)
+        }
+        out
+    })
+}
+
+/// The same for a text with lines and tabs, which stay as they are: what a terminal may be sent.
+pub fn printable(text: &str) -> std::borrow::Cow<'_, str> {
+    let hides = |c: char| !matches!(c, '\n' | '\t') && (c.is_control() || turns(c));
+    if !text.contains(hides) {
+        return text.into();
+    }
+    let pieces = text.split_inclusive(['\n', '\t']).map(|piece| {
+        let end = piece.len() - usize::from(piece.ends_with(['\n', '\t']));
+        visible(&piece[..end]) + &piece[end..]
+    });
+    pieces.collect::<String>().into()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

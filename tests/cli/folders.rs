@@ -120,3 +120,28 @@ fn an_input_is_never_an_output() {
     let said = desk.run("compare a b -o c");
     assert!([0, 1].contains(&said.code), "{}", said.err);
 }
+
+/// A terminal obeys escape sequences, and a name that changes the direction of writing looks like another one.
+#[test]
+fn names_do_not_reach_the_terminal_as_commands() {
+    let desk = Desk::new();
+    let furnace = fredholm::scene::builtin::find("furnace").unwrap().source;
+    let wrong = ["re\u{1b}[31md", "a\u{202e}gnp", "b\u{7}"];
+    for name in wrong {
+        let file = format!("{name}.toml");
+        std::fs::write(desk.path(&file), furnace.replacen("name", "nmae", 1)).unwrap();
+        let said = desk.command("info").arg(&file).output().unwrap();
+        let text = String::from_utf8_lossy(&said.stdout).into_owned() + &String::from_utf8_lossy(&said.stderr);
+        assert_eq!(said.status.code(), Some(3), "{text}");
+        let hidden = |c: char| c != '\n' && (c.is_control() || c == '\u{202e}');
+        assert!(!text.contains(hidden), "{text:?}");
+        let said = desk.command("series").args(["--set", name]).arg("cornell").output().unwrap();
+        let text = String::from_utf8_lossy(&said.stderr).into_owned();
+        assert!(!said.status.success() && !text.contains(hidden), "{text:?}");
+    }
+    let long = "x".repeat(230);
+    std::fs::write(desk.path(&format!("{long}.toml")), furnace.replacen("name", "# name", 1)).unwrap();
+    let said = desk.run(&format!("series {long}.toml --spp 1 --size 4x4"));
+    assert_eq!(said.code, 3);
+    assert!(said.err.contains("200 are possible"), "{}", said.err);
+}

@@ -1,7 +1,7 @@
 //! Reading of `[materials.NAME]`: the kind of surface and its sides. Each kind of surface reads its own keys
 //! ([`Surface`](crate::scene::bsdf::Surface)).
 
-use super::cursor::Cursor;
+use super::{cursor::Cursor, names};
 use crate::scene::{
     SceneError,
     bsdf::register::{KINDS, Kind},
@@ -13,6 +13,7 @@ pub(super) const KEYS: [&str; 2] = ["type", "sides"];
 
 /// Reads one material.
 pub(super) fn read(name: &str, c: &Cursor) -> Result<Material, SceneError> {
+    names::check(name, "material").map_err(|f| c.error(f.what).help(f.help))?;
     let names: Vec<&str> = KINDS.iter().map(|k| k.name).collect();
     let at = c.require("type", &format!("type = \"diffuse\"; types: {}", names.join(", ")))?;
     let kinds: Vec<(&str, &Kind)> = KINDS.iter().map(|k| (k.name, k)).collect();

@@ -19,9 +19,11 @@ mod missing;
 mod mtl;
 mod mtl_material;
 mod mtl_surface;
+mod names;
 mod obj;
 mod obj_check;
 mod overrides;
+mod polygon;
 mod shapes;
 mod toml;
 mod tree;
@@ -180,8 +182,19 @@ fn read(path: &Path) -> Result<String, SceneError> {
 }
 
 /// The text of a file that may not be UTF-8, as in old files with accented comments. Invalid bytes become replacement characters.
+/// UTF-16 is known by its byte order mark. Lines may end with LF, CR LF, or CR alone as on old Macintosh computers.
 fn read_lossy(path: &Path) -> Result<String, SceneError> {
-    bytes(path).map(|b| String::from_utf8_lossy(&b).trim_start_matches('\u{feff}').to_owned())
+    let bytes = bytes(path)?;
+    let wide = |order: fn([u8; 2]) -> u16| {
+        let units: Vec<u16> = bytes[2..].as_chunks().0.iter().map(|&pair| order(pair)).collect();
+        String::from_utf16_lossy(&units)
+    };
+    let text = match bytes.get(..2) {
+        Some([0xff, 0xfe]) => wide(u16::from_le_bytes),
+        Some([0xfe, 0xff]) => wide(u16::from_be_bytes),
+        _ => String::from_utf8_lossy(&bytes).trim_start_matches('\u{feff}').to_owned(),
+    };
+    Ok(text.replace("\r\n", "\n").replace('\r', "\n"))
 }
 
 fn bytes(path: &Path) -> Result<Vec<u8>, SceneError> {

@@ -3,6 +3,7 @@
 //! [`mtl_surface`](super::mtl_surface) converts them to a surface. `Ka` is kept only to explain a dark scene. Other
 //! statements that would change the image are remembered as ignored.
 
+use super::names;
 use crate::scene::SceneError;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -49,7 +50,7 @@ fn push(out: &mut Vec<Statement>, line: usize, text: &str) {
     let text = text.trim();
     let (key, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
     if !key.is_empty() && !key.starts_with('#') {
-        out.push(Statement { line, key: key.to_owned(), rest: rest.trim().to_owned() });
+        out.push(Statement { line, key: key.to_owned(), rest: rest.trim().replace('\t', " ") });
     }
 }
 
@@ -81,6 +82,8 @@ pub(in crate::scene) struct Entry {
     pub(super) texture: Option<Texture>,
     /// Statements that would change the image but are ignored.
     pub(super) ignored: Vec<String>,
+    /// The first statement that cannot be read: an error where the material is used.
+    pub(super) fault: Option<SceneError>,
 }
 
 /// A `map_Kd` and the place of its statement.
@@ -94,8 +97,8 @@ pub(in crate::scene) struct Texture {
 
 /// Statements that are read.
 const READ: [&str; 11] = ["Kd", "Ke", "Ka", "Ks", "Tf", "Ns", "Ni", "d", "Tr", "illum", "map_Kd"];
-/// Statements that are ignored although they would change the image.
-const IGNORED: [&str; 9] = ["map_Ke", "map_Ks", "map_Ns", "map_d", "map_Bump", "map_bump", "bump", "norm", "disp"];
+/// Statements that change no image: `Km` and `sharpness` concern reflected images of other programs, and `map_aat` their filter.
+const HARMLESS: [&str; 4] = ["Km", "sharpness", "map_aat", "map_Ka"];
 
 /// Parses MTL text. Messages name `file`, and paths of images are relative to its folder.
 pub(super) fn parse(text: &str, file: &Path) -> Result<Vec<Entry>, SceneError> {
@@ -106,10 +109,14 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<Vec<Entry>, SceneError> {
             if s.rest.is_empty() {
                 return Err(at(SceneError::new("newmtl needs a name").help("write newmtl NAME")));
             }
+            names::check(&s.rest, "material").map_err(|f| at(SceneError::new(f.what).help(f.help)))?;
             entries.push(Entry { name: s.rest.clone(), ..Entry::default() });
             continue;
         }
-        if !READ.contains(&s.key.as_str()) && !IGNORED.contains(&s.key.as_str()) {
+        if HARMLESS.contains(&s.key.as_str()) {
+            continue;
+        }
+        if entries.is_empty() && !READ.contains(&s.key.as_str()) {
             continue;
         }
         let Some(m) = entries.last_mut() else {
@@ -118,7 +125,9 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<Vec<Entry>, SceneError> {
             ));
         };
         let key = format!("{}.{}", m.name, s.key);
-        state(m, &s, file).map_err(|e| e.at(file, s.line).key(key))?;
+        if let Err(e) = state(m, &s, file) {
+            m.fault.get_or_insert(e.at(file, s.line).key(key));
+        }
     }
     Ok(entries)
 }
@@ -140,7 +149,11 @@ fn state(m: &mut Entry, s: &Statement, file: &Path) -> Result<(), SceneError> {
         "Tr" => m.transparency = Some(number(s, 1.0)?),
         "illum" => m.illum = Some(number(s, 10.0)? as u32),
         "map_Kd" => m.texture = texture(s, file),
-        _ => m.ignored.push(format!("{} {}", s.key, s.rest)),
+        _ => {
+            let known = READ.iter().find(|k| k.eq_ignore_ascii_case(&s.key));
+            let hint = known.map_or(String::new(), |k| format!(" (did you mean {k}?)"));
+            m.ignored.push(format!("{} {}{hint}", s.key, s.rest));
+        }
     }
     Ok(())
 }

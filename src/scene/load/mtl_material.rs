@@ -7,6 +7,11 @@ use crate::scene::bsdf::colour::Colour;
 use glam::DVec3;
 use std::sync::Arc;
 
+/// A number without the digits that are only rounding, such as 1.14 in place of 1.1400000000000001.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.6e}").parse().unwrap_or(x)
+}
+
 /// Albedo of a material without `Kd`.
 pub(super) const GREY: DVec3 = DVec3::splat(0.5);
 /// A mirror ignores its diffuse part if the ratio of `Kd` to `Ks` is at most this.
@@ -95,7 +100,10 @@ impl MtlMaterial<'_> {
         if most <= 1.0 + ROUNDING {
             return 1.0;
         }
-        self.warn(format!("reflects more light than it receives: {what} {most}, so its colours are divided by that"));
+        self.warn(format!(
+            "reflects more light than it receives: {what} {}, so its colours are divided by that",
+            rounded(most)
+        ));
         most
     }
 
@@ -111,7 +119,7 @@ impl MtlMaterial<'_> {
             if !self.placed {
                 self.warn(format!("has map_Kd {shown}, but its polygons have no vt; Kd is used"));
             } else if !t.path.is_file() {
-                self.warn(format!("has map_Kd {shown}, but the file is missing; Kd is used"));
+                self.warn(format!("has map_Kd {shown}, but there is no file {}; Kd is used", t.path.display()));
             } else if !image::is_image(&t.path) {
                 self.warn(format!("has map_Kd {shown}, which is not an EXR, HDR, PNG or JPEG file; Kd is used"));
             } else {

@@ -30,6 +30,9 @@ pub(super) fn grey() -> BsdfDescription {
 /// The surface of an MTL material. `placed` is true if its polygons have texture coordinates. `warn` receives messages that
 /// start with `has` or `is`.
 pub(super) fn surface(m: &Entry, placed: bool, warn: &mut dyn FnMut(String)) -> Result<BsdfDescription, SceneError> {
+    if let Some(fault) = &m.fault {
+        return Err(fault.clone());
+    }
     if let (Some(d), Some(t)) = (m.opacity, m.transparency)
         && (d + t - 1.0).abs() > ROUNDING
     {

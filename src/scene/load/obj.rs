@@ -6,16 +6,14 @@
 //! fourth number of a vertex (a weight) and vertex colours are ignored. A corner without `vt` gets a texture coordinate that
 //! is NaN, so that all corners of a file have the same form.
 //!
-//! A polygon p₀ … pₙ becomes the fan of triangles (p₀, pᵢ, pᵢ₊₁). This is exact for convex polygons. In a polygon that is
-//! not convex, some triangle faces against the polygon's normal N = Σ (pᵢ − p₀) × (pᵢ₊₁ − p₀) (M. Newell, in Sutherland,
-//! Sproull and Schumacker 1974). A warning gives the number of such polygons.
+//! Polygons become triangles ([`polygon`](super::polygon)).
 
 use super::{
     mesh::flat,
     mtl::{self, Entry, Statement, statements},
     mtl_surface,
     obj_check::{check, number_of},
-    read_lossy,
+    polygon, read_lossy,
 };
 use crate::math::names::nearest;
 use crate::scene::{SceneError, description::BsdfDescription};
@@ -56,7 +54,7 @@ pub(super) struct Model {
 pub(super) fn read(path: &Path, with_mtl: bool) -> Result<Model, SceneError> {
     let list = statements(&read_lossy(path)?);
     check(&list, path)?;
-    let mut warnings = Vec::new();
+    let mut warnings = dropped(&list, path);
     let library = if with_mtl { Some(library(&list, path, &mut warnings)?) } else { None };
 
     let (text, names, first_use) = geometry(&list);
@@ -96,7 +94,55 @@ pub(super) fn read(path: &Path, with_mtl: bool) -> Result<Model, SceneError> {
         return Err(SceneError::new(what).file(path).help("an OBJ scene needs polygons: f 1 2 3"));
     }
     flaws.report(path, &mut model.warnings);
+    let unused = |m: &&Entry| !names.contains(&m.name);
+    for m in library.iter().flatten().filter(unused) {
+        let fault = m.fault.iter().map(|e| e.to_string().lines().collect::<Vec<_>>().join(" ").replace("error: ", ""));
+        model.warnings.extend(fault.map(|what| format!("material `{}`, which nothing uses: {what}", m.name)));
+    }
     Ok(model)
+}
+
+/// Statements that matter nothing to light: points, lines, groups of smoothing, and how other programs show the model.
+const HARMLESS: [&str; 22] = [
+    "v",
+    "vt",
+    "vn",
+    "vp",
+    "p",
+    "l",
+    "f",
+    "g",
+    "o",
+    "s",
+    "mg",
+    "usemtl",
+    "mtllib",
+    "usemap",
+    "maplib",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "shadow_obj",
+    "trace_obj",
+    "end",
+];
+
+/// A warning for each kind of statement that is dropped, with its first line: free-form surfaces, `fo`, and what is not OBJ.
+fn dropped(list: &[Statement], path: &Path) -> Vec<String> {
+    let mut kinds: Vec<(&str, usize, usize)> = vec![];
+    for s in list.iter().filter(|s| !HARMLESS.contains(&s.key.as_str())) {
+        match kinds.iter_mut().find(|k| k.0 == s.key) {
+            Some(kind) => kind.2 += 1,
+            None => kinds.push((&s.key, s.line, 1)),
+        }
+    }
+    let words = |(key, line, count): &(&str, usize, usize)| {
+        let times = if *count == 1 { String::new() } else { format!(" ({count} times)") };
+        let hint = if *key == "fo" { "; write f for faces" } else { "" };
+        format!("{}:{line}: the statement `{key}` is ignored{times}{hint}", path.display())
+    };
+    kinds.iter().map(words).collect()
 }
 
 fn stem(path: &Path) -> String {
@@ -110,13 +156,24 @@ fn library(list: &[Statement], path: &Path, warnings: &mut Vec<String>) -> Resul
         let folder = path.parent().unwrap_or(Path::new(""));
         // either one name with spaces, or several names in which a backslash marks a space that belongs to a name
         let whole = folder.join(&s.rest);
-        let files: Vec<PathBuf> =
-            if whole.is_file() { vec![whole] } else { split_names(&s.rest).iter().map(|n| folder.join(n)).collect() };
+        let files: Vec<PathBuf> = if whole.is_file() {
+            vec![whole]
+        } else {
+            // names written on Windows use backslashes
+            let slashed = folder.join(s.rest.replace('\\', "/"));
+            let each = |n: &String| [n.clone(), n.replace('\\', "/")].map(|n| folder.join(n));
+            let exists = |pair: [PathBuf; 2]| if pair[1].is_file() { pair[1].clone() } else { pair[0].clone() };
+            let names = split_names(&s.rest);
+            if slashed.is_file() { vec![slashed] } else { names.iter().map(each).map(exists).collect() }
+        };
+        let looked_for = files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>().join(", ");
         let (found, missing): (Vec<_>, Vec<_>) = files.into_iter().partition(|f| f.is_file());
         if found.is_empty() {
             let e =
                 SceneError::new(format!("cannot find the material file `{}`", s.rest)).at(path, s.line).key("mtllib");
-            return Err(e.help("put it next to the OBJ, or remove the line, so that everything is grey 0.5"));
+            let help =
+                "put it next to the OBJ and write its name only, or remove the line, so that everything is grey 0.5";
+            return Err(e.help(format!("looked for {looked_for}; {help}")));
         }
         for m in missing {
             warnings.push(format!("{}:{}: material file {} is missing", path.display(), s.line, m.display()));
@@ -211,11 +268,11 @@ fn surface(
     Ok(Surface { name: name.to_owned(), bsdf, emission })
 }
 
-/// Numbers of triangles and polygons that the fans do not represent exactly.
+/// Numbers of triangles and polygons that triangles do not represent exactly.
 #[derive(Default)]
 struct Flaws {
     flat: usize,
-    concave: usize,
+    crossed: usize,
 }
 
 impl Flaws {
@@ -223,9 +280,9 @@ impl Flaws {
         if self.flat > 0 {
             warnings.push(format!("{}: triangles without area that are ignored: {}", path.display(), self.flat));
         }
-        if self.concave > 0 {
+        if self.crossed > 0 {
             let help = "their triangles overlap: triangulate these polygons in the program that exported them";
-            warnings.push(format!("{}: polygons that are not convex: {} ({help})", path.display(), self.concave));
+            warnings.push(format!("{}: polygons that cross themselves: {} ({help})", path.display(), self.crossed));
         }
     }
 }
@@ -243,20 +300,17 @@ fn triangles(mesh: &tobj::Mesh, vertices: &[DVec3], flaws: &mut Flaws) -> (Vec<[
         rest = tail;
         let (place, tail) = places.split_at(polygon.len());
         places = tail;
-        let p = |i: usize| vertices[polygon[i] as usize];
-        let newell: DVec3 = (1..polygon.len().saturating_sub(1)).map(|i| (p(i) - p(0)).cross(p(i + 1) - p(0))).sum();
-        let mut concave = false;
-        for i in 1..polygon.len().saturating_sub(1) {
-            let corners = [p(0), p(i), p(i + 1)];
-            if flat(corners) {
+        let corners: Vec<DVec3> = polygon.iter().map(|&i| vertices[i as usize]).collect();
+        let cut = polygon::cut(&corners);
+        flaws.crossed += usize::from(cut.crossed);
+        for t in cut.triangles {
+            if flat(t.map(|i| corners[i])) {
                 flaws.flat += 1;
                 continue;
             }
-            concave |= (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(newell) < 0.0;
-            out.push([polygon[0], polygon[i], polygon[i + 1]]);
-            uvs.push([0, i, i + 1].map(|i| uv(place[i])));
+            out.push(t.map(|i| polygon[i]));
+            uvs.push(t.map(|i| uv(place[i])));
         }
-        flaws.concave += usize::from(concave);
     }
     if uvs.iter().flatten().any(|uv| uv.is_nan()) {
         uvs.clear();

@@ -3,6 +3,7 @@
 use super::{
     cursor::{LARGEST_LENGTH, LARGEST_UV},
     mtl::Statement,
+    names,
 };
 use crate::scene::SceneError;
 use std::path::Path;
@@ -18,6 +19,11 @@ pub(super) fn check(list: &[Statement], path: &Path) -> Result<(), SceneError> {
     let (total, total_vt) = (count("v"), count("vt"));
     let (mut seen, mut seen_vt) = (0, 0);
     for s in list {
+        if let Some(kind) = [("o", "object"), ("g", "group"), ("usemtl", "material")].into_iter().find(|k| k.0 == s.key)
+        {
+            let unfit = |f: names::Fault| SceneError::new(f.what).at(path, s.line).key(s.key.clone()).help(f.help);
+            names::check(&s.rest, kind.1).map_err(unfit)?;
+        }
         let fail = |what: String, help: &str| Err(SceneError::new(what).at(path, s.line).key(s.key.clone()).help(help));
         match s.key.as_str() {
             "v" => {

@@ -12,7 +12,7 @@ use super::{
     beside,
     cursor::{Cursor, LARGEST_LIGHT, SMALLEST_LENGTH},
     mesh::{FLAT, mesh, transform},
-    obj,
+    names, obj,
     tree::Place,
 };
 use crate::math::names::suggest;
@@ -67,11 +67,18 @@ pub(super) fn read(list: &Cursor, materials: Vec<Material>) -> Result<Read, Scen
         let geometry = geometry(&c, kind)?;
         placed(&at, &out.materials[material], &geometry, kind)?;
         let emission = emission(&c, area(&geometry))?.unwrap_or(DVec3::ZERO);
-        let name = c.get("name").map_or(Ok(c.key.clone()), |name| name.text().map(str::to_owned))?;
+        let name = c.get("name").map_or(Ok(c.key.clone()), |at| shape_name(&at))?;
         out.shapes.push(Shape { name, geometry, material, emission });
         out.places.push(c.error(""));
     }
     Ok(out)
+}
+
+/// The name that a shape is given.
+fn shape_name(c: &Cursor) -> Result<String, SceneError> {
+    let name = c.text()?;
+    names::check(name, "shape").map_err(|f| c.error(f.what).help(f.help))?;
+    Ok(name.to_owned())
 }
 
 fn material(c: &Cursor, materials: &[Material]) -> Result<usize, SceneError> {

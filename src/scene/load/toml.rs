@@ -1,6 +1,6 @@
 //! Reading of the scene file as a whole: its tables, and the closed-form values in `[expect]`.
 
-use super::{Draft, camera, cursor::Cursor, lights, materials, shapes, tree::Node};
+use super::{Draft, camera, cursor::Cursor, lights, materials, names, shapes, tree::Node};
 use crate::scene::centre::{Centred, TOO_COARSE};
 use crate::scene::{Description, SceneError, description::Expect};
 use glam::DVec3;
@@ -54,9 +54,13 @@ fn precise(scene: &Description, places: &[SceneError]) -> Result<(), SceneError>
 /// it is the name of the file.
 fn name(c: &Cursor, file: &Path) -> Result<String, SceneError> {
     let Some(at) = c.get("name") else {
-        return Ok(file.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned()));
+        let stem = file.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
+        let unfit =
+            |f: names::Fault| SceneError::new(f.what).file(file).help("give the scene a name of its own: name = \"…\"");
+        return names::check_scene(&stem).map_err(unfit).map(|()| stem);
     };
     let name = at.text()?;
+    names::check_scene(name).map_err(|f| at.error(f.what).help(f.help))?;
     if [".", ".."].contains(&name) || name.contains(|c: char| "/\\:".contains(c) || c.is_control()) {
         let e = at.error(format!("the scene name `{}` cannot be used for the output folder", name.escape_debug()));
         return Err(e.help("use letters, digits, spaces, - and _"));
