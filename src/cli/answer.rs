@@ -22,6 +22,9 @@ pub fn head(run: &Run) -> String {
     let ways = run.results().count();
     match run.outcome() {
         None => run.results().next().map_or(String::new(), |only| alone(name, only, run)),
+        Some(Outcome::Agrees) if run.results().all(|r| average(&r.series.image().total).0 == 0.0) => {
+            format!("{name}, solved in {ways} ways: every pixel is black, and below stands what the camera sees.")
+        }
         Some(Outcome::Differs) => format!("{name}, solved in {ways} ways: they do not agree."),
         Some(Outcome::Agrees) => {
             let largest = run.verdicts.iter().filter_map(|v| bound(&v.comparison)).fold(0.0, f64::max);

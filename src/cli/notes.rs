@@ -19,6 +19,7 @@ use fredholm::terms::functional::Replicates;
 use fredholm::terms::{Estimate, Series};
 use glam::DVec3;
 use nalgebra::DMatrix;
+use std::collections::BTreeMap;
 
 /// Why there is no verdict, and what to do about it.
 pub fn undecided(why: &str) -> String {
@@ -212,25 +213,42 @@ pub fn doubts<'a>(results: impl Iterator<Item = &'a Series>) -> Vec<String> {
 
 /// If the whole picture is black: how many paths found no light, and what the camera sees.
 pub fn black(run: &Run) -> Option<String> {
-    let mut all = run.sampled().peekable();
-    all.peek()?;
-    let paths: u64 = run.sampled().map(|s| s.series.cost.paths).sum();
-    if !all.all(|s| s.series.image().total.mean == DVec3::ZERO) {
+    run.results().next()?;
+    if !run.results().all(|s| s.series.image().total.mean == DVec3::ZERO) {
         return None;
     }
+    let paths: u64 = run.sampled().map(|s| s.series.cost.paths).sum();
+    Some(format!("every pixel is black: none of {paths} paths found any light.\n{}", seen_by_the_camera(run)))
+}
+
+/// The surfaces that the camera sees, by name and side, with their distances: the three that fill most of the picture.
+fn seen_by_the_camera(run: &Run) -> String {
+    const NAMED: usize = 3;
     let camera = &run.scene.camera;
     let pixels = camera.size[0] * camera.size[1];
-    let look = |p: u32| {
+    let primitives = run.description.primitives();
+    let mut seen: BTreeMap<(usize, bool), (u32, f64, f64)> = BTreeMap::new();
+    for p in 0..pixels {
         let (start, direction) = camera.ray(p, [0.5; 2]);
-        run.scene.look(start, direction).filter(|v| v.on_surface())
+        let Some(v) = run.scene.look(start, direction).filter(|v| v.on_surface()) else { continue };
+        let Some((shape, _)) = primitives.get((v.side / 2) as usize) else { continue };
+        let distance = v.p.as_dvec3().distance(camera.origin);
+        let (count, near, far) = seen.entry((*shape, v.side % 2 == 1)).or_insert((0, f64::INFINITY, 0.0));
+        (*count, *near, *far) = (*count + 1, near.min(distance), far.max(distance));
+    }
+    let mut all: Vec<_> = seen.into_iter().collect();
+    all.sort_by_key(|(_, (count, ..))| std::cmp::Reverse(*count));
+    let words = |((shape, back), (count, near, far)): &((usize, bool), (u32, f64, f64))| {
+        let side = if *back { "back" } else { "front" };
+        let name = &run.description.shapes[*shape].name;
+        format!("the {side} of {name} ({count} of {pixels} pixels, {near:.3} to {far:.3} m away)")
     };
-    let far: Vec<f64> = (0..pixels).filter_map(look).map(|v| v.p.as_dvec3().distance(camera.origin)).collect();
-    let (near, far_off) = far.iter().fold((f64::INFINITY, 0.0f64), |a, &d| (a.0.min(d), a.1.max(d)));
-    let seen = match far.len() {
-        0 => "no surface: all its rays leave the scene".to_owned(),
-        n => format!("unlit surfaces, {near:.3} to {far_off:.3} m away, in {n} of {pixels} pixels"),
-    };
-    Some(format!("every pixel is black: none of {paths} paths found any light.\nThe camera sees {seen}"))
+    if all.is_empty() {
+        return "The camera sees no surface: all its rays leave the scene. Does it look the wrong way?".into();
+    }
+    let names: Vec<String> = all.iter().take(NAMED).map(words).collect();
+    let more = if all.len() > NAMED { ", and others" } else { "" };
+    format!("The camera sees only surfaces without light: {}{more}", names.join(", "))
 }
 
 /// A warning for each result with samples that are not finite.

@@ -46,6 +46,12 @@ fn wrong(path: &Path, what: &str, help: &str) -> Failure {
     Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", path.display()))
 }
 
+/// A diagnosis needs three channels: mistakes differ between them.
+fn one_channel_only(path: &Path, channel: String) -> Failure {
+    let what = format!("the picture has one channel, {channel}, and a diagnosis compares red, green and blue");
+    wrong(path, &what, "write R, G and B")
+}
+
 type Pixels = Vec<[f32; 3]>;
 
 fn layered(path: &Path) -> Result<File, Failure> {
@@ -85,6 +91,14 @@ fn layered(path: &Path) -> Result<File, Failure> {
             None => {}
         }
     }
+    let one_channel = means.keys().find_map(|slot| {
+        let named = |name: &&String| matches!(meaning(name), Some((s, Part::Mean)) if s == *slot);
+        image.grey.iter().find(named)
+    });
+    if let Some(name) = one_channel {
+        return Err(one_channel_only(path, if name.is_empty() { "Y".into() } else { format!("{name}.Y") }));
+    }
+    ignored.extend(image.incomplete.iter().map(|(name, has)| format!("{name} (only {has})")));
     if means.is_empty() {
         let names: Vec<&str> = image.layers.iter().map(|l| l.0.as_str()).collect();
         let what = format!("no layer is a term or a whole image: {}", names.join(", "));
@@ -110,6 +124,9 @@ fn plain(path: &Path, bytes: &[u8]) -> Result<File, Failure> {
     let help = "give an .exr, .png, .jpg or .hdr file";
     let image = image::load_from_memory(bytes).map_err(|e| wrong(path, &format!("not a readable image: {e}"), help))?;
     let float = matches!(image.color(), image::ColorType::Rgb32F | image::ColorType::Rgba32F);
+    if !image.color().has_color() {
+        return Err(one_channel_only(path, "grey".into()));
+    }
     let size = [image.width() as usize, image.height() as usize];
     let (mean, code): (Pixels, Code) = if float {
         (image.to_rgb32f().pixels().map(|p| p.0).collect(), Code::Float)

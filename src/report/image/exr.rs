@@ -15,8 +15,8 @@ use std::{
 };
 
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Layer as Part,
-    LayerAttributes, LineOrder, ReadChannels, ReadLayers, Text, WritableImage, f16,
+    AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, ImageAttributes,
+    Layer as Part, LayerAttributes, LineOrder, ReadChannels, ReadLayers, Text, WritableImage, f16,
 };
 
 use crate::report::{ReportError, files, write_atomically};
@@ -39,6 +39,10 @@ pub struct Image {
     pub height: usize,
     /// Name and pixels of each layer, sorted by name; the unnamed layer has an empty name.
     pub layers: Vec<(String, Vec<[f32; 3]>)>,
+    /// Names of the layers that have one channel, `Y`, which stands for all three.
+    pub grey: Vec<String>,
+    /// Layers that are left out because they lack one of R, G and B, with the channels that they have.
+    pub incomplete: Vec<(String, String)>,
     /// Names and values of custom attributes that are texts or numbers, sorted by name.
     pub attributes: Vec<(String, String)>,
 }
@@ -100,10 +104,11 @@ pub fn write(
 
 /// Reads every RGB layer of a file, written by this or another program. The file may have one or several parts, with half,
 /// float or integer samples. A grey layer (`Y`) is read as RGB. Channels that are not colours (alpha, depth, normals) are
-/// left out. A missing channel of `R G B` is zero. If a file has several parts, the part's name replaces a missing prefix.
+/// left out, and so are layers that lack one of `R G B`. If a file has several parts, the part's name replaces a missing prefix.
 ///
 /// # Errors
-/// If the file cannot be read, its parts differ in size, two layers share a name, or no colour is found.
+/// If the file cannot be read, its parts differ in size, two layers share a name, no colour is found, or the file holds only a part of
+/// the picture (crop) or more than it (overscan).
 pub fn read(path: &Path) -> Result<Image, ReportError> {
     let wrong = |cause: String, help: &str| ReportError::new(path, cause, help);
     let bytes = files::read(path)?;
@@ -125,6 +130,9 @@ pub fn read(path: &Path) -> Result<Image, ReportError> {
         if *size.get_or_insert(here) != here {
             return Err(wrong("its parts differ in size".into(), "give parts of one size, or one part"));
         }
+        whole(part, &found.attributes).map_err(|cause| {
+            wrong(cause, "write the whole picture and nothing else: data window and display window must be equal")
+        })?;
         let part_name = part.attributes.layer_name.as_ref().filter(|_| several).map(plain).unwrap_or_default();
         for channel in &part.channel_data.list {
             let name = plain(&channel.name);
@@ -148,22 +156,53 @@ pub fn read(path: &Path) -> Result<Image, ReportError> {
     }
 
     let (width, height) = size.unwrap_or((0, 0));
-    let layers = planes
-        .into_iter()
-        .map(|(name, plane)| {
-            // A grey channel is used for all three components only if none of them is present.
-            let grey = if plane.keys().all(|&c| c == 'Y') { plane.get(&'Y') } else { None };
-            let value = |c: char, i: usize| grey.or(plane.get(&c)).map_or(0.0, |samples| samples[i]);
-            (name, (0..width * height).map(|i| ['R', 'G', 'B'].map(|c| value(c, i))).collect())
-        })
-        .collect();
+    let (mut layers, mut grey, mut incomplete) = (vec![], vec![], vec![]);
+    for (name, plane) in planes {
+        let one = |c: char, i: usize| plane.get(&c).map_or(0.0, |samples| samples[i]);
+        let channels: Vec<char> = if plane.keys().all(|&c| c == 'Y') { vec!['Y'; 3] } else { vec!['R', 'G', 'B'] };
+        if !channels.iter().all(|c| plane.contains_key(c)) {
+            let has: Vec<String> = plane.keys().map(char::to_string).collect();
+            incomplete.push((name, has.join(" ")));
+            continue;
+        }
+        if channels[0] == 'Y' {
+            grey.push(name.clone());
+        }
+        let pixels = (0..width * height).map(|i| [0, 1, 2].map(|c| one(channels[c], i))).collect();
+        layers.push((name, pixels));
+    }
+    if let (true, Some((name, has))) = (layers.is_empty(), incomplete.first()) {
+        let layer = if name.is_empty() { "the picture".into() } else { format!("the layer `{name}`") };
+        let help = "write all three, or a grey picture as Y";
+        return Err(wrong(format!("{layer} has only the channel {has}, not R, G and B"), help));
+    }
     let mut attributes: Vec<_> = (found.layer_data.iter().flat_map(|part| &part.attributes.other))
         .chain(&found.attributes.other)
         .filter_map(|(name, value)| Some((plain(name), readable(value)?)))
         .collect();
     attributes.sort();
     attributes.dedup();
-    Ok(Image { width, height, layers, attributes })
+    Ok(Image { width, height, layers, grey, incomplete, attributes })
+}
+
+/// Returns an error if the pixels of a part are not those of the picture: its data window is not its display window.
+fn whole(part: &Part<AnyChannels<FlatSamples>>, image: &ImageAttributes) -> Result<(), String> {
+    let (data, display) = (part.absolute_bounds(), image.display_window);
+    if data == display {
+        return Ok(());
+    }
+    let [from, to] = [(data.position.0, data.position.1), (data.end().0 - 1, data.end().1 - 1)];
+    let [x, y] = [display.position.0, display.position.1];
+    let (w, h) = (display.size.0, display.size.1);
+    let inside = data.position.0 >= x
+        && data.position.1 >= y
+        && data.end().0 <= display.end().0
+        && data.end().1 <= display.end().1;
+    let what = if inside { "a crop" } else { "a picture with overscan" };
+    Err(format!(
+        "the file holds {what}: the pixels {from:?} to {to:?} of a picture of {w}×{h} pixels that starts at {:?}",
+        (x, y)
+    ))
 }
 
 /// UTF-8 bytes unchanged; the crate's own conversion accepts only Latin-1.
