@@ -12,6 +12,7 @@
 //! |---|---|---|
 //! | pictures | terms and whole image, averaged down to at most 96 pixels a side where possible | [`picture`] |
 //! | comparison | means of regions, t-tests adjusted by Holm | [`gap`], [`regions`] |
+//! | encoding | values with the curve of a display | [`encoding`] |
 //! | few pixels | fireflies that are too frequent, and lamps that are missing | `rare` |
 //! | evidence | ratios, whether they are constant over the image, counts, noise | [`evidence`], [`series`] |
 //! | patterns | rules for r_k with one fitted number | [`pattern`] |
@@ -24,6 +25,7 @@
 
 pub mod candidates;
 pub mod elimination;
+pub mod encoding;
 pub mod evidence;
 pub mod gap;
 pub mod pattern;

@@ -64,5 +64,8 @@ pub fn is_temporary(name: &str) -> bool {
 
 /// Reads a whole file.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, ReportError> {
+    if path.exists() && !path.is_file() {
+        return Err(ReportError::new(path, "this is not a file", "give a file, not a folder, a pipe or a device"));
+    }
     fs::read(path).map_err(|e| ReportError::new(path, e, "check the name, or render the scene first"))
 }

@@ -14,7 +14,8 @@ use against::{Right, Source};
 pub use args::{Diagnose, HELP};
 use found::Diagnosed;
 use fredholm::diagnosis::candidates::Members;
-use fredholm::diagnosis::picture::{Code, Pictures};
+use fredholm::diagnosis::encoding::is_encoded;
+use fredholm::diagnosis::picture::{Code, Layer, Pictures};
 use fredholm::diagnosis::{self, Case, Conclusion, Effort, evidence as counting};
 use fredholm::engine::known::coplanar;
 use fredholm::progress::Progress;
@@ -96,11 +97,31 @@ fn judge(
             if progress.stopped() {
                 break;
             }
+            is_linear(suspect, &right)?;
             let progress = progress.named(&suspect.name);
             found.insert(*i, one(args, suspect, scaled, &right, candidates.as_ref(), progress));
         }
     }
     Ok(Judged { found: found.into_values().collect(), label, rare_paths })
+}
+
+/// Refuses floats that are encoded for a display: the commonest mistake of all is one of the file, not of the light.
+fn is_linear(suspect: &Suspect, right: &Right) -> Result<(), Failure> {
+    let file = &suspect.file;
+    if file.pictures.code == Code::EightBit {
+        return Ok(());
+    }
+    let small = file.pictures.shrunk(right.factor);
+    let twin =
+        |l: &Layer| right.pictures.layers.iter().find(|r| r.slot == l.slot).map(|r| (l.mean.clone(), r.mean.clone()));
+    match small.layers.iter().rev().find_map(twin) {
+        Some((picture, right)) if is_encoded(&picture, &right) => Err(Failure::Input(format!(
+            "error: the values of the picture are encoded for a display (sRGB, or a gamma of about 2.2)\n  --> {}\n\
+             help: write linear radiance into float files, without a view transform; or give the picture as PNG",
+            suspect.name
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// K of the reference: the last term of the picture, else `--max-bounces`, else the file's attribute, else 8.

@@ -38,6 +38,9 @@ impl File {
 
 /// Reads an EXR, PNG, JPEG or HDR file.
 pub fn file(path: &Path) -> Result<File, Failure> {
+    if path.exists() && !path.is_file() {
+        return Err(wrong(path, "this is not a file", "give the picture itself, not a folder, a pipe or a device"));
+    }
     let bytes = std::fs::read(path).map_err(|e| wrong(path, &e.to_string(), "check the name, or render it first"))?;
     if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) { layered(path) } else { plain(path, &bytes) }
 }

@@ -128,11 +128,17 @@ pub struct Terms {
     /// strategies.png, strategies-alone.png and strategies.exr are written.
     #[arg(long, hide_short_help = true)]
     pub strategies: bool,
+    /// Leave out what needs no picture
+    ///
+    /// Norms over the surfaces, the terms up to k = 100, the light of each surface, and moments. All together take less than a tenth of
+    /// a long run, but most of a very short one.
+    #[arg(long, hide_short_help = true)]
+    pub pictures_only: bool,
 }
 
 impl Default for Terms {
     fn default() -> Self {
-        Self { estimator: None, branching: 2, strategies: false }
+        Self { estimator: None, branching: 2, strategies: false, pictures_only: false }
     }
 }
 

@@ -165,6 +165,9 @@ fn asked(args: &Request, worlds: Vec<World>, estimators: Vec<Estimator>) -> Aske
         strategies: terms.strategies,
         against_rays: (mesh.factors == Some(Form::Both)).then(|| preflight::rays(mesh.rays)),
         orders: mesh.orders,
+        surface: if terms.pictures_only { vec![] } else { Asked::default().surface },
+        bounces: !terms.pictures_only,
+        moments: !terms.pictures_only,
         ..Asked::default()
     }
 }

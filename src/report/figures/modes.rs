@@ -11,7 +11,7 @@
 use crate::report::{
     ReportError,
     image::{
-        picture::Picture,
+        picture::{Picture, magnification},
         sheet::{Layout, READABLE, SLIDE, Tile, columns_in, in_rows},
         typeset::Caption,
         zmap,
@@ -263,7 +263,7 @@ pub fn sheet(
         let scale = sizes[(sizes.len() - 1) * 99 / 100].max(f64::MIN_POSITIVE);
         // the map goes from −4 to 4
         let pixels = m.values.iter().map(|v| zmap::color(4.0 * v / scale)).collect();
-        let image = Picture { width, height, pixels }.enlarged(256usize.div_ceil(width));
+        let image = Picture { width, height, pixels }.enlarged(magnification(width, height, 256));
         Tile { image, label: m.label.clone(), notes: vec![] }
     };
     let tiles: Vec<Tile> = modes.iter().map(tile).collect();

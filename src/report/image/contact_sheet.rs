@@ -5,7 +5,9 @@
 //! mean always come from the full image.
 
 use super::{
-    picture::{Developed, Picture, auto_gain, auto_gain_beside_lamps, develop, gain_label, mean, shrink},
+    picture::{
+        Developed, Picture, auto_gain, auto_gain_beside_lamps, develop, gain_label, magnification, mean, shrink,
+    },
     sheet::{LABEL, Layout, READABLE, SLIDE, Tile, columns_in, in_rows},
     typeset::{Caption, SANS, page, superscript, text_element, text_width},
 };
@@ -52,7 +54,7 @@ pub fn single(
     let text = format!("{label}  {}", gain_label(gain));
     // On a narrow image, shrink the letters instead of cutting the text, but keep them readable.
     let natural = text_width(&text, SANS, LABEL) + 8.0;
-    let factor = (48usize).div_ceil(width);
+    let factor = magnification(width, height, 48);
     let image = developed.picture.enlarged(factor);
     let size = (LABEL * (image.width as f64 / natural).min(1.0)).max(9.0);
     let strip = (size * 1.7).ceil() as usize;
@@ -135,7 +137,7 @@ fn laid_out(
         let image = if width > WIDEST {
             shown(width, height, cell.pixels, gain, NARROWEST, WIDEST)
         } else {
-            developed.picture.enlarged(NARROWEST.div_ceil(width))
+            developed.picture.enlarged(magnification(width, height, NARROWEST))
         };
         tiles.push(Tile { image, label: cell.label.clone(), notes: notes.clone() });
     }
@@ -158,7 +160,7 @@ fn balanced(tiles: &[Tile]) -> usize {
 /// An image, resized and developed for display.
 pub fn shown(width: usize, height: usize, pixels: &[[f32; 3]], gain: f64, narrowest: usize, widest: usize) -> Picture {
     let (w, h, small) = shrink(width, height, pixels, width.div_ceil(widest));
-    develop(w, h, &small, gain).picture.enlarged(narrowest.div_ceil(w))
+    develop(w, h, &small, gain).picture.enlarged(magnification(w, h, narrowest))
 }
 
 /// A sheet of the terms k = 0, 1, …, each at its own exposure, and of the whole image if it is known.

@@ -189,6 +189,20 @@ pub(crate) fn shrink(width: usize, height: usize, pixels: &[[f32; 3]], factor: u
     (w, h, (0..w * h).map(block).collect())
 }
 
+/// Tallest picture that is enlarged.
+const TALLEST: usize = 4096;
+
+/// How often the pixels of a picture are repeated so that it is about `narrowest` pixels wide, as far as it does not become too tall.
+///
+/// ```
+/// use fredholm::report::image::picture::magnification;
+/// assert_eq!((magnification(64, 64, 256), magnification(300, 200, 256)), (4, 1));
+/// assert_eq!((magnification(1, 1, 256), magnification(1, 512, 256), magnification(1, 32768, 256)), (256, 8, 1));
+/// ```
+pub fn magnification(width: usize, height: usize, narrowest: usize) -> usize {
+    narrowest.div_ceil(width.max(1)).min((TALLEST / height.max(1)).max(1))
+}
+
 impl Picture {
     /// Repeats every pixel `factor` times in both directions.
     #[must_use]

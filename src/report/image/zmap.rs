@@ -9,7 +9,7 @@
 use crate::report::{
     ReportError,
     image::{
-        picture::Picture,
+        picture::{Picture, magnification},
         typeset::{Caption, LINE, SANS, caption_elements, page, text_element, text_width},
     },
 };
@@ -61,7 +61,7 @@ pub fn draw(title: &str, width: usize, height: usize, z: &[f64], caption: &Capti
     let beyond = |limit: f64| z.iter().filter(|z| z.abs() > limit).count() as f64 / defined as f64;
     let (beyond_2, beyond_3) = (beyond(2.0), beyond(3.0));
     let image = Picture { width, height, pixels: z.iter().map(|&z| color(z)).collect() };
-    let image = image.enlarged(256usize.div_ceil(width));
+    let image = image.enlarged(magnification(width, height, 256));
 
     const GAP: f64 = 16.0;
     const TITLE: f64 = 16.0;

@@ -39,11 +39,16 @@ pub(super) fn read(path: &Path) -> Result<Raster, SceneError> {
     if !is_image(path) {
         return Err(SceneError::new(format!("`{shown}` is not an image that this program can read")).help(FORMATS));
     }
+    // a pipe would be waited for, and a device never ends
+    if path.exists() && !path.is_file() {
+        return Err(SceneError::new(format!("`{shown}` is not a file")).help(FORMATS));
+    }
     let fail = |e: &dyn std::fmt::Display| {
         let reason = e.to_string().lines().collect::<Vec<_>>().join(", ");
         let help = if path.is_file() { FORMATS } else { "paths are relative to the file that names them" };
         SceneError::new(format!("cannot read `{shown}`: {reason}")).help(help)
     };
+    suits(path, &shown, &fail)?;
     let raster = if extension(path) == "exr" { exr(path).map_err(|e| fail(&e)) } else { other(path, &fail) }?;
     let wrong = raster.texels.iter().position(|t| t.to_array().iter().any(|x| !(x.is_finite() && *x >= 0.0)));
     match wrong {
@@ -53,6 +58,31 @@ pub(super) fn read(path: &Path) -> Result<Raster, SceneError> {
         }
         None => Ok(raster),
     }
+}
+
+/// Texels at most: 16384 × 4096 of them take 800 MB, and a picture shows a small part of them.
+const MOST: u64 = 1 << 26;
+
+/// Returns an error if the image is too large, before any of it is decoded.
+fn suits(
+    path: &Path,
+    shown: &dyn std::fmt::Display,
+    fail: &dyn Fn(&dyn std::fmt::Display) -> SceneError,
+) -> Result<(), SceneError> {
+    let [w, h] = if extension(path) == "exr" {
+        let meta = exr::meta::MetaData::read_from_file(path, false).map_err(|e| fail(&e))?;
+        let sizes = meta.headers.iter().map(|header| [header.layer_size.0 as u64, header.layer_size.1 as u64]);
+        sizes.max_by_key(|[w, h]| w * h).unwrap_or([0, 0])
+    } else {
+        let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(|e| fail(&e))?;
+        let (w, h) = reader.into_dimensions().map_err(|e| fail(&e))?;
+        [u64::from(w), u64::from(h)]
+    };
+    if w * h <= MOST {
+        return Ok(());
+    }
+    let what = format!("`{shown}` has {w}×{h} texels; {} million are possible", MOST >> 20);
+    Err(SceneError::new(what).help("reduce the image; 4096 texels across are more than a picture of this scene shows"))
 }
 
 /// The position of the `i`-th texel, for messages.
@@ -85,7 +115,9 @@ fn exr(path: &Path) -> exr::error::Result<Raster> {
 }
 
 fn other(path: &Path, fail: &dyn Fn(&dyn std::fmt::Display) -> SceneError) -> Result<Raster, SceneError> {
-    let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(|e| fail(&e))?;
+    let mut reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(|e| fail(&e))?;
+    // the size was checked
+    reader.no_limits();
     let image = reader.decode().map_err(|e| fail(&e))?;
     let size = [image.width(), image.height()];
     if size.contains(&0) {

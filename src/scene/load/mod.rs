@@ -198,6 +198,11 @@ fn read_lossy(path: &Path) -> Result<String, SceneError> {
 }
 
 fn bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
+    if path.exists() && !path.is_file() {
+        return Err(SceneError::new("this is not a file")
+            .file(path)
+            .help("give a file, not a folder, a pipe or a device"));
+    }
     std::fs::read(path).map_err(|e| {
         SceneError::new(format!("cannot read the file: {e}")).file(path).help("check the path and its permissions")
     })
