@@ -5,6 +5,8 @@
 #[path = "diagnosis/command.rs"]
 mod command;
 mod common;
+#[path = "diagnosis/files.rs"]
+mod files;
 #[path = "diagnosis/levels.rs"]
 mod levels;
 #[path = "diagnosis/members.rs"]

@@ -16,7 +16,8 @@ mod summaries;
 use std::path::Path;
 
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image as Parts, Layer as Part, LayerAttributes, WritableImage, f16,
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image as Parts, IntegerBounds, Layer as Part, LayerAttributes,
+    WritableImage, f16,
 };
 use fredholm::{
     report::{

@@ -3,6 +3,8 @@
 
 #[path = "scene_files/garbage.rs"]
 mod garbage;
+#[path = "scene_files/garbage_images.rs"]
+mod garbage_images;
 #[path = "scene_files/materials_and_lights.rs"]
 mod materials_and_lights;
 #[path = "scene_files/meaning.rs"]

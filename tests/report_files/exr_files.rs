@@ -56,12 +56,15 @@ fn exr_of_others_is_read() {
     };
     let half = |v: [f32; 2]| FlatSamples::F16(v.map(f16::from_f32).to_vec());
 
-    // Half floats with alpha and a missing channel; grey; a depth channel that is no colour.
+    // Half floats with alpha; grey; a depth channel that is no colour; a layer that lacks a channel.
     let single = part(
         "beauty",
         vec![
             ("R", half([0.5, 2.0])),
+            ("G", half([1.0, 3.0])),
             ("B", half([0.25, 4.0])),
+            ("half.R", half([0.25, 4.0])),
+            ("half.B", half([0.25, 4.0])),
             ("A", half([1.0, 1.0])),
             ("grey.Y", FlatSamples::F32(vec![3.0, 5.0])),
             ("depth.Z", FlatSamples::F32(vec![9.0, 9.0])),
@@ -71,8 +74,32 @@ fn exr_of_others_is_read() {
     let image = layers::read(&path).unwrap();
     assert_eq!(
         image.layers,
-        [("".into(), vec![[0.5, 0.0, 0.25], [2.0, 0.0, 4.0]]), ("grey".into(), vec![[3.0; 3], [5.0; 3]])]
+        [("".into(), vec![[0.5, 1.0, 0.25], [2.0, 3.0, 4.0]]), ("grey".into(), vec![[3.0; 3], [5.0; 3]])]
     );
+
+    assert_eq!((image.grey, image.incomplete), (vec!["grey".into()], vec![("half".into(), "B R".into())]));
+
+    // One channel of three is no picture, and a part of a picture is not the whole.
+    Parts::from_layer(part("x", vec![("R", half([1.0, 1.0]))])).write().to_file(&path).unwrap();
+    let message = layers::read(&path).unwrap_err().to_string();
+    assert!(message.contains("has only the channel R"), "{message}");
+    let rgb = || ["R", "G", "B"].map(|c| (c, half([1.0, 2.0]))).to_vec();
+    for (from, display, what) in [
+        ((1, 0), ((0, 0), (4, 4)), "a crop: the pixels (1, 0) to (2, 0)"),
+        ((-1, 0), ((0, 0), (1, 1)), "a picture with overscan"),
+        ((5, 5), ((5, 5), (2, 1)), ""),
+    ] {
+        let mut one = part("x", rgb());
+        one.attributes.layer_position = from.into();
+        let mut file = Parts::from_layer(one);
+        file.attributes.display_window = IntegerBounds::new(display.0, display.1);
+        file.write().to_file(&path).unwrap();
+        let said = layers::read(&path).map_err(|e| e.to_string());
+        match what {
+            "" => assert!(said.is_ok()),
+            what => assert!(said.as_ref().is_err_and(|e| e.contains(what) && e.contains("help: ")), "{said:?}"),
+        }
+    }
 
     // No colour at all is an error that names what is there.
     Parts::from_layer(part("x", vec![("Z", half([1.0, 1.0]))])).write().to_file(&path).unwrap();

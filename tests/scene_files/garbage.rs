@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn runner(cases: u32) -> TestRunner {
+pub(super) fn runner(cases: u32) -> TestRunner {
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]);
     TestRunner::new_with_rng(Config { cases, failure_persistence: None, ..Config::default() }, rng)
 }
@@ -61,10 +61,20 @@ fn edited(text: &str, edits: &[Edit]) -> String {
 
 #[test]
 fn garbage_in_toml_never_panics() {
+    garbage_in_toml(2000);
+}
+
+#[test]
+#[ignore = "nightly: 10⁵ scene files"]
+fn garbage_in_toml_never_panics_in_100_000_cases() {
+    garbage_in_toml(100_000);
+}
+
+fn garbage_in_toml(cases: u32) {
     let (good, refused) = (Cell::new(0), Cell::new(0));
     let dir = gallery();
     let file = dir.path().join("rich.toml");
-    runner(2000)
+    runner(cases)
         .run(&(edits(), any::<bool>()), |(edits, rich)| {
             let text = if rich { RICH } else { GOOD };
             match toml(&edited(text, &edits), &file, &Options::default()) {
@@ -86,12 +96,22 @@ fn garbage_in_toml_never_panics() {
 
 #[test]
 fn garbage_in_obj_mtl_and_overrides_never_panics() {
+    garbage_in_obj(600);
+}
+
+#[test]
+#[ignore = "nightly: 10⁵ OBJ files"]
+fn garbage_in_obj_never_panics_in_100_000_cases() {
+    garbage_in_obj(100_000);
+}
+
+fn garbage_in_obj(cases: u32) {
     let folder = tempfile::tempdir().unwrap();
     let (obj, mtl) = (folder.path().join("imperfect.obj"), folder.path().join("imperfect.mtl"));
     let (obj_text, mtl_text) =
         ["imperfect.obj", "imperfect.mtl"].map(|f| std::fs::read_to_string(bad(f)).unwrap()).into();
     let good = Cell::new(0);
-    runner(600)
+    runner(cases)
         .run(&(edits(), edits(), edits(), any::<bool>()), |(a, b, c, both)| {
             std::fs::write(&obj, edited(&obj_text, &a)).unwrap();
             std::fs::write(&mtl, if both { edited(&mtl_text, &b) } else { mtl_text.clone() }).unwrap();
