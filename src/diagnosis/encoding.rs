@@ -84,12 +84,12 @@ mod tests {
         let key = Key::new(3, "encoding");
         let right = |i: u32| {
             let mut rng = Rng::at(key, i, 0, 0, Purpose::Start);
-            [0.5, 0.3, 0.1].map(|c| c * (0.05 + rng.one() as f32).powi(2))
+            [0.5, 0.3, 0.1].map(|c| c * (0.05 + rng.one()).powi(2))
         };
         let right: Vec<[f32; 3]> = (0..2000).map(right).collect();
         let noisy = |(i, p): (usize, &[f32; 3])| {
             let mut rng = Rng::at(key, i as u32, 1, 0, Purpose::Start);
-            p.map(|v| v * (1.0 + noise * (2.0 * rng.one() as f32 - 1.0)))
+            p.map(|v| v * (1.0 + noise * (2.0 * rng.one() - 1.0)))
         };
         let picture = right.iter().enumerate().map(noisy).collect();
         (right, picture)

@@ -168,6 +168,5 @@ fn asked(args: &Request, worlds: Vec<World>, estimators: Vec<Estimator>) -> Aske
         surface: if terms.pictures_only { vec![] } else { Asked::default().surface },
         bounces: !terms.pictures_only,
         moments: !terms.pictures_only,
-        ..Asked::default()
     }
 }

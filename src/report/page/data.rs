@@ -335,4 +335,5 @@ fn rows_of_tiles(tiles: &TileSums) -> Vec<[f32; 3]> {
 
 #[cfg(test)]
 #[path = "data_tests.rs"]
+#[allow(clippy::unwrap_used)]
 mod tests;
