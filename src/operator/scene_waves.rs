@@ -90,11 +90,7 @@ impl SceneTransport<'_> {
                 (out.pdf[to], out.other_pdf[to]) = self.densities(&from, &rays.seen(place), rays.cosine[place]);
             }
         }
-        p.gather(&rays.q, list);
-        normals.gather(&rays.m, list);
-        omega.gather(&rays.d, list);
-        columns::gather(side, &rays.side, list);
-        omega.negate(on);
+        take(wave, on);
     }
 
     /// Samples a direction at each of the first `n` vertices from the random numbers in `rays.u`, and traces the rays. Returns
@@ -128,25 +124,34 @@ impl SceneTransport<'_> {
     /// What the camera sees along one ray for each path of a wave.
     pub(super) fn start_by_wave(&self, camera: &Camera, wave: &mut VertexWave, streams: Streams, alive: &mut Vec<u32>) {
         numbers(streams, &mut wave.rays.u);
-        let VertexWave { p, n, omega, side, rays } = wave;
+        let rays = &mut wave.rays;
         // the new paths may be those of another scene
         rays.sorted.clear();
         camera_rays(camera, streams.pixel, rays);
         self.scene.look_wave(rays, streams.len());
         let seen = (0..streams.len()).filter(|&i| rays.side[i] != NOWHERE).map(|i| i as u32);
         alive.extend(seen);
-        if alive.len() == streams.len() {
-            // all go on, so the columns change places and nothing is copied
-            for (state, ray) in [(p, &mut rays.q), (n, &mut rays.m), (&mut *omega, &mut rays.d)] {
-                std::mem::swap(state, ray);
-            }
-            std::mem::swap(side, &mut rays.side);
-        } else {
-            for (state, ray) in [(p, &rays.q), (n, &rays.m), (&mut *omega, &rays.d)] {
-                state.gather(ray, alive);
-            }
-            columns::gather(side, &rays.side, alive);
-        }
-        omega.negate(alive.len());
+        rays.list[..alive.len()].copy_from_slice(alive);
+        take(wave, alive.len());
     }
+}
+
+/// Moves the paths to what their rays see: path i to ray `list[i]` of the first `n` entries of the list. The directions of the
+/// rays are turned round.
+fn take(wave: &mut VertexWave, n: usize) {
+    let VertexWave { p, n: normals, omega, side, rays } = wave;
+    let list = &rays.list[..n];
+    if list.iter().enumerate().all(|(i, &ray)| ray as usize == i) {
+        // nothing is left out: the columns change places, and nothing is copied
+        for (state, seen) in [(p, &mut rays.q), (normals, &mut rays.m), (&mut *omega, &mut rays.d)] {
+            std::mem::swap(state, seen);
+        }
+        std::mem::swap(side, &mut rays.side);
+    } else {
+        for (state, seen) in [(p, &rays.q), (normals, &rays.m), (&mut *omega, &rays.d)] {
+            state.gather(seen, list);
+        }
+        columns::gather(side, &rays.side, list);
+    }
+    omega.negate(n);
 }

@@ -39,6 +39,8 @@ struct Receivers {
     light: [u32; LANES],
     kind: [u32; LANES],
     probability: Lane,
+    /// Density of a constant sky.
+    sky: Lane,
 }
 
 impl Receivers {
@@ -85,6 +87,7 @@ fn chosen_points_with_simd<'a, S: Simd>(_simd: S, scene: &'a Scene, at: Vertices
             light: [0; LANES],
             kind: [0; LANES],
             probability: ZERO,
+            sky: ZERO,
         };
         for i in 0..LANES {
             r.side[i] = at.side[list.list[i] as usize];
@@ -122,7 +125,7 @@ fn choose(scene: &Scene, r: &mut Receivers, found: &mut Found) -> u32 {
     }
     for i in 0..LANES {
         let row = scene.lights.row(r.light[i]);
-        (r.kind[i], r.probability[i]) = (row.kind, row.probability);
+        (r.kind[i], r.probability[i], r.sky[i]) = (row.kind, row.probability, row.density);
         put(&mut found.q, i, row.at);
         put(&mut found.radiance, i, row.radiance);
         kinds |= row.kind;
@@ -150,8 +153,8 @@ fn points_without_area(scene: &Scene, kinds: u32, r: &Receivers, found: &mut Fou
     if kinds & kind::SKY != 0 {
         for i in 0..LANES {
             let to = environment::uniform(r.u(i));
-            let (q, density) = (scene.beyond(get(&r.x, i), to), scene.lights.row(r.light[i]).density);
-            found.put(i, r.kind[i] == kind::SKY, to, density * r.probability[i], [q, Vec3::ZERO]);
+            let q = scene.beyond(get(&r.x, i), to);
+            found.put(i, r.kind[i] == kind::SKY, to, r.sky[i] * r.probability[i], [q, Vec3::ZERO]);
         }
     }
 }
