@@ -18,7 +18,7 @@ pub(crate) struct Accel {
 /// Room for the stack of a single ray on the stack of the program: enough for trees of millions of primitives, and enough for
 /// those of small scenes, for which clearing more would take as long as a part of the ray.
 const ROOM: usize = 96;
-const SMALL_ROOM: usize = 16;
+const SMALL_ROOM: usize = 32;
 
 /// The bounding box of a primitive, enlarged so that the rounding of the box test never loses a hit. The margin is 4 ε times
 /// the largest coordinate from which a ray may start, plus the distance by which hits may lie beyond the edges of the
