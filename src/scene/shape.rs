@@ -162,9 +162,10 @@ impl Ball {
     #[inline(always)]
     pub(crate) fn passes(&self, o: Vec3, d: Vec3) -> bool {
         let f = o - self.about;
-        let (a, b, ff) = (dot(d, d), dot(f, d), dot(f, f));
-        // the last number keeps results that underflow from deciding anything
-        ff * a * (1.0 - 1e-5) - b * b > self.wide2 * a + 1e-30
+        let (a, b) = (dot(d, d), dot(f, d));
+        let most = dot(f, f) * a;
+        // numbers that overflow or underflow decide nothing
+        (most < 1e38) & (most * (1.0 - 1e-5) - b * b > self.wide2 * a + 1e-30)
     }
 
     #[inline(always)]
