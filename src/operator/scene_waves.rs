@@ -17,18 +17,15 @@ use super::scene_transport::SceneTransport;
 use super::transport::Samples;
 use crate::math::{Columns, Rgb, Streams, columns};
 use crate::scene::bsdf::{Bsdf, TransportMode};
-use crate::scene::{Camera, DELTA, ESCAPED, LIGHT, NOTHING, NOWHERE, Rays, VertexWave, Vertices, numbers};
+use crate::scene::{
+    Camera, DELTA, ESCAPED, NOTHING, NOWHERE, Rays, Received, VertexWave, Vertices, by_path, camera_rays, numbers,
+};
 
 impl SceneTransport<'_> {
     /// E at the first `n` vertices of a wave.
     pub(super) fn emission_of_wave(&self, wave: &VertexWave, n: usize, value: &mut Columns) {
-        for (i, &side) in wave.side[..n].iter().enumerate() {
-            let e = match side {
-                side if side < LIGHT => self.scene.emission(side),
-                _ => self.scene.light(&wave.get(i)),
-            };
-            value.set(i, e);
-        }
+        let VertexWave { p, n: normals, omega, side, .. } = wave;
+        self.scene.light_of_wave(Vertices { p, n: normals, omega, side }, n, value);
     }
 
     /// One connection for each path of a wave.
@@ -56,12 +53,7 @@ impl SceneTransport<'_> {
             some += usize::from(rays.flag[place] != NOTHING);
         }
         self.scene.block_wave(rays, some);
-        for &place in &rays.list[..some] {
-            let place = place as usize;
-            if rays.prim[place] == 0 {
-                out.set(rays.order[place] as usize, rays.value.get(place), rays.t[place], rays.cosine[place]);
-            }
-        }
+        by_path(rays, Received { value: &mut out.value, pdf: &mut out.pdf, other: &mut out.other_pdf });
     }
 
     /// One step of each path of a wave.
@@ -88,17 +80,17 @@ impl SceneTransport<'_> {
         out.other_pdf[..on].fill(0.0);
         for (to, &place) in list.iter().enumerate() {
             let (seen, place) = (rays.side[place as usize], place as usize);
-            let both = seen == ESCAPED || self.scene.emission(seen) != Rgb::ZERO;
-            if both && rays.flag[place] != DELTA {
+            if rays.flag[place] == DELTA {
+                continue;
+            }
+            if seen == ESCAPED {
+                out.other_pdf[to] = self.scene.sky_pdf(rays.d.get(place));
+            } else if self.scene.light_density(seen) != 0.0 {
                 let from = at.get(rays.order[place] as usize);
                 (out.pdf[to], out.other_pdf[to]) = self.densities(&from, &rays.seen(place), rays.cosine[place]);
             }
         }
-        p.gather(&rays.q, list);
-        normals.gather(&rays.m, list);
-        omega.gather(&rays.d, list);
-        columns::gather(side, &rays.side, list);
-        omega.negate(on);
+        take(wave, on);
     }
 
     /// Samples a direction at each of the first `n` vertices from the random numbers in `rays.u`, and traces the rays. Returns
@@ -132,19 +124,34 @@ impl SceneTransport<'_> {
     /// What the camera sees along one ray for each path of a wave.
     pub(super) fn start_by_wave(&self, camera: &Camera, wave: &mut VertexWave, streams: Streams, alive: &mut Vec<u32>) {
         numbers(streams, &mut wave.rays.u);
-        let VertexWave { p, n, omega, side, rays } = wave;
-        for i in 0..streams.len() {
-            let (o, d) = camera.ray(streams.pixel[i], [rays.u[0][i], rays.u[1][i]]);
-            rays.o.set(i, o);
-            rays.d.set(i, d);
-        }
+        let rays = &mut wave.rays;
+        // the new paths may be those of another scene
+        rays.sorted.clear();
+        camera_rays(camera, streams.pixel, rays);
         self.scene.look_wave(rays, streams.len());
         let seen = (0..streams.len()).filter(|&i| rays.side[i] != NOWHERE).map(|i| i as u32);
         alive.extend(seen);
-        for (state, ray) in [(p, &rays.q), (n, &rays.m), (omega, &rays.d)] {
-            state.gather(ray, alive);
-        }
-        columns::gather(side, &rays.side, alive);
-        omega.negate(alive.len());
+        rays.list[..alive.len()].copy_from_slice(alive);
+        take(wave, alive.len());
     }
+}
+
+/// Moves the paths to what their rays see: path i to ray `list[i]` of the first `n` entries of the list. The directions of the
+/// rays are turned round.
+fn take(wave: &mut VertexWave, n: usize) {
+    let VertexWave { p, n: normals, omega, side, rays } = wave;
+    let list = &rays.list[..n];
+    if list.iter().enumerate().all(|(i, &ray)| ray as usize == i) {
+        // nothing is left out: the columns change places, and nothing is copied
+        for (state, seen) in [(p, &mut rays.q), (normals, &mut rays.m), (&mut *omega, &mut rays.d)] {
+            std::mem::swap(state, seen);
+        }
+        std::mem::swap(side, &mut rays.side);
+    } else {
+        for (state, seen) in [(p, &rays.q), (normals, &rays.m), (&mut *omega, &rays.d)] {
+            state.gather(seen, list);
+        }
+        columns::gather(side, &rays.side, list);
+    }
+    omega.negate(n);
 }

@@ -15,8 +15,10 @@ pub(crate) struct Accel {
     best: InstructionSet,
 }
 
-/// Room for the stack of a single ray on the stack of the program: enough for trees of millions of primitives.
+/// Room for the stack of a single ray on the stack of the program: enough for trees of millions of primitives, and enough for
+/// those of small scenes, for which clearing more would take as long as a part of the ray.
 const ROOM: usize = 96;
+const SMALL_ROOM: usize = 32;
 
 /// The bounding box of a primitive, enlarged so that the rounding of the box test never loses a hit. The margin is 4 ε times
 /// the largest coordinate from which a ray may start, plus the distance by which hits may lie beyond the edges of the
@@ -78,6 +80,9 @@ impl Task for Closest<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> Hit {
         let Self { accel: Accel { shapes, wide, .. }, o, d } = self;
+        if wide.waiting <= SMALL_ROOM {
+            return wide.closest(l, shapes, o, d, &mut [0; SMALL_ROOM]);
+        }
         if wide.waiting <= ROOM {
             return wide.closest(l, shapes, o, d, &mut [0; ROOM]);
         }
@@ -96,6 +101,9 @@ impl Task for Occluded<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> bool {
         let Self { accel: Accel { shapes, wide, .. }, o, d } = self;
+        if wide.waiting <= SMALL_ROOM {
+            return wide.occluded(l, shapes, o, d, &mut [0; SMALL_ROOM]);
+        }
         if wide.waiting <= ROOM {
             return wide.occluded(l, shapes, o, d, &mut [0; ROOM]);
         }

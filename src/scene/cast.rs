@@ -29,13 +29,13 @@ impl Scene {
     #[doc(hidden)]
     #[must_use]
     pub fn one_by_one(mut self) -> Self {
-        (self.waves, self.flats) = (false, None);
+        (self.waves, self.table) = (false, None);
         self
     }
 
     /// The nearest hits of the first `n` rays of a wave, in packets or through the tree: sets `rays.t` and `rays.prim`.
     fn closest_wave(&self, rays: &mut Rays, n: usize) {
-        match self.flats {
+        match self.table {
             Some(_) => packets::closest(&self.accel.shapes, rays, n),
             None => self.accel.closest_wave(rays, n),
         }
@@ -56,36 +56,28 @@ impl Scene {
     /// leaves the scene sees the sky, if there is one, or [`NOWHERE`].
     pub(crate) fn look_wave(&self, rays: &mut Rays, n: usize) {
         self.closest_wave(rays, n);
-        if let Some(flats) = &self.flats {
-            arrive::arrive_in_lanes(flats, &self.accel.shapes, rays, n);
-        } else {
-            for i in 0..n {
-                rays.side[i] = NOWHERE;
-                if rays.prim[i] != u32::MAX {
-                    let hit = shape::Hit { t: rays.t[i], prim: rays.prim[i] };
-                    let v = self.arrive(rays.o.get(i), rays.d.get(i), hit);
-                    rays.q.set(i, v.p);
-                    rays.m.set(i, v.n);
-                    rays.side[i] = v.side;
-                }
-            }
+        let nothing = if self.has_environment() { ESCAPED } else { NOWHERE };
+        if let Some(table) = &self.table {
+            return arrive::arrive_in_lanes(table, &self.accel.shapes, rays, n, (nothing, self.beyond));
         }
-        if self.has_environment() {
-            for i in 0..n {
-                if rays.side[i] == NOWHERE {
-                    let d = rays.d.get(i);
-                    rays.q.set(i, self.beyond(rays.o.get(i), d));
-                    rays.m.set(i, -d);
-                    rays.side[i] = ESCAPED;
-                }
-            }
+        for i in 0..n {
+            let (o, d) = (rays.o.get(i), rays.d.get(i));
+            let (p, n, side) = if rays.prim[i] != u32::MAX {
+                let v = self.arrive(o, d, shape::Hit { t: rays.t[i], prim: rays.prim[i] });
+                (v.p, v.n, v.side)
+            } else {
+                (self.beyond(o, d), -d, nothing)
+            };
+            rays.q.set(i, p);
+            rays.m.set(i, n);
+            rays.side[i] = side;
         }
     }
 
     /// Tests the segments of the rays in the first `n` entries of `rays.list`: sets `rays.prim[ray]` to 1 if the segment is
     /// blocked, else to 0.
     pub(crate) fn block_wave(&self, rays: &mut Rays, n: usize) {
-        match self.flats {
+        match self.table {
             Some(_) => packets::occluded(&self.accel.shapes, rays, n),
             None => self.accel.occluded_wave(rays, n),
         }

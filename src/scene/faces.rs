@@ -37,7 +37,7 @@ pub(crate) struct Group {
 }
 
 /// Number of sides up to which a table by side is kept.
-pub(crate) const FEW: usize = 128;
+pub(crate) const FEW: usize = 512;
 /// Reflectances by side, one row per channel.
 pub(crate) type ColourTable = [[f32; FEW]; 3];
 
@@ -49,8 +49,9 @@ pub(crate) struct Faces {
     of_prim: Vec<u32>,
     /// Group 0 is black: sides that scatter nothing, and vertices that are not on a surface.
     groups: Vec<Group>,
-    /// [`Face::colour`] by side, if there are few.
+    /// [`Face::colour`] and [`Face::emission`] by side, if there are few.
     colours: Option<Box<ColourTable>>,
+    emissions: Option<Box<ColourTable>>,
 }
 
 impl Faces {
@@ -82,13 +83,23 @@ impl Faces {
             }
         }
         if all.sides() as usize <= FEW {
-            let mut table = Box::new([[0.0; FEW]; 3]);
-            for side in 0..all.sides() {
-                table.iter_mut().zip(all.of(side).colour.to_array()).for_each(|(row, c)| row[side as usize] = c);
-            }
-            all.colours = Some(table);
+            all.colours = Some(all.by_side(|face| face.colour));
+            all.emissions = Some(all.by_side(|face| face.emission));
         }
         all
+    }
+
+    fn by_side(&self, colour: impl Fn(&Face) -> Rgb) -> Box<ColourTable> {
+        let mut table = Box::new([[0.0; FEW]; 3]);
+        for side in 0..self.sides() {
+            table.iter_mut().zip(colour(self.of(side)).to_array()).for_each(|(row, c)| row[side as usize] = c);
+        }
+        table
+    }
+
+    /// [`Face::emission`] by side, if there are few sides.
+    pub(crate) fn emissions(&self) -> Option<&ColourTable> {
+        self.emissions.as_deref()
     }
 
     /// [`Face::colour`] by side, if there are few sides.

@@ -37,6 +37,10 @@ pub(crate) struct Flat {
     pub(super) half_v: Vec3,
     /// (1 − M)/s for both coordinates: hits are kept inside this range.
     pub(super) keep: [f32; 2],
+    /// The axis along which the normal points, if the edges are along the other two; otherwise 3.
+    pub(super) axis: usize,
+    /// The coordinates along the next axis and the one after it: factor and summand of each.
+    along: [f32; 4],
 }
 
 impl Flat {
@@ -53,7 +57,9 @@ impl Flat {
         let sure = part(UNSURE, 0.25).map(|r| 1.0 - r);
         let [wide, long] = [0, 1].map(|i| (1.0 + part(KEEP, 0.5)[i]) / sure[i]);
         let f = |v: DVec3| v.as_vec3();
-        Self {
+        let flat = Self {
+            axis: 3,
+            along: [0.0; 4],
             n: f(n),
             h: n.dot(origin) as f32,
             a: f(a / sure[0]),
@@ -67,19 +73,30 @@ impl Flat {
             half_u: f(0.5 * u),
             half_v: f(0.5 * v),
             keep: [0, 1].map(|i| ((1.0 - part(KEEP, MOST_KEEP)[i]) / sure[i]) as f32),
+        };
+        flat.with_axis()
+    }
+
+    /// Sets [`Self::axis`] and [`Self::along`].
+    fn with_axis(self) -> Self {
+        let only = |v: Vec3, axis: usize| (0..3).all(|i| i == axis || v[i] == 0.0);
+        let of = |v: Vec3| (0..3).find(|&axis| only(v, axis)).unwrap_or(3);
+        let (axis, [a, b]) = (of(self.n), [(self.a, self.a0), (self.b, self.b0)]);
+        let (one, other) = ((axis + 1) % 3, (axis + 2) % 3);
+        let pairs = [[a, b], [b, a]];
+        match pairs.into_iter().find(|[a, b]| axis < 3 && of(a.0) == one && of(b.0) == other) {
+            Some([(a, a0), (b, b0)]) => Self { axis, along: [a[one], a0, b[other], b0], ..self },
+            None => self,
         }
     }
 
     /// How many numbers describe where a hit lies.
-    pub(crate) const NUMBERS: usize = 22;
+    pub(crate) const NUMBERS: usize = 14;
 
-    /// The numbers that [`Self::settle`] uses.
+    /// The numbers that [`Self::settle_inside`] uses.
     pub(crate) fn numbers(&self) -> [f32; Self::NUMBERS] {
-        let Self { n, h, a, a0, b, b0, sure, half_u: u, half_v: v, keep, .. } = *self;
-        [
-            n.x, n.y, n.z, h, a.x, a.y, a.z, a0, b.x, b.y, b.z, b0, sure[0], sure[1], u.x, u.y, u.z, v.x, v.y, v.z,
-            keep[0], keep[1],
-        ]
+        let Self { n, h, a, a0, b, b0, keep, .. } = *self;
+        [n.x, n.y, n.z, h, a.x, a.y, a.z, a0, b.x, b.y, b.z, b0, keep[0], keep[1]]
     }
 
     /// A parallelogram with these numbers. It has no corners, so no ray can meet it.
@@ -92,14 +109,33 @@ impl Flat {
             a0: x[7],
             b: Vec3::new(x[8], x[9], x[10]),
             b0: x[11],
-            sure: [x[12], x[13]],
-            half_u: Vec3::new(x[14], x[15], x[16]),
-            half_v: Vec3::new(x[17], x[18], x[19]),
-            keep: [x[20], x[21]],
+            keep: [x[12], x[13]],
+            sure: [0.0; 2],
+            half_u: Vec3::ZERO,
+            half_v: Vec3::ZERO,
             band: 0.0,
+            axis: 3,
+            along: [0.0; 4],
             corners: [Vec3::ZERO; 4],
             center: Vec3::ZERO,
         }
+    }
+
+    /// The numbers that [`Self::point`] uses: centre, halves of the edges, plane.
+    pub(crate) fn span(&self) -> [f32; Self::SPAN] {
+        let ([a, b, c], n) = ([self.center, self.half_u, self.half_v], self.n);
+        [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, n.x, n.y, n.z, self.h]
+    }
+
+    /// How many numbers span a parallelogram or a triangle.
+    pub(crate) const SPAN: usize = 13;
+
+    /// A parallelogram with these numbers. It has no corners, so no ray can meet it.
+    #[inline(always)]
+    pub(crate) fn spanned(x: [f32; Self::SPAN]) -> Self {
+        let none = Self::on_plane([0.0; Self::NUMBERS]);
+        let v = |i: usize| Vec3::new(x[i], x[i + 1], x[i + 2]);
+        Self { center: v(0), half_u: v(3), half_v: v(6), n: v(9), h: x[12], ..none }
     }
 
     /// The unit normal of the front.
@@ -121,6 +157,18 @@ impl Flat {
         let t = (self.h - dot(self.n, o)) / dot(self.n, d);
         let p = Vec3::new(d.x * t + o.x, d.y * t + o.y, d.z * t + o.z);
         let (u, v) = ((dot(self.a, p) + self.a0).abs(), (dot(self.b, p) + self.b0).abs());
+        let most = if u > v { u } else { v };
+        (t, (most <= self.band) & (t > 0.0), most <= 1.0)
+    }
+
+    /// [`Self::look`] for a parallelogram along the axes, with half the operations: the products with zero are left out. The
+    /// bits are the same; only t = ±∞, which is no hit, gives other numbers.
+    #[inline(always)]
+    pub(crate) fn look_along<const AXIS: usize>(&self, o: Vec3, d: Vec3) -> (f32, bool, bool) {
+        let (one, other, [a, a0, b, b0]) = ((AXIS + 1) % 3, (AXIS + 2) % 3, self.along);
+        let (n, o, d) = (self.n.to_array()[AXIS], o.to_array(), d.to_array());
+        let t = (self.h - n * o[AXIS]) / (n * d[AXIS]);
+        let (u, v) = ((a * (d[one] * t + o[one]) + a0).abs(), (b * (d[other] * t + o[other]) + b0).abs());
         let most = if u > v { u } else { v };
         (t, (most <= self.band) & (t > 0.0), most <= 1.0)
     }
@@ -156,13 +204,20 @@ impl Flat {
     /// The point of the plane nearest to `p`, kept inside the edges.
     #[inline(always)]
     pub(crate) fn settle(&self, p: Vec3) -> Vec3 {
-        let p = onto(p, self.n, self.h);
-        let (u, v) = (dot(self.a, p) + self.a0, dot(self.b, p) + self.b0);
-        let [ku, kv] = self.keep;
-        if u.abs() <= ku && v.abs() <= kv {
+        let (p, [u, v], inside) = self.settle_inside(p);
+        if inside {
             return p;
         }
+        let [ku, kv] = self.keep;
         let back = |x: f32, k: f32| if x.abs() <= k { 0.0 } else { k.copysign(x) - x };
         p + self.half_u * (self.sure[0] * back(u, ku)) + self.half_v * (self.sure[1] * back(v, kv))
+    }
+
+    /// The point of the plane nearest to `p`, its coordinates, and whether it is inside the edges already, as nearly all are.
+    #[inline(always)]
+    pub(crate) fn settle_inside(&self, p: Vec3) -> (Vec3, [f32; 2], bool) {
+        let p = onto(p, self.n, self.h);
+        let (u, v) = (dot(self.a, p) + self.a0, dot(self.b, p) + self.b0);
+        (p, [u, v], (u.abs() <= self.keep[0]) & (v.abs() <= self.keep[1]))
     }
 }

@@ -41,13 +41,28 @@ impl Vertices<'_> {
 impl Scene {
     /// Sorts the first `n` vertices by group into `rays.order`, without those whose group `wanted` rejects, and sets the
     /// reflectances of coloured groups. Returns the number of places. `rays.ends` holds the end of each group.
+    ///
+    /// A connection and the step after it often sort the same vertices. The second time, comparing their sides is all that is
+    /// done: the order depends on nothing else.
     pub(crate) fn sort(&self, at: Vertices, n: usize, rays: &mut Rays, wanted: impl Fn(&Bsdf) -> bool) -> usize {
-        let groups = self.faces.groups();
-        rays.ends.clear();
-        rays.ends.resize(groups.len() + 1, 0);
         // group 0 is black
-        let wants: Vec<bool> = groups.iter().enumerate().map(|(g, group)| g != 0 && wanted(&group.bsdf)).collect();
-        if let [_, wants] = wants[..] {
+        let all = self.faces.groups().iter().enumerate();
+        let wants: Vec<bool> = all.map(|(g, group)| g != 0 && wanted(&group.bsdf)).collect();
+        let alike = n > 0 && rays.sorted.as_slice() == &at.side[..n];
+        let known = alike && rays.wants == wants && self.textures.is_none();
+        if !known {
+            rays.sorted.clear();
+            rays.sorted.extend_from_slice(&at.side[..n]);
+            rays.places = self.sort_anew(at, n, rays, &wants);
+            rays.wants = wants;
+        }
+        rays.places
+    }
+
+    fn sort_anew(&self, at: Vertices, n: usize, rays: &mut Rays, wants: &[bool]) -> usize {
+        rays.ends.clear();
+        rays.ends.resize(wants.len() + 1, 0);
+        if let [_, wants] = *wants {
             // one group needs no sorting, and one pass over the wave
             let mut places = 0;
             for (i, &side) in at.side[..n].iter().enumerate() {
@@ -129,7 +144,7 @@ impl Scene {
 }
 
 #[inline(always)]
-fn gather(column: &[f32], at: &Paths) -> Lane {
+pub(super) fn gather(column: &[f32], at: &Paths) -> Lane {
     let mut lane = ZERO;
     if at.neighbours {
         lane.copy_from_slice(&column[at.list[0] as usize..][..LANES]);
@@ -142,25 +157,28 @@ fn gather(column: &[f32], at: &Paths) -> Lane {
 }
 
 #[inline(always)]
-fn gather3(c: &Columns, at: &Paths) -> Lane3 {
+pub(super) fn gather3(c: &Columns, at: &Paths) -> Lane3 {
     [gather(&c.x, at), gather(&c.y, at), gather(&c.z, at)]
 }
 
 /// The paths at sixteen places.
-struct Paths {
-    list: [u32; LANES],
+pub(super) struct Paths {
+    pub(super) list: [u32; LANES],
     /// True if they are neighbours in the wave, as they usually are.
-    neighbours: bool,
+    pub(super) neighbours: bool,
 }
 
-/// The paths at sixteen places from `place` on; after the last place of the group, the last path again.
+/// The paths at sixteen places from `place` on; after the last place before `end`, the last path again.
 #[inline(always)]
-fn paths(order: &[u32], place: usize, end: usize) -> Paths {
+pub(super) fn paths(order: &[u32], place: usize, end: usize) -> Paths {
     if place + LANES <= end {
         let mut list = [0; LANES];
         list.copy_from_slice(&order[place..place + LANES]);
-        // paths of a group ascend
-        return Paths { neighbours: list[LANES - 1] - list[0] == LANES as u32 - 1, list };
+        let mut neighbours = true;
+        for i in 0..LANES {
+            neighbours &= list[i] == list[0] + i as u32;
+        }
+        return Paths { neighbours, list };
     }
     Paths { list: std::array::from_fn(|i| order[(place + i).min(end - 1)]), neighbours: false }
 }

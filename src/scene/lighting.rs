@@ -12,11 +12,7 @@
 //! The densities for each light are those of [`emitter`](super::emitter).
 
 use super::emitter::{Light, cone};
-use super::groups::Vertices;
-use super::shape::Shape;
-use super::sixteen::{LANES, ZERO, ZERO3, get, put, store, store3};
-use super::{ESCAPED, LIGHT, Rays, Scene, Vertex, connection, solid_angle};
-use crate::math::Columns;
+use super::{ESCAPED, LIGHT, Scene, Vertex, connection, solid_angle};
 use glam::Vec3;
 
 /// A point on a light, chosen by next-event estimation.
@@ -87,7 +83,7 @@ impl Scene {
 
     /// A point of a primitive, chosen uniformly by area. The density is 0 or negative if the front faces away.
     #[inline(always)]
-    fn by_area(&self, x: Vec3, prim: u32, u: [f32; 2]) -> LightSample {
+    pub(super) fn by_area(&self, x: Vec3, prim: u32, u: [f32; 2]) -> LightSample {
         let shape = &self.accel.shapes[prim as usize];
         let p = shape.point(u);
         let n = shape.normal(p);
@@ -96,34 +92,7 @@ impl Scene {
         LightSample { state: Vertex { p, n, omega: -to, side: 2 * prim }, to, pdf, can_be_hit: true }
     }
 
-    /// [`Self::sample_light`] for the first `m` places of a sorted wave, from the random numbers `rays.u` of their paths. Writes
-    /// by place: direction, density, position, normal and radiance to `rays.to`, `rays.t`, `rays.q`, `rays.m` and
-    /// `rays.radiance`, and to `rays.prim` whether a ray can hit the light. The density is 0 where there is no light point.
-    pub(crate) fn light_wave(&self, at: Vertices, rays: &mut Rays, m: usize) {
-        if let Some(prim) = self.lights.only() {
-            let density = self.lights.density[prim as usize];
-            lamp_points(&self.accel.shapes[prim as usize], density, at.p, rays, m);
-            rays.radiance.fill(m, self.emission(2 * prim));
-            rays.prim[..m].fill(1);
-            return;
-        }
-        for place in 0..m {
-            let i = rays.order[place] as usize;
-            let u = rays.u.each_ref().map(|u| u[i]);
-            let Some(sample) = self.propose_light(&at.get(i), u) else {
-                rays.t[place] = 0.0;
-                continue;
-            };
-            rays.to.set(place, sample.to);
-            rays.t[place] = sample.pdf;
-            rays.q.set(place, sample.state.p);
-            rays.m.set(place, sample.state.n);
-            rays.radiance.set(place, self.light(&sample.state));
-            rays.prim[place] = u32::from(sample.can_be_hit);
-        }
-    }
-
-    fn sky_sample(&self, u: [f32; 2]) -> (Vec3, f32) {
+    pub(super) fn sky_sample(&self, u: [f32; 2]) -> (Vec3, f32) {
         self.lights.environment.as_ref().map_or((Vec3::Y, 0.0), |(sky, _)| sky.sample(u))
     }
 
@@ -132,10 +101,7 @@ impl Scene {
     #[inline(always)]
     pub(crate) fn light_pdf(&self, x: Vec3, at: &Vertex) -> f32 {
         if !at.on_surface() {
-            return match &self.lights.environment {
-                Some((sky, light)) if at.side == ESCAPED => sky.pdf(-at.omega) * self.lights.probability(*light),
-                _ => 0.0,
-            };
+            return if at.side == ESCAPED { self.sky_pdf(-at.omega) } else { 0.0 };
         }
         let density = self.light_density(at.side);
         if density == 0.0 {
@@ -147,6 +113,15 @@ impl Scene {
         let (_, r2, _, cos) = connection(x, Vec3::ZERO, at.p, at.n);
         // rounding may put a grazing hit behind the plane of the light
         solid_angle(density, r2, cos.abs())
+    }
+
+    /// Density in solid angle with which [`Self::sample_light`] chooses the direction `d` of the sky.
+    #[inline(always)]
+    pub(crate) fn sky_pdf(&self, d: Vec3) -> f32 {
+        match &self.lights.environment {
+            Some((sky, light)) => sky.pdf(d) * self.lights.probability(*light),
+            None => 0.0,
+        }
     }
 
     /// The light without a surface that a vertex represents; `None` for a vertex on a surface.
@@ -228,66 +203,5 @@ impl Scene {
         let (center, radius, probability) = self.lights.ball(at.side / 2)?;
         let pdf = cone::pdf(x, center, radius);
         (pdf > 0.0).then_some(pdf * probability)
-    }
-}
-
-/// Uniform points of a lamp of one primitive, for the first `m` places of a sorted wave with the points `x`, from the last two
-/// columns of random numbers: direction, density per solid angle, position and normal, by place.
-#[pulp::with_simd(lamp_points = pulp::Arch::new())]
-#[inline(always)]
-fn lamp_points_with_simd<'a, S: pulp::Simd>(
-    _simd: S,
-    shape: &'a Shape,
-    density: f32,
-    x: &'a Columns,
-    rays: &'a mut Rays,
-    m: usize,
-) {
-    // the kind is chosen here and not for each point, so that the loops inside have no branch
-    match shape {
-        Shape::Flat(s) => points(
-            #[inline(always)]
-            |u| (s.point(u), s.normal()),
-            density,
-            x,
-            rays,
-            m,
-        ),
-        other => points(
-            #[inline(always)]
-            |u| {
-                let p = other.point(u);
-                (p, other.normal(p))
-            },
-            density,
-            x,
-            rays,
-            m,
-        ),
-    }
-}
-
-#[inline(always)]
-fn points(point: impl Fn([f32; 2]) -> (Vec3, Vec3), density: f32, x: &Columns, rays: &mut Rays, m: usize) {
-    for place in (0..m).step_by(LANES) {
-        let (mut to, mut q, mut n, mut at) = (ZERO3, ZERO3, ZERO3, ZERO3);
-        let (mut u, mut v, mut pdf) = (ZERO, ZERO, ZERO);
-        for lane in 0..LANES.min(m - place) {
-            let i = rays.order[place + lane] as usize;
-            put(&mut at, lane, x.get(i));
-            (u[lane], v[lane]) = (rays.u[2][i], rays.u[3][i]);
-        }
-        for lane in 0..LANES {
-            let (p, normal) = point([u[lane], v[lane]]);
-            let (d, r2, _, cos) = connection(get(&at, lane), Vec3::ZERO, p, normal);
-            pdf[lane] = solid_angle(density, r2, cos);
-            put(&mut to, lane, d);
-            put(&mut q, lane, p);
-            put(&mut n, lane, normal);
-        }
-        store3(&mut rays.to, place, &to);
-        store3(&mut rays.q, place, &q);
-        store3(&mut rays.m, place, &n);
-        store(&mut rays.t, place, &pdf);
     }
 }

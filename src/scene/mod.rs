@@ -16,15 +16,18 @@ mod arrive;
 pub mod batch;
 pub mod bsdf;
 pub mod builtin;
+mod by_path;
 mod cast;
 pub mod centre;
 pub mod coplanar;
 pub mod description;
+mod emitted;
 pub mod emitter;
 mod error;
 mod faces;
 mod flat;
 mod groups;
+mod light_lanes;
 mod lighting;
 pub mod load;
 mod packets;
@@ -40,6 +43,7 @@ mod textures;
 pub mod vertex;
 mod wide;
 
+pub(crate) use by_path::{Received, by_path};
 pub use description::{Description, Expect};
 pub use error::SceneError;
 pub use lighting::LightSample;
@@ -51,7 +55,7 @@ pub use vertex::{ESCAPED, LIGHT, Side, Vertex, VertexWave};
 
 use crate::math::Rgb;
 use accel::Accel;
-use arrive::Flats;
+use arrive::Table;
 use bsdf::Bsdf;
 use coplanar::Relation;
 use description::LightDescription;
@@ -66,6 +70,7 @@ use textures::Textures;
 pub(crate) use vertex::Rays;
 
 pub(crate) use packets::numbers;
+pub(crate) use sensor::camera_rays;
 
 /// Change of measure: converts a density per area at a point y to one per solid angle at a point at distance r, with `r2` =
 /// r².
@@ -91,8 +96,8 @@ pub struct Scene {
     /// All lights.
     pub lights: Lights,
     accel: Accel,
-    /// The flat primitives of a small scene, whose waves are traced in packets of rays.
-    flats: Option<Box<Flats>>,
+    /// The primitives of a small scene, whose waves are traced in packets of rays.
+    table: Option<Box<Table>>,
     /// True if waves are advanced together, and not path by path.
     waves: bool,
     /// For every side: its BSDF, largest albedo and emission, and whether it takes part in light transport.
@@ -141,7 +146,7 @@ impl Scene {
         });
         let reach = outside.map(|p| (p - center).length()).fold(radius, f64::max);
         Self {
-            flats: packets::suit(&shapes).then(|| Box::new(Flats::new(&shapes))),
+            table: packets::suit(&shapes).then(|| Box::new(Table::new(&shapes))),
             waves: true,
             camera: Camera::new(&description.camera, center, radius),
             lights: Lights::new(description, prims, radius),

@@ -5,7 +5,7 @@
 //! [lanes](super::sixteen) are plain Rust that the compiler vectorises. `pulp` compiles them for several instruction sets and
 //! chooses one at run time.
 
-use super::shape::{Flat, Shape};
+use super::shape::{Ball, Flat, Shape};
 use super::sixteen::{LANES, Lane, Lane3, ZERO3, get, load3};
 use super::vertex::Rays;
 use crate::math::{Points, Streams};
@@ -37,12 +37,44 @@ fn nearest(
     }
 }
 
+/// [`Flat::look`], in the form for a parallelogram along the axes if it is one. The form is chosen here and not for each lane.
+macro_rules! by_form {
+    ($flat:ident, $look:ident => $work:expr) => {
+        match $flat.axis {
+            0 => {
+                let $look = |o, d| $flat.look_along::<0>(o, d);
+                $work
+            }
+            1 => {
+                let $look = |o, d| $flat.look_along::<1>(o, d);
+                $work
+            }
+            2 => {
+                let $look = |o, d| $flat.look_along::<2>(o, d);
+                $work
+            }
+            _ => {
+                let $look = |o, d| $flat.look(o, d);
+                $work
+            }
+        }
+    };
+}
+
 /// The same for a parallelogram. Lanes with a ray close to an edge are rare and are tested one by one.
 #[inline(always)]
-fn nearest_flat(s: &Flat, id: u32, o: &Lane3, d: &Lane3, t: &mut Lane, prim: &mut [u32; LANES]) {
+fn nearest_flat(
+    s: &Flat,
+    look: impl Fn(Vec3, Vec3) -> (f32, bool, bool),
+    id: u32,
+    o: &Lane3,
+    d: &Lane3,
+    t: &mut Lane,
+    prim: &mut [u32; LANES],
+) {
     let mut any = 0;
     for i in 0..LANES {
-        let (r, near, certain) = s.look(get(o, i), get(d, i));
+        let (r, near, certain) = look(get(o, i), get(d, i));
         let near = near & (r < t[i]);
         let nearer = near & certain;
         t[i] = if nearer { r } else { t[i] };
@@ -60,6 +92,16 @@ fn nearest_flat(s: &Flat, id: u32, o: &Lane3, d: &Lane3, t: &mut Lane, prim: &mu
     }
 }
 
+/// Returns true if some ray may meet the sphere.
+#[inline(always)]
+fn any_near(s: &Ball, o: &Lane3, d: &Lane3) -> bool {
+    let mut near = 0;
+    for i in 0..LANES {
+        near |= u32::from(!s.passes(get(o, i), get(d, i)));
+    }
+    near != 0
+}
+
 /// The nearest hits of the first `n` rays; `prim` is `u32::MAX` if there is none. Reads and writes whole packets.
 #[pulp::with_simd(closest = Arch::new())]
 #[inline(always)]
@@ -69,9 +111,13 @@ pub(crate) fn closest_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], rays
         let (mut t, mut prim) = ([f32::INFINITY; LANES], [u32::MAX; LANES]);
         for (id, shape) in shapes.iter().enumerate() {
             match shape {
-                Shape::Flat(s) => nearest_flat(s, id as u32, &o, &d, &mut t, &mut prim),
+                Shape::Flat(s) => by_form!(s, look => nearest_flat(s, look, id as u32, &o, &d, &mut t, &mut prim)),
                 Shape::Triangle(s) => nearest(|o, d| s.meet(o, d), id as u32, &o, &d, &mut t, &mut prim),
-                Shape::Ball(s) => nearest(|o, d| s.meet(o, d), id as u32, &o, &d, &mut t, &mut prim),
+                Shape::Ball(s) => {
+                    if any_near(s, &o, &d) {
+                        nearest(|o, d| s.meet(o, d), id as u32, &o, &d, &mut t, &mut prim);
+                    }
+                }
                 Shape::Disc(s) => nearest(|o, d| s.meet(o, d), id as u32, &o, &d, &mut t, &mut prim),
             }
         }
@@ -90,10 +136,16 @@ fn block(meet: impl Fn(Vec3, Vec3) -> (f32, bool), o: &Lane3, d: &Lane3, blocked
 
 /// The same for a parallelogram.
 #[inline(always)]
-fn block_flat(s: &Flat, o: &Lane3, d: &Lane3, blocked: &mut [u32; LANES]) {
+fn block_flat(
+    s: &Flat,
+    look: impl Fn(Vec3, Vec3) -> (f32, bool, bool),
+    o: &Lane3,
+    d: &Lane3,
+    blocked: &mut [u32; LANES],
+) {
     let mut any = 0;
     for (i, blocked) in blocked.iter_mut().enumerate() {
-        let (t, near, certain) = s.look(get(o, i), get(d, i));
+        let (t, near, certain) = look(get(o, i), get(d, i));
         let near = near & (t < 1.0);
         *blocked |= u32::from(near & certain);
         any |= u32::from(near & !certain);
@@ -125,9 +177,13 @@ pub(crate) fn occluded_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], ray
         let mut blocked = [0; LANES];
         for shape in shapes {
             match shape {
-                Shape::Flat(s) => block_flat(s, &o, &d, &mut blocked),
+                Shape::Flat(s) => by_form!(s, look => block_flat(s, look, &o, &d, &mut blocked)),
                 Shape::Triangle(s) => block(|o, d| s.meet(o, d), &o, &d, &mut blocked),
-                Shape::Ball(s) => block(|o, d| s.meet(o, d), &o, &d, &mut blocked),
+                Shape::Ball(s) => {
+                    if any_near(s, &o, &d) {
+                        block(|o, d| s.meet(o, d), &o, &d, &mut blocked);
+                    }
+                }
                 Shape::Disc(s) => block(|o, d| s.meet(o, d), &o, &d, &mut blocked),
             }
         }

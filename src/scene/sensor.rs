@@ -5,7 +5,8 @@
 //! | [`Camera`] | radiance towards the eye, uniform over the square of a pixel | the image mean |
 //! | [`SurfaceSensor`] | radiance that leaves a uniform surface point in a cosine-distributed direction | `∫ L cos θ dω dA / (πA)`: the L1 norm in the throughput measure, divided by πA |
 
-use super::{Scene, Vertex, description::CameraDescription};
+use super::sixteen::{LANES, ZERO3, load, put, store3};
+use super::{Rays, Scene, Vertex, description::CameraDescription};
 use crate::math::{Rng, direction::cosine_hemisphere};
 use glam::{DVec3, Vec3};
 
@@ -81,8 +82,10 @@ impl Camera {
     /// corner.
     #[inline(always)]
     pub fn ray(&self, pixel: u32, u: [f32; 2]) -> (Vec3, Vec3) {
-        let (column, row) = (pixel % self.size[0], pixel / self.size[0]);
-        let (x, y) = (f64::from(column) + f64::from(u[0]), f64::from(row) + f64::from(u[1]));
+        // a quotient of 32-bit integers in `f64` never rounds up to the next integer; integer divisions would not vectorise
+        let (number, width) = (f64::from(pixel), f64::from(self.size[0]));
+        let row = f64::from((number / width) as u32);
+        let (x, y) = (number - row * width + f64::from(u[0]), row + f64::from(u[1]));
         let d = self.corner + self.across * x + self.down * y;
         let d = d * (1.0 / d.dot(d).sqrt());
         (self.enter(d), d.as_vec3())
@@ -100,6 +103,30 @@ impl Camera {
         let before = along - (r2 - (to - d * along).length_squared()).max(0.0).sqrt();
         // a part of the sphere behind the camera does not move the start backwards
         (self.origin + d * before.max(0.0)).as_vec3()
+    }
+}
+
+/// [`Camera::ray`] for each of these pixels, from the first two columns of random numbers: rays into `rays.o` and `rays.d`.
+#[pulp::with_simd(camera_rays = pulp::Arch::new())]
+#[inline(always)]
+pub(crate) fn camera_rays_with_simd<'a, S: pulp::Simd>(
+    _simd: S,
+    camera: &'a Camera,
+    pixel: &'a [u32],
+    rays: &'a mut Rays,
+) {
+    for (at, few) in pixel.chunks(LANES).enumerate().map(|(i, few)| (i * LANES, few)) {
+        let mut pixel = [0; LANES];
+        pixel[..few.len()].copy_from_slice(few);
+        let (u, v) = (load(&rays.u[0], at), load(&rays.u[1], at));
+        let (mut start, mut along) = (ZERO3, ZERO3);
+        for i in 0..LANES {
+            let (o, d) = camera.ray(pixel[i], [u[i], v[i]]);
+            put(&mut start, i, o);
+            put(&mut along, i, d);
+        }
+        store3(&mut rays.o, at, &start);
+        store3(&mut rays.d, at, &along);
     }
 }
 

@@ -19,7 +19,7 @@ pub(crate) use super::flat::Flat;
 use super::plucker;
 use super::primitive::Primitive;
 pub(crate) use super::rounding::dot;
-use super::rounding::{KEEP, MOST_KEEP, across, onto};
+use super::rounding::{EPSILON, KEEP, MOST_KEEP, across, onto};
 use glam::{DVec3, Vec3};
 
 /// A hit: the distance `t` in units of the direction's length, and the number of the primitive.
@@ -70,6 +70,27 @@ impl Triangle {
         Self { p: p.map(|p| p.as_vec3()), n: n.as_vec3(), h: h as f32, keep }
     }
 
+    /// The numbers that [`Self::point`] uses: corners, plane.
+    pub(crate) fn span(&self) -> [f32; Flat::SPAN] {
+        let ([a, b, c], n) = (self.p, self.n);
+        [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, n.x, n.y, n.z, self.h]
+    }
+
+    /// A triangle with these numbers.
+    #[inline(always)]
+    pub(crate) fn spanned(x: [f32; Flat::SPAN]) -> Self {
+        let v = |i: usize| Vec3::new(x[i], x[i + 1], x[i + 2]);
+        Self { p: [v(0), v(3), v(6)], n: v(9), h: x[12], keep: [0.0; 3] }
+    }
+
+    /// A uniformly distributed point, chosen by `u`.
+    #[inline(always)]
+    pub(crate) fn point(&self, u: [f32; 2]) -> Vec3 {
+        let r = u[0].sqrt();
+        let p = self.p[0] * (1.0 - r) + self.p[1] * (r * (1.0 - u[1])) + self.p[2] * (r * u[1]);
+        onto(p, self.n, self.h)
+    }
+
     #[inline(always)]
     pub(crate) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
         let ([p, q, r], o, d) = (self.p, o.to_array(), d.to_array());
@@ -115,12 +136,38 @@ pub(crate) struct Ball {
     z: [f64; 2],
     /// +1 if the front is outside, −1 if it is inside.
     sign: f64,
+    /// The centre in single precision, and the square of a radius that also covers its rounding.
+    about: Vec3,
+    wide2: f32,
 }
 
 /// 32 units of rounding of `f64`, relative to the radius.
 const SELF: f64 = 1.0 / 281_474_976_710_656.0;
 
 impl Ball {
+    fn new(center: DVec3, radius: f64, z: [f64; 2], inward: bool) -> Self {
+        Self {
+            center,
+            radius,
+            // the poles are kept in spite of rounding
+            z: [if z[0] <= -1.0 { -2.0 } else { z[0] }, if z[1] >= 1.0 { 2.0 } else { z[1] }],
+            sign: if inward { -1.0 } else { 1.0 },
+            about: center.as_vec3(),
+            wide2: (1.001 * radius + 8.0 * EPSILON * center.length()).powi(2) as f32,
+        }
+    }
+
+    /// Returns true only if the line of the ray certainly passes beside the sphere: |f|² − (f·d)²/|d|² > r², with a margin of
+    /// a hundred times the rounding of |f|², f being the vector from the centre to o. It costs a tenth of [`Self::meet`].
+    #[inline(always)]
+    pub(crate) fn passes(&self, o: Vec3, d: Vec3) -> bool {
+        let f = o - self.about;
+        let (a, b) = (dot(d, d), dot(f, d));
+        let most = dot(f, f) * a;
+        // numbers that overflow or underflow decide nothing
+        (most < 1e38) & (most * (1.0 - 1e-5) - b * b > self.wide2 * a + 1e-30)
+    }
+
     #[inline(always)]
     pub(crate) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
         let (f, d) = (o.as_dvec3() - self.center, d.as_dvec3());
@@ -147,13 +194,37 @@ impl Ball {
     }
 
     #[inline(always)]
-    fn settle(&self, p: Vec3) -> Vec3 {
+    pub(crate) fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    #[inline(always)]
+    pub(crate) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// How many numbers describe where a hit lies: centre, radius and sign.
+    pub(crate) const NUMBERS: usize = 5;
+
+    /// The numbers that [`Self::settle`] and [`Self::normal`] use.
+    pub(crate) fn numbers(&self) -> [f64; Self::NUMBERS] {
+        [self.center.x, self.center.y, self.center.z, self.radius, self.sign]
+    }
+
+    /// The sphere with these numbers. It has no band, so no ray can meet it.
+    #[inline(always)]
+    pub(crate) fn around([x, y, z, radius, sign]: [f64; Self::NUMBERS]) -> Self {
+        Self { center: DVec3::new(x, y, z), radius, sign, z: [0.0; 2], about: Vec3::ZERO, wide2: 0.0 }
+    }
+
+    #[inline(always)]
+    pub(crate) fn settle(&self, p: Vec3) -> Vec3 {
         let f = p.as_dvec3() - self.center;
         (self.center + f * (self.radius / f.length())).as_vec3()
     }
 
     #[inline(always)]
-    fn normal(&self, p: Vec3) -> Vec3 {
+    pub(crate) fn normal(&self, p: Vec3) -> Vec3 {
         ((p.as_dvec3() - self.center) * (self.sign / self.radius)).as_vec3()
     }
 }
@@ -168,6 +239,14 @@ pub(crate) struct Disc {
 }
 
 impl Disc {
+    /// The numbers of [`Flat::numbers`] for the plane of the disk, whose edges are out of reach.
+    pub(crate) fn numbers(&self) -> [f32; Flat::NUMBERS] {
+        let mut all = [0.0; Flat::NUMBERS];
+        all[..4].copy_from_slice(&[self.n.x, self.n.y, self.n.z, self.h]);
+        all[Flat::NUMBERS - 2..].fill(f32::MAX);
+        all
+    }
+
     #[inline(always)]
     pub(crate) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
         let t = (self.h - dot(self.n, o)) / dot(self.n, d);
@@ -191,13 +270,7 @@ impl Shape {
         match *p {
             Primitive::Parallelogram { origin, edge_u, edge_v } => Self::Flat(Flat::new(origin, edge_u, edge_v, touch)),
             Primitive::Triangle(p) => Self::Triangle(Triangle::new(p)),
-            Primitive::Sphere { center, radius, z, inward } => Self::Ball(Ball {
-                center,
-                radius,
-                // the poles are kept in spite of rounding
-                z: [if z[0] <= -1.0 { -2.0 } else { z[0] }, if z[1] >= 1.0 { 2.0 } else { z[1] }],
-                sign: if inward { -1.0 } else { 1.0 },
-            }),
+            Primitive::Sphere { center, radius, z, inward } => Self::Ball(Ball::new(center, radius, z, inward)),
             Primitive::Disk { center, normal, radius } => Self::Disc(Disc {
                 center: center.as_vec3(),
                 n: normal.as_vec3(),
@@ -259,11 +332,7 @@ impl Shape {
     pub(crate) fn point(&self, u: [f32; 2]) -> Vec3 {
         match self {
             Self::Flat(s) => s.point(u),
-            Self::Triangle(s) => {
-                let r = u[0].sqrt();
-                let p = s.p[0] * (1.0 - r) + s.p[1] * (r * (1.0 - u[1])) + s.p[2] * (r * u[1]);
-                onto(p, s.n, s.h)
-            }
+            Self::Triangle(s) => s.point(u),
             Self::Ball(s) => {
                 let (lo, hi) = (s.z[0].max(-1.0), s.z[1].min(1.0));
                 let z = lo + (hi - lo) * f64::from(u[0]);

@@ -51,3 +51,10 @@ pub(super) fn get(lane: &Lane3, i: usize) -> Vec3 {
 pub(super) fn put(lane: &mut Lane3, i: usize, v: Vec3) {
     (lane[0][i], lane[1][i], lane[2][i]) = (v.x, v.y, v.z);
 }
+
+/// Replaces vector `i` if `is`.
+#[inline(always)]
+pub(super) fn put_if(lane: &mut Lane3, i: usize, is: bool, v: Vec3) {
+    let old = get(lane, i);
+    put(lane, i, Vec3::new(if is { v.x } else { old.x }, if is { v.y } else { old.y }, if is { v.z } else { old.z }));
+}

@@ -77,6 +77,10 @@ pub(crate) struct Rays {
     /// The paths in sorted order, the group of each path, and the end of each group in the order.
     pub(crate) order: Vec<u32>,
     pub(crate) group: Vec<u32>,
+    /// What was sorted last: the sides, which groups were wanted, and the number of places.
+    pub(crate) sorted: Vec<Side>,
+    pub(crate) wants: Vec<bool>,
+    pub(crate) places: usize,
     /// The place of each path; `u32::MAX` if it has none.
     pub(crate) place: Vec<u32>,
     pub(crate) ends: Vec<u32>,
@@ -112,6 +116,8 @@ impl Rays {
     /// Removes the places without a sample from the first `n`, in the same order. Returns their new number.
     pub(crate) fn keep_samples(&mut self, n: usize) -> usize {
         let Some(first) = self.flag[..n].iter().position(|&f| f == NOTHING) else { return n };
+        // the order is not that of all vertices any more
+        self.sorted.clear();
         let mut to = first;
         for from in first..n {
             if self.flag[from] != NOTHING {
@@ -164,10 +170,11 @@ impl Rays {
 
 impl VertexWave {
     pub(crate) fn resize(&mut self, n: usize) {
+        // as long as the buffers, with which they may change places
         for c in [&mut self.p, &mut self.n, &mut self.omega] {
-            *c = Columns::new(n);
+            *c = Columns::new(n + MARGIN);
         }
-        self.side = vec![0; n];
+        self.side = vec![0; n + MARGIN];
         self.rays.resize(n);
     }
 
@@ -178,6 +185,8 @@ impl VertexWave {
 
     #[inline(always)]
     pub(crate) fn set(&mut self, i: usize, v: Vertex) {
+        // the new vertices may be those of another scene
+        self.rays.sorted.clear();
         self.p.set(i, v.p);
         self.n.set(i, v.n);
         self.omega.set(i, v.omega);

@@ -63,6 +63,9 @@ pub fn beyond(scene: &Scene) -> f64 {
     let rho = f64::from((scene.max_albedo() * scene.lit()).max_element());
     let loss = if rho < 1.0 {
         1.0 - rho
+    } else if let Some((_, q)) = scene.last_resort() {
+        // the same quarter of the same loss, measured when the scene was opened
+        f64::from(q)
     } else {
         let t = SceneTransport::new(scene);
         let g = growth(&FromLight { t: &t, roulette: &Roulette::Never }, 0, 2, 0);

@@ -19,7 +19,7 @@
 
 use super::largest::Largest;
 use crate::math::Columns;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::ops::Range;
 
 /// Size of a film: pixels, slots and replicates.
@@ -90,32 +90,54 @@ impl FilmBlock<'_> {
     #[inline(always)]
     pub(crate) fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
         let n = pixel.len();
-        let (sample, x, y, z) = (&sample[..n], &value.x[..n], &value.y[..n], &value.z[..n]);
-        let replicates = self.shape.replicates as u32;
-        let (power, mask) = (replicates.is_power_of_two(), replicates - 1);
-        let largest = &mut self.largest[slot];
         let mut added = 0;
-        for i in 0..n {
-            // most hits emit nothing, and adding zero would be wasted work
-            if x[i] == 0.0 && y[i] == 0.0 && z[i] == 0.0 {
-                continue;
+        for first in (0..n).step_by(RUN) {
+            let last = (first + RUN).min(n);
+            let some = some_of([&value.x[first..last], &value.y[first..last], &value.z[first..last]]);
+            added += u64::from(some);
+            // most hits emit nothing, so that a run has few contributions or none. Where there are many, zeros are added too:
+            // they change no sum, and a branch that depends on chance costs more
+            if some > FEW {
+                (first..last).for_each(|i| self.add_one(slot, pixel[i], sample[i], value.get(i)));
+            } else if some > 0 {
+                for i in (first..last).filter(|&i| value.get(i) != Vec3::ZERO) {
+                    self.add_one(slot, pixel[i], sample[i], value.get(i));
+                }
             }
-            let replicate = if power { sample[i] & mask } else { sample[i] % replicates };
-            let at =
-                place(slot, replicate as usize, (pixel[i] - self.first) as usize, replicates as usize, self.pixels);
-            let s = &mut self.sums[at..at + 3];
-            s[0] += f64::from(x[i]);
-            s[1] += f64::from(y[i]);
-            s[2] += f64::from(z[i]);
-            let sum = x[i] + y[i] + z[i];
-            let all = f64::from(sum);
-            self.squares[slot * self.pixels + (pixel[i] - self.first) as usize] += all * all;
-            self.non_finite += u64::from(!sum.is_finite());
-            largest.push(sum);
-            added += 1;
         }
-        largest.count(added);
+        self.largest[slot].count(added);
     }
+
+    #[inline(always)]
+    fn add_one(&mut self, slot: usize, pixel: u32, sample: u32, v: Vec3) {
+        let replicates = self.shape.replicates as u32;
+        let replicate = if replicates.is_power_of_two() { sample & (replicates - 1) } else { sample % replicates };
+        let pixel = (pixel - self.first) as usize;
+        let at = place(slot, replicate as usize, pixel, replicates as usize, self.pixels);
+        let s = &mut self.sums[at..at + 3];
+        s[0] += f64::from(v.x);
+        s[1] += f64::from(v.y);
+        s[2] += f64::from(v.z);
+        let sum = v.x + v.y + v.z;
+        let all = f64::from(sum);
+        self.squares[slot * self.pixels + pixel] += all * all;
+        self.non_finite += u64::from(!sum.is_finite());
+        self.largest[slot].push(sum);
+    }
+}
+
+/// Contributions that are looked at together, and the number of them that are not zero up to which they are added one by one.
+const RUN: usize = 16;
+const FEW: u32 = 4;
+
+/// Number of vectors that are not zero.
+#[inline(always)]
+fn some_of([x, y, z]: [&[f32]; 3]) -> u32 {
+    let mut some = 0;
+    for ((x, y), z) in x.iter().zip(y).zip(z) {
+        some += u32::from((*x != 0.0) | (*y != 0.0) | (*z != 0.0));
+    }
+    some
 }
 
 impl TermFilm {

@@ -27,7 +27,7 @@ use geometry::{Side, exchange, facing};
 pub use geometry::{point_to_polygon, polygon_to_polygon};
 pub use invariants::Invariants;
 use rayon::prelude::*;
-use shaft::{Blocker, End};
+use shaft::{Blocker, End, Shaft};
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use visibility::visible_share;
@@ -184,11 +184,12 @@ impl Pairs<'_> {
     ) -> f64 {
         let (a, b) = (&self.patches[i], &self.patches[j]);
         let (ea, eb) = (End::new(a, pa), End::new(b, pb));
+        let shaft = Shaft::new(&ea, &eb);
         let flat = a.ball.is_none() && b.ball.is_none();
         among.clear();
         for (k, blocker) in self.blockers.iter().enumerate() {
             let own = (k == a.primitive && a.ball.is_none()) || (k == b.primitive && b.ball.is_none());
-            if !own && blocker.may_block(&ea, &eb) {
+            if !own && blocker.may_block(&shaft) {
                 if flat && self.bodies.hides(k, pa, pb) {
                     return 0.0;
                 }
@@ -269,9 +270,10 @@ mod tests {
                     continue;
                 };
                 let (ea, eb) = (End::new(a, pa), End::new(b, pb));
+                let shaft = Shaft::new(&ea, &eb);
                 let own = |k: usize| (k == a.primitive && a.ball.is_none()) || (k == b.primitive && b.ball.is_none());
                 let out: Vec<u32> = (0..blockers.len())
-                    .filter(|k| own(*k) || !blockers[*k].may_block(&ea, &eb))
+                    .filter(|k| own(*k) || !blockers[*k].may_block(&shaft))
                     .map(|k| k as u32)
                     .collect();
                 tried += blockers.len();

@@ -13,6 +13,7 @@ use crate::operator::patches::{
 };
 use crate::scene::Primitive;
 use glam::DVec3;
+use std::cell::OnceCell;
 
 /// The shape of a surface, in the form that the test uses.
 #[derive(Clone, Debug)]
@@ -88,21 +89,13 @@ impl Blocker {
     }
 
     /// Returns true if this surface may cut a segment between the two ends. `false` is a proof that it cuts none.
-    pub(super) fn may_block(&self, a: &End<'_>, b: &End<'_>) -> bool {
-        let tolerance = 1e-9 * (a.bounds[1].max(b.bounds[1]) - a.bounds[0].min(b.bounds[0])).max_element();
-        let (lo, hi) = (a.bounds[0].min(b.bounds[0]), a.bounds[1].max(b.bounds[1]));
+    pub(super) fn may_block(&self, shaft: &Shaft<'_>) -> bool {
+        let &Shaft { a, b, low, high, tolerance, between, .. } = shaft;
         let slack = DVec3::splat(tolerance);
-        if (self.bounds[0] + slack).cmpge(hi).any() || (self.bounds[1] - slack).cmple(lo).any() {
+        if (self.bounds[0] + slack).cmpge(high).any() || (self.bounds[1] - slack).cmple(low).any() {
             return false;
         }
-        let margin = bulge(a.patch).max(bulge(b.patch));
-        let separates = |axis: DVec3| {
-            let [s0, t0] = extent(a.polygon, axis);
-            let [s1, t1] = extent(b.polygon, axis);
-            let [s, t] = self.extent(axis);
-            s >= t0.max(t1) + margin - tolerance || t <= s0.min(s1) - margin + tolerance
-        };
-        let between = b.patch.centre - a.patch.centre;
+        let separates = |axis: DVec3| shaft.beside(shaft.extent(axis), self.extent(axis));
         let across = |d: DVec3| {
             let axis = between.cross(d);
             let length = axis.length();
@@ -125,9 +118,53 @@ impl Blocker {
                 }
             }
         }
+        let [of_a, of_b] = *shaft.along.get_or_init(|| [a, b].map(|end| shaft.extent(end.patch.normal)));
+        if shaft.beside(of_a, self.extent(a.patch.normal)) || shaft.beside(of_b, self.extent(b.patch.normal)) {
+            return false;
+        }
         // the axis from the line between the two centres towards the middle of the blocker
         let out = (self.centre - a.patch.centre).reject_from(between).normalize_or_zero();
-        !(separates(a.patch.normal) || separates(b.patch.normal) || (out != DVec3::ZERO && separates(out)))
+        out == DVec3::ZERO || !separates(out)
+    }
+}
+
+/// Two ends and what every blocker between them is compared with.
+pub(super) struct Shaft<'a> {
+    a: &'a End<'a>,
+    b: &'a End<'a>,
+    low: DVec3,
+    high: DVec3,
+    tolerance: f64,
+    margin: f64,
+    between: DVec3,
+    /// Extents along the normals of both patches, once a blocker needs them.
+    along: OnceCell<[[f64; 2]; 2]>,
+}
+
+impl<'a> Shaft<'a> {
+    pub(super) fn new(a: &'a End<'a>, b: &'a End<'a>) -> Self {
+        let (low, high) = (a.bounds[0].min(b.bounds[0]), a.bounds[1].max(b.bounds[1]));
+        Self {
+            tolerance: 1e-9 * (high - low).max_element(),
+            margin: bulge(a.patch).max(bulge(b.patch)),
+            between: b.patch.centre - a.patch.centre,
+            along: OnceCell::new(),
+            low,
+            high,
+            a,
+            b,
+        }
+    }
+
+    /// Lowest and highest value of `axis·x` at both ends.
+    fn extent(&self, axis: DVec3) -> [f64; 2] {
+        let ([s0, t0], [s1, t1]) = (extent(self.a.polygon, axis), extent(self.b.polygon, axis));
+        [s0.min(s1), t0.max(t1)]
+    }
+
+    /// Returns true if a blocker with the extent [s, t] along an axis is beside the ends with the extent [low, high].
+    fn beside(&self, [low, high]: [f64; 2], [s, t]: [f64; 2]) -> bool {
+        s >= high + self.margin - self.tolerance || t <= low - self.margin + self.tolerance
     }
 }
 

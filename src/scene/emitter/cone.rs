@@ -28,21 +28,27 @@ use crate::math::direction::{about, cos_sin_turn};
 use glam::{DVec3, Vec3};
 use std::f64::consts::TAU;
 
-/// Unit vector from the centre to the point `from`, and m; `None` if the point is inside the sphere or on it.
-fn cone(from: Vec3, center: DVec3, r: f64) -> Option<(Vec3, f64)> {
+/// Unit vector from the centre to the point `from`, m, and whether the point is outside the sphere. If it is not, the others
+/// mean nothing.
+#[inline(always)]
+fn cone(from: Vec3, center: DVec3, r: f64) -> (Vec3, f64, bool) {
     let away = from.as_dvec3() - center;
     let d = away.length();
-    if d <= r || r <= 0.0 {
-        return None;
-    }
     let (sin, cos) = (r / d, ((d - r) * (d + r)).sqrt() / d);
-    Some(((away / d).as_vec3(), sin * sin / (1.0 + cos)))
+    ((away / d).as_vec3(), sin * sin / (1.0 + cos), (d > r) & (r > 0.0))
 }
 
 /// A point on the near side of the sphere, with its direction uniform in solid angle, and the density (sr⁻¹). `None` if the
 /// point `from` is inside the sphere or on it.
 pub fn sample(from: Vec3, center: DVec3, radius: f64, u: [f32; 2]) -> Option<(Vec3, f32)> {
-    let (axis, m) = cone(from, center, radius)?;
+    let (point, density, outside) = point(from, center, radius, u);
+    outside.then_some((point, density))
+}
+
+/// The same with a flag, for SIMD lanes.
+#[inline(always)]
+pub(crate) fn point(from: Vec3, center: DVec3, radius: f64, u: [f32; 2]) -> (Vec3, f32, bool) {
+    let (axis, m, outside) = cone(from, center, radius);
     let v = f64::from(u[0]);
     let (x, rest) = (v * m, 2.0 - m);
     let (cos_theta, sin_theta) = (1.0 - x, (x * (2.0 - x)).sqrt());
@@ -52,15 +58,17 @@ pub fn sample(from: Vec3, center: DVec3, radius: f64, u: [f32; 2]) -> Option<(Ve
     let (c, s) = cos_sin_turn(u[1]);
     let normal = about(axis, sin_alpha as f32 * c, sin_alpha as f32 * s, cos_alpha as f32);
     // normalised again in `f64`, so that the point lies on the sphere whatever its size
-    Some(((center + radius * normal.as_dvec3().normalize()).as_vec3(), density(m)))
+    ((center + radius * normal.as_dvec3().normalize()).as_vec3(), density(m), outside)
 }
 
 /// Density (sr⁻¹) of every direction that hits the sphere under [`sample`]; 0 if the point `from` is inside the sphere or on
 /// it.
 pub fn pdf(from: Vec3, center: DVec3, radius: f64) -> f32 {
-    cone(from, center, radius).map_or(0.0, |(_, m)| density(m))
+    let (_, m, outside) = cone(from, center, radius);
+    if outside { density(m) } else { 0.0 }
 }
 
+#[inline(always)]
 fn density(m: f64) -> f32 {
     (1.0 / (TAU * m)) as f32
 }

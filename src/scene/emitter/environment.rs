@@ -48,6 +48,8 @@ pub struct Environment {
     /// s at the h + 1 edges of the rows, from 0 to 1.
     heights: Vec<f64>,
     mean: DVec3,
+    /// Radiance and density of a sky of one texel, which is the same everywhere.
+    constant: Option<(Rgb, f32)>,
 }
 
 impl Environment {
@@ -75,7 +77,12 @@ impl Environment {
         let Some(table) = Table::new([w, h], weight) else { unreachable!("one texel at least is not black") };
         let row_sum = |row| (0..w).map(|column| image.texel(column, row).as_dvec3()).sum::<DVec3>();
         let mean = (0..h).map(|row| share(row) * row_sum(row)).sum::<DVec3>() * f64::from(scale as f32);
-        Self { turn: (rotate_degrees / 360.0).rem_euclid(1.0), scale: scale as f32, mean, table, heights, image }
+        let turn = (rotate_degrees / 360.0).rem_euclid(1.0);
+        let mut sky = Self { turn, scale: scale as f32, mean, table, heights, image, constant: None };
+        if [w, h] == [1, 1] {
+            sky.constant = Some((sky.radiance(Vec3::Y), sky.density([0, 0])));
+        }
+        sky
     }
 
     /// The texel `[column, row]` seen in direction `d`.
@@ -92,18 +99,22 @@ impl Environment {
     }
 
     /// Radiance that arrives from the unit direction `d`, W·sr⁻¹·m⁻².
+    #[inline]
     pub fn radiance(&self, d: Vec3) -> Rgb {
+        if let Some((radiance, _)) = self.constant {
+            return radiance;
+        }
         let [column, row] = self.texel(d);
         self.image.texel(column, row) * self.scale
     }
 
     /// A sampled unit direction towards the sky, and its density in sr⁻¹ (never 0).
     pub fn sample(&self, u: [f32; 2]) -> (Vec3, f32) {
-        let [w, h] = self.image.size;
-        if [w, h] == [1, 1] {
+        if let Some((_, density)) = self.constant {
             // one texel has no edges to keep away from
-            return (uniform_sphere(u).normalize(), self.density([0, 0]));
+            return (uniform(u), density);
         }
+        let [w, h] = self.image.size;
         let ([column, row], rest) = self.table.sample(u);
         // the centre of the interval of length 2⁻²⁴ that the number represents
         let [across, down] = rest.map(|t| f64::from(t) + 0.5 / f64::from(1 << 24));
@@ -118,9 +129,16 @@ impl Environment {
         (DVec3::new(sin * x, cos, -sin * minus_z).as_vec3(), self.density([column, row]))
     }
 
+    /// Radiance and density of a sky that is the same everywhere; [`uniform`] samples it.
+    #[inline]
+    pub(crate) fn constant(&self) -> Option<(Rgb, f32)> {
+        self.constant
+    }
+
     /// Density of the direction `d` under [`Self::sample`], sr⁻¹.
+    #[inline]
     pub fn pdf(&self, d: Vec3) -> f32 {
-        self.density(self.texel(d))
+        self.constant.map_or_else(|| self.density(self.texel(d)), |(_, density)| density)
     }
 
     fn density(&self, [column, row]: [u32; 2]) -> f32 {
@@ -133,4 +151,10 @@ impl Environment {
     pub fn mean(&self) -> DVec3 {
         self.mean
     }
+}
+
+/// A uniformly distributed unit direction, as a constant sky is sampled.
+#[inline(always)]
+pub(crate) fn uniform(u: [f32; 2]) -> Vec3 {
+    uniform_sphere(u).normalize()
 }

@@ -56,6 +56,43 @@ pub(crate) enum Light {
     Environment,
 }
 
+/// A light as a row of numbers, from which waves fill SIMD lanes. What a kind does not need is zero.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Row {
+    /// One bit, see [`kind`].
+    pub(crate) kind: u32,
+    /// P_i.
+    pub(crate) probability: f32,
+    /// Position of a point light, or unit direction towards parallel light.
+    pub(crate) at: Vec3,
+    /// What [`Scene::light`](super::Scene::light) returns for its points; zero for an image of the sky.
+    pub(crate) radiance: Rgb,
+    /// Density of a constant sky, sr⁻¹.
+    pub(crate) density: f32,
+    /// Primitive, centre and radius of a sphere.
+    pub(crate) prim: u32,
+    pub(crate) center: DVec3,
+    pub(crate) radius: f64,
+}
+
+/// Kinds of lights as bits of a set.
+pub(crate) mod kind {
+    /// A point light.
+    pub(crate) const POINT: u32 = 1;
+    /// Parallel light.
+    pub(crate) const PARALLEL: u32 = 2;
+    /// A constant sky.
+    pub(crate) const SKY: u32 = 4;
+    /// A sky with an image.
+    pub(crate) const IMAGE: u32 = 8;
+    /// A whole sphere.
+    pub(crate) const BALL: u32 = 16;
+    /// Any other surface.
+    pub(crate) const SURFACE: u32 = 32;
+    /// Lights that a ray can hit.
+    pub(crate) const HITTABLE: u32 = SKY | IMAGE | BALL | SURFACE;
+}
+
 /// All lights of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
@@ -73,6 +110,10 @@ pub struct Lights {
     pub(crate) density: Vec<f32>,
     /// The sky, and its number among the lights.
     pub(crate) environment: Option<(Environment, u32)>,
+    /// Radiance of each light with a surface.
+    emission: Vec<Rgb>,
+    /// Every light as numbers.
+    rows: Vec<Row>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -99,6 +140,7 @@ impl Lights {
                 }
                 _ => Light::Surface { cdf: cdf.collect(), prims: mine },
             };
+            all.emission.push(shape.emission.as_vec3());
             all.push(light, PI * area * luminance(shape.emission), area);
         }
         for light in &description.lights {
@@ -151,6 +193,32 @@ impl Lights {
             i => (self.probability[i as usize] / self.area[i as usize]) as f32,
         };
         self.density = self.of_prim.iter().map(density).collect();
+        self.rows = (0..self.lights.len()).map(|i| self.as_numbers(i)).collect();
+    }
+
+    fn as_numbers(&self, i: usize) -> Row {
+        let row = Row { probability: self.probability(i as u32), ..Row::default() };
+        let sky = self.environment.as_ref().and_then(|(sky, _)| sky.constant());
+        match (&self.lights[i], sky) {
+            (Light::Surface { .. }, _) => Row { kind: kind::SURFACE, radiance: self.emission[i], ..row },
+            (&Light::Ball { prim, center, radius }, _) => {
+                Row { kind: kind::BALL, radiance: self.emission[i], prim, center, radius, ..row }
+            }
+            (&Light::Point { position, intensity }, _) => {
+                Row { kind: kind::POINT, at: position, radiance: intensity, ..row }
+            }
+            (&Light::Directional { direction, irradiance }, _) => {
+                Row { kind: kind::PARALLEL, at: -direction, radiance: irradiance, ..row }
+            }
+            (Light::Environment, Some((radiance, density))) => Row { kind: kind::SKY, radiance, density, ..row },
+            (Light::Environment, None) => Row { kind: kind::IMAGE, ..row },
+        }
+    }
+
+    /// A light as numbers.
+    #[inline(always)]
+    pub(crate) fn row(&self, light: u32) -> &Row {
+        &self.rows[light as usize]
     }
 
     /// Number of lights.
