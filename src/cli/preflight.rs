@@ -226,7 +226,14 @@ fn reflecting(scene: &Scene) -> usize {
 
 /// Refuses a matrix that needs more memory than is free: rows, patches, terms and solution are held at the same time.
 pub fn rows_fit_in_memory(scene: &Scene, settings: &Settings) -> Result<(), Failure> {
-    let n = settings.patches.max(reflecting(scene)) as u64;
+    let sides = reflecting(scene);
+    if sides > settings.patches {
+        note(&format!(
+            "note: each of the scene's {sides} sides is at least one patch, so the mesh has more than {} patches",
+            settings.patches
+        ));
+    }
+    let n = settings.patches.max(sides) as u64;
     // measured: a patch of the mesh takes about 400 bytes, a vector over the patches 24, a stored ray 3
     let row = match settings.factors {
         Factors::Dense => 4 * n,
