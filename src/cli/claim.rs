@@ -67,6 +67,11 @@ fn open(path: &Path) -> std::io::Result<File> {
     OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)
 }
 
+/// True if a run is at work in this folder.
+pub fn is_taken(folder: &Path) -> bool {
+    File::open(folder.join(NAME)).is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
 /// The command of a run that was killed in this folder. None if there is none, or if a run is at work.
 pub fn left_behind(folder: &Path) -> Option<String> {
     let mut file = File::open(folder.join(NAME)).ok()?;

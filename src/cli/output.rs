@@ -23,16 +23,16 @@ pub fn folder(
             let what = format!("the output folder holds an input, {}", input.display());
             return Err(refused(&what, dir, "choose another with -o"));
         }
+        if claim::is_taken(dir) {
+            return Err(taken(dir));
+        }
         if !force && !ours(dir, command) {
             let help = "choose another with -o, or replace it with --force";
             return Err(refused("the output folder holds another run's output", dir, help));
         }
         return match claimed(dir, command)? {
             Some(claim) => Ok((dir.to_path_buf(), claim)),
-            None => {
-                let help = "wait until it ends, or choose another with -o";
-                Err(refused("another run is writing into the output folder", dir, help))
-            }
+            None => Err(taken(dir)),
         };
     }
     let base = PathBuf::from("fredholm-out");
@@ -62,6 +62,11 @@ fn claimed(dir: &Path, command: &str) -> Result<Option<Claim>, Failure> {
 fn is_in(input: &Path, dir: &Path) -> bool {
     let [input, dir] = [input, dir].map(|p| p.canonicalize().ok());
     input.zip(dir).is_some_and(|(input, dir)| if input.is_dir() { input == dir } else { input.parent() == Some(&dir) })
+}
+
+fn taken(dir: &Path) -> Failure {
+    let help = "wait until it ends, or choose another with -o";
+    refused("another run is writing into the output folder", dir, help)
 }
 
 fn refused(what: &str, dir: &Path, help: &str) -> Failure {

@@ -6,20 +6,24 @@
 //! ```
 //!
 //! An encoded picture differs from the right one almost everywhere, by an amount that depends on the brightness alone. No mistake in
-//! light transport does that, so the curve is recognised before any other cause is sought. The exposure c is free. The sRGB curve and
-//! a power of 1/2.2 are too close to each other to be told apart.
+//! light transport does that, so the curve is recognised before any other cause is sought. The exposure c is free.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | P, R | the picture and the right one, channels of all pixels | arguments of [`is_encoded`] |
-//! | s | transfer curve of IEC 61966-2-1 (1999) | `decoded` |
+//! | s | transfer curve of IEC 61966-2-1 (1999), or the power 1/2.2 | [`is_encoded`] |
 
-/// Slopes of ln P against ln R that an encoded picture may have.
-const ENCODED: std::ops::RangeInclusive<f64> = 0.35..=0.65;
+/// Slopes of ln P against ln R that an encoded picture may have; the curve of sRGB is straight where it is dark.
+const ENCODED: std::ops::RangeInclusive<f64> = 0.3..=0.8;
 /// The same after decoding.
 const LINEAR: std::ops::RangeInclusive<f64> = 0.85..=1.2;
 /// Decoding must bring the picture this much closer to the right one.
 const CLOSER: f64 = 0.6;
+/// Largest range of the ratio of the decoded picture to the right one, over parts of the picture. Where samples were encoded before
+/// their mean was taken, the ratio is smaller where the noise is larger.
+const EVEN: f64 = 0.12;
+/// Parts of a picture.
+const PARTS: usize = 8;
 /// Fewest values that can tell a curve.
 const FEWEST: usize = 64;
 /// Smallest range of brightness (interquartile, natural logarithm) that can tell a curve.
@@ -34,27 +38,33 @@ const RANGE: f64 = 0.3;
 /// assert!(is_encoded(&encoded, &right) && !is_encoded(&right, &right));
 /// ```
 pub fn is_encoded(picture: &[[f32; 3]], right: &[[f32; 3]]) -> bool {
-    let pairs = picture.iter().flatten().zip(right.iter().flatten()).map(|(p, r)| (f64::from(*p), f64::from(*r)));
+    let srgb = |s: f64| if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) };
+    let gamma = |s: f64| s.powf(2.2);
+    let curves: [&dyn Fn(f64) -> f64; 2] = [&srgb, &gamma];
+    curves.iter().any(|decode| is_encoded_by(decode, picture, right))
+}
+
+fn is_encoded_by(decode: &dyn Fn(f64) -> f64, picture: &[[f32; 3]], right: &[[f32; 3]]) -> bool {
     // what is clipped or black tells nothing
-    let seen: Vec<(f64, f64)> = pairs.filter(|(p, r)| *p > 0.0 && *p < 0.999 && *r > 0.0 && r.is_finite()).collect();
+    let tells = |p: f64, r: f64| p > 0.0 && p < 0.999 && r > 0.0 && r.is_finite();
+    let pairs = |c: usize| picture.iter().zip(right).map(move |(p, r)| (f64::from(p[c]), f64::from(r[c])));
+    let seen: Vec<(f64, f64)> = (0..3).flat_map(pairs).filter(|(p, r)| tells(*p, *r)).collect();
     if seen.len() < FEWEST {
         return false;
     }
     let x: Vec<f64> = seen.iter().map(|(_, r)| r.ln()).collect();
-    let (as_stored, as_decoded): (Vec<f64>, Vec<f64>) = seen.iter().map(|(p, _)| (p.ln(), decoded(*p).ln())).unzip();
-    if spread(x.clone()) < RANGE
-        || !ENCODED.contains(&slope(&x, &as_stored))
-        || !LINEAR.contains(&slope(&x, &as_decoded))
-    {
+    let (stored, decoded): (Vec<f64>, Vec<f64>) = seen.iter().map(|(p, _)| (p.ln(), decode(*p).ln())).unzip();
+    if spread(x.clone()) < RANGE || !ENCODED.contains(&slope(&x, &stored)) || !LINEAR.contains(&slope(&x, &decoded)) {
         return false;
     }
     let apart = |y: &[f64]| spread(y.iter().zip(&x).map(|(y, x)| y - x).collect());
-    apart(&as_decoded) < CLOSER * apart(&as_stored)
-}
-
-/// Undoes the curve of sRGB.
-fn decoded(s: f64) -> f64 {
-    if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) }
+    let part = |c: usize, part: usize| {
+        let some: Vec<(f64, f64)> = pairs(c).skip(part * picture.len() / PARTS).take(picture.len() / PARTS).collect();
+        let sums = some.iter().filter(|(p, r)| tells(*p, *r)).fold((0.0, 0.0), |a, (p, r)| (a.0 + decode(*p), a.1 + r));
+        (sums.1 > 0.0).then(|| (sums.0 / sums.1).ln())
+    };
+    let ratios: Vec<f64> = (0..3).flat_map(|c| (0..PARTS).filter_map(move |i| part(c, i))).collect();
+    apart(&decoded) < CLOSER * apart(&stored) && ratios.len() > PARTS && spread(ratios) < EVEN
 }
 
 /// The range that holds the middle half of some values.
@@ -107,6 +117,15 @@ mod tests {
                 assert!(is_encoded(&of(&srgb), &right), "sRGB, noise {noise}, exposure {exposure}");
                 assert!(is_encoded(&of(&|v| v.powf(1.0 / 2.2)), &right), "gamma, noise {noise}, exposure {exposure}");
                 // the right picture, a constant, light that is missing where it is dark, and a square
+                // samples that are encoded before their mean is taken: one of two, which is half the time black
+                let before = of(&|v| 0.5 * (2.0 * v).powf(1.0 / 2.2));
+                let uneven: Vec<[f32; 3]> = picture
+                    .iter()
+                    .zip(&before)
+                    .enumerate()
+                    .map(|(i, (p, b))| if i % 500 < 250 { *b } else { p.map(|v| (exposure * v).powf(1.0 / 2.2)) })
+                    .collect();
+                assert!(!is_encoded(&uneven, &right), "before the mean, noise {noise}, exposure {exposure}");
                 for linear in [&(|v| v) as &dyn Fn(f64) -> f64, &|v| 3.0 * v, &|v| (v - 0.01).max(0.0), &|v| v * v] {
                     assert!(!is_encoded(&of(linear), &right), "noise {noise}, exposure {exposure}");
                 }

@@ -243,7 +243,7 @@ fn terms_can_be_compared_at_one_exposure() {
     let sheet = |dir: &str| std::fs::read(desk.path(dir).join("terms.png")).unwrap();
     assert!(sheet("own") != sheet("two") && sheet("two") != sheet("direct"), "the contact sheet follows");
     let page = |dir: &str| std::fs::read_to_string(desk.path(dir).join("index.html")).unwrap();
-    assert!(page("own").contains("its own exposure") && page("two").contains("the same exposure, so"));
+    assert!(page("own").contains("\"gain\":\"each\"") && page("two").contains("\"gain\":\"one\""));
     for (line, says) in [
         ("series cornell --exposure bright", "`bright` is not auto, a gain such as 2, or a term such as T1"),
         ("series cornell --exposure 0", "`0` is not auto"),

@@ -5,6 +5,7 @@ use super::pictures::{Layer, layers};
 use super::plots::{decay_of, variance_of};
 use fredholm::engine::by_rays::Sampled;
 use fredholm::report::half_width_95;
+use fredholm::report::image::exposure::Exposure;
 use fredholm::report::page::data::{Bounds, Curve, Data, Image, Line, Plot, Slot};
 use fredholm::report::plot;
 use fredholm::report::text::sentence::sentence;
@@ -13,10 +14,11 @@ use fredholm::study::run::Run;
 use fredholm::terms::{TermImage, Variance, World};
 
 /// The images and numbers of a run.
-pub(super) fn data<'a>(run: &'a Run, out: &Files, summary: &Summary) -> Data {
+pub(super) fn data<'a>(run: &'a Run, out: &Files, exposure: Exposure, summary: &Summary) -> Data {
     let mut data = Data::new(run.description.camera.size.map(|s| s as usize));
     data.scene = run.description.name.clone();
     data.command = out.record.command.clone();
+    data.gain = if exposure == Exposure::Auto { "each" } else { "one" };
     (data.seed, data.spp, data.max_bounces) = (run.settings.seed, summary.spp, run.settings.max_bounces);
     let mut images = vec![];
     for Layer { name, image, errors, of, slot } in layers(run) {

@@ -21,7 +21,7 @@ pub(super) fn write_page(
     let [decay, variance] = ["decay.svg", "variance.svg"].map(|name| out.path(name));
     let candidates = [("decay.svg", Plate::decay(&decay)), ("variance.svg", Plate::variance(&variance))];
     let plates = candidates.into_iter().filter(|(name, _)| out.has(name)).map(|(_, plate)| plate).collect();
-    let data = data(run, out, summary);
+    let data = data(run, out, exposure, summary);
     let s = &run.settings;
     let facts = [
         ("seed", s.seed.to_string()),

@@ -37,6 +37,8 @@ pub struct Data {
     /// Width and height of the images of the run.
     pub full: [usize; 2],
     pub max_bounces: usize,
+    /// Exposure at the start: `each` image its own gain, or `one` for all.
+    pub gain: &'static str,
     pub layers: Vec<Layer>,
     pub early: Vec<Layer>,
     pub worlds: Vec<Answer>,

@@ -31,7 +31,7 @@ export function initial(data) {
     look: 'srgb',
     exposure: 0,
     offset: 0,
-    gain: 'each',
+    gain: data.gain,
     wipe: null,
     scale: [1, 1, 1],
     on: Array.from({ length: data.max_bounces + 2 }, () => true),

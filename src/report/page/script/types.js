@@ -71,6 +71,7 @@
  * @property {number} reduced
  * @property {[number, number]} full       size of the images of the run
  * @property {number} max_bounces
+ * @property {'each' | 'one'} gain          exposure at the start
  * @property {Layer[]} layers
  * @property {Layer[]} early
  * @property {Answer[]} worlds
