@@ -61,6 +61,7 @@ fn a_killed_run_leaves_its_folder_to_the_same_command() {
     let other = desk.run("series cornell --worlds terms --spp 4 --size 8x8 -q -o long");
     assert_eq!(other.code, 3, "{}", other.err);
     std::fs::write(desk.path("long/.terms.exr.1.tmp"), "half").unwrap();
+    std::fs::remove_file(desk.path("long/terms.png")).unwrap();
     let child = at_work(&desk, &long, "long");
     send("-INT", &child);
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));

@@ -71,6 +71,9 @@ fn pictures_that_are_something_else_are_named() {
     assert_eq!(said.code, 3, "{}", said.out);
     assert!(said.err.contains("16×16") && said.err.contains("20×16"), "{}", said.err);
     // the layered file of fredholm itself
-    let said = run_tidily(desk.path(), "diagnose other/terms.exr --against cornell --spp 256 --paths 400000 -q -o own");
+    let said = run_tidily(
+        desk.path(),
+        "diagnose other/terms.exr --against cornell --set camera.size=[20,16] --spp 256 --paths 400000 -q -o own",
+    );
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
 }
