@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Images are embedded as floats ([`data`](super::data)), plots as inline SVG, so that the page can be mailed or handed in. Scripts
-//! ([`script`](super::script)) draw both; without them the plots are still there. The colours of the page follow the reader's light
+//! ([`script`]) draw both; without them the plots are still there. The colours of the page follow the reader's light
 //! or dark setting.
 
 use base64::prelude::{BASE64_STANDARD, Engine};

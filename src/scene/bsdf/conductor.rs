@@ -8,7 +8,7 @@
 //! | notation | meaning | place |
 //! |---|---|---|
 //! | F | Fresnel reflectance of index η + ik, or one colour at every angle | [`Conductor::fresnel`] |
-//! | h | micronormal, half-way between ω_o and ω_i | [`half`] |
+//! | h | micronormal, half-way between ω_o and ω_i | [`half()`] |
 //! | D, G, D_ωo | microfacet distribution, masking and shadowing, density of the normals visible from ω_o | [`super::ggx`] |
 //! | 4 ω_o·h | dω_i/dh of a reflection | [`Conductor::pdf`] |
 //!
