@@ -173,7 +173,7 @@ test('the sliders give the scaled series with its error', async ({ page }) => {
   const { functionals } = summary.series[0];
   const known = functionals[0].terms.reduce((/** @type {number} */ a, /** @type {any} */ t, /** @type {number} */ k) => a + 0.5 ** k * average(t.mean), 0);
   const upper = known + 0.5 ** 9 * average(functionals[0].tail.mean);
-  const said = /Mean radiance ([\d.]+) ±/.exec((await page.locator('#what-if-text').textContent()) ?? '');
+  const said = /whole sum ([\d.]+) ±/.exec((await page.locator('#what-if-text').textContent()) ?? '');
   expect(Number(said?.[1]) / upper).toBeCloseTo(1, 3);
   const slack = Number(((await page.locator('#slack').textContent()) ?? '').replace('−', '-'));
   expect(slack / (upper - known)).toBeCloseTo(1, 1);
@@ -272,6 +272,29 @@ test('the first samples have the mean of all', async ({ page }) => {
   const all = Number(/With all 256 samples: mean ([\d.]+)/.exec(text)?.[1]);
   // the noise of 16 × 96² paths, and the codes of the early image
   expect(Math.abs(few / all - 1)).toBeLessThan(0.05);
+  // both cards count the same clipped pixels
+  const share = /\(([\d.]+ %)\) are too bright/.exec((await page.locator('#reading').textContent()) ?? '')?.[1];
+  await expect(page.locator('#samples-text')).toContainText(`${share} of the pixels clipped`);
+  // of other images the first samples are not kept, and nothing claims them
+  await page.keyboard.press('4');
+  await expect(page.locator('#tag')).not.toHaveText(/samples/);
+  expect(await hash(page)).not.toContain('spp');
+});
+
+test('links ask for nothing that cannot be', async ({ page }) => {
+  const { page: address } = box();
+  // the first samples are not scaled, and s ends before the series diverges
+  await open(page, `${address}#show=terms:T2&spp=16&s=0.5,0.5,0.5`);
+  await expect(page.locator('#tag')).toHaveText(/16 samples$/);
+  await expect(page.locator('#s-all-value')).toHaveText('1.00');
+  await page.goto('about:blank');
+  await open(page, `${address}#s=9,9,9&show=nonsense&pixel=-3,7&constructor=1&off=1`);
+  await expect(page.locator('#reading')).not.toContainText('not finite');
+  await expect(page.locator('#reading')).toContainText('Left out: TE.');
+  await expect(page.locator('#tag')).toHaveText(/series · s = \d.*some terms off$/);
+  // the path tracer has no terms, and its label claims no s
+  await page.keyboard.press('ArrowDown');
+  await expect(page.locator('#tag')).toHaveText(/path tracer$/);
 });
 
 test('plots tell values and lead to the image', async ({ page }) => {

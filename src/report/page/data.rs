@@ -12,7 +12,7 @@
 use super::codes::{Logarithms, Means, text};
 use crate::report::{half_width_95, text::pixel_errors::PixelErrors};
 use crate::terms::functional::Replicates;
-use crate::terms::{Estimate, Functional, TileSums, Variance, World};
+use crate::terms::{Functional, TileSums, Variance, World};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write;
@@ -270,7 +270,7 @@ impl Data {
             deviation: replicates.deviation.iter().map(|d| d.iter().map(|v| v.to_array()).collect()).collect(),
             t95: half_width_95(1.0, count),
             variance,
-            cut: image.tail == Estimate::NONE || image.tail.is_none(),
+            cut: image.tail.is_none(),
             apart,
             tiles: codes.exponent,
             mesh,

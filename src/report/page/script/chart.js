@@ -29,7 +29,8 @@ import { significant } from '#page/format.js';
  * @property {boolean} [logY]
  * @property {string[]} [names]                names of x = 0, 1, …
  * @property {Series[]} series
- * @property {{label: string, color: string, at: (x: number) => number}[]} [lines]
+ * @property {{label: string, color: string, from?: number, at: (x: number) => number}[]} [lines]
+ * @property {boolean} [titled]                the title is also shown
  * @property {{label: string, color: string, from: number, to: number}[]} [bands]
  */
 
@@ -55,16 +56,17 @@ export function draw(into, chart) {
     const [a, b] = [y(from), y(to)];
     parts.push(`<rect x="${LEFT}" width="${WIDTH - LEFT - RIGHT}" y="${f(Math.min(a, b) - 1)}" height="${f(Math.abs(a - b) + 2)}" fill="${color}" opacity="0.35"/>`);
   }
-  for (const { at, color } of chart.lines ?? []) {
-    const ends = [xTicks[0][0], xTicks[xTicks.length - 1][0]];
+  for (const { at, color, from } of chart.lines ?? []) {
+    const last = xTicks[xTicks.length - 1][0];
+    const ends = [Math.max(from ?? -Infinity, xTicks[0][0]), chart.logX ? last : last + 0.5];
     parts.push(`<path d="M${f(x(ends[0]))} ${f(y(at(ends[0])))}L${f(x(ends[1]))} ${f(y(at(ends[1])))}" stroke="${color}" stroke-width="1.6" stroke-dasharray="6 4" fill="none" clip-path="url(#plot-area)"/>`);
   }
   chart.series.forEach((s, i) => parts.push(one(s, x, y, 5 * (i - (chart.series.length - 1) / 2) * (chart.logX ? 0 : 1))));
   const svg = `<svg viewBox="0 0 ${WIDTH} ${HEIGHT}" role="img" aria-label="${attribute(chart.title)}">
     <clipPath id="plot-area"><rect x="${LEFT}" y="${TOP}" width="${WIDTH - LEFT - RIGHT}" height="${HEIGHT - TOP - BOTTOM}"/></clipPath>${parts.join('')}</svg>`;
   const keys = [...chart.series, ...(chart.lines ?? []), ...(chart.bands ?? [])].filter((s) => s.label);
-  const legend = keys.length > 1 ? `<p class="key">${keys.map((k) => `<span><i style="background:${k.color}"></i>${attribute(k.label)}</span>`).join('')}</p>` : '';
-  into.innerHTML = `${svg}${legend}<p class="hover" aria-live="polite">Point at a mark, or use the arrow keys on the plot, to read its value.</p>`;
+  const legend = keys.length > 1 ? `<p class="key">${keys.map((k) => `<span><i${'at' in k ? ' class="dashed"' : ''} style="background-color:${k.color}"></i>${attribute(k.label)}</span>`).join('')}</p>` : '';
+  into.innerHTML = `${chart.titled ? `<p class="key">${attribute(chart.title)}</p>` : ''}${svg}${legend}<p class="hover" aria-live="polite">Point at a mark, or use the arrow keys on the plot, to read its value.</p>`;
   listen(into, chart, x, y);
 }
 

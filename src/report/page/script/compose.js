@@ -24,7 +24,7 @@ export class Composer {
   /** @param {Run} run */
   constructor(run) {
     this.run = run;
-    /** The picture of the reader, and its errors if they are known. @type {{pixels: Float32Array, errors: Float32Array | null} | null} */
+    /** The picture of the reader, and its errors if they are known. @type {{pixels: Float32Array, errors: Float32Array | null, eightBit: boolean} | null} */
     this.own = null;
   }
 
@@ -82,7 +82,7 @@ export class Composer {
     const { world, kind } = subject;
     if (world === 'own') return this.own?.errors ? { values: this.own.errors, most: false } : null;
     if (this.isFirst(subject, state)) return null;
-    if (kind === 'whole' && untouched(state)) {
+    if (!run.hasTerms(world) || (kind === 'whole' && untouched(state))) {
       const values = run.error(world, 'whole');
       return values ? { values, most: false } : null;
     }
@@ -111,7 +111,7 @@ export class Composer {
     const sum = (/** @type {(Float32Array | undefined)[]} */ parts) =>
       [0, 1, 2].map((c) => parts.reduce((a, part, j) => (all[j][c] === 0 ? a : a + all[j][c] * (part ? part[i + c] : NaN)), 0));
     const rgb = sum(run.parts(world));
-    if (kind === 'whole' && untouched(state)) return { rgb, errors: three(run.error(world, 'whole')) };
+    if (!run.hasTerms(world) || (kind === 'whole' && untouched(state))) return { rgb, errors: three(run.error(world, 'whole')) };
     return { rgb, errors: sum(all.map((_, j) => run.error(world, j > run.data.max_bounces ? 'rest' : j))) };
   }
 

@@ -12,7 +12,7 @@ import { meanOf, reading, words } from '#page/reading.js';
 import { Run } from '#page/run.js';
 import { samples } from '#page/samples.js';
 import { share } from '#page/share.js';
-import { Store, initial, nameOf, read, subjectOf, written } from '#page/state.js';
+import { Store, initial, nameOf, possible, read, subjectOf, written } from '#page/state.js';
 import { OCTAVES, gradient, tone } from '#page/tone.js';
 import { tries } from '#page/tries.js';
 import { Viewer } from '#page/viewer.js';
@@ -36,6 +36,8 @@ export class App {
   /** @type {ReturnType<typeof setInterval> | undefined} */
   #playing;
   #asked = false;
+  /** What is shown after each drawing. @type {(() => void)[]} */
+  drawn = [];
   /** The pixel under the pointer. @type {[number, number] | null} */
   #pointed = null;
   /** In a map of z, the share of pixels beyond 2. @type {number | null} */
@@ -47,7 +49,7 @@ export class App {
     this.composer = new Composer(run);
     this.gains = new Gains(this.composer);
     this.start = initial(run.data);
-    this.store = new Store(read(location.hash, this.start, run.data));
+    this.store = new Store(read(location.hash, this.start, run.data), (state) => possible(state, run.data));
     this.sums = this.store.state.subject.kind === 'sum';
     const { store } = this;
     this.viewer = new Viewer(/** @type {HTMLCanvasElement} */ (byId('canvas')), run.data.width, run.data.height, {
@@ -97,6 +99,7 @@ export class App {
     } else {
       viewer.colours(0).fill(0);
       viewer.changed(0);
+      this.counts = null;
     }
     if (state.wipe !== null) {
       const plain = /** @type {State} */ ({ ...state, metric: 'value' });
@@ -108,13 +111,15 @@ export class App {
     viewer.draw();
     this.far = state.metric === 'z' && pixels ? farOut(pixels) : null;
     this.#label(state, subject, pixels !== null, look);
+    this.drawn.forEach((show) => show());
     this.#under(this.#pointed);
   }
 
   /** @param {State} state @param {Subject} subject @param {boolean} known @param {import('#page/types.js').Look} look */
   #label(state, subject, known, look) {
-    const why = state.metric === 'z' && !known ? 'z needs two answers from different paths, both with known errors' : '';
-    byId('tag').textContent = why || (state.metric === 'value' ? `${tagText(subject, this.gain)}${this.composer.isFirst(subject, state) ? ` · ${state.spp} samples` : ''}${changed(state)}` : compared(state, subject));
+    const why = state.metric === 'z' && !known ? 'z needs two answers from different paths, with all samples and known errors' : '';
+    const how = (/** @type {Subject} */ s) => this.#how(s, state);
+    byId('tag').textContent = why || (state.metric === 'value' ? tagText(subject, this.gain) + how(subject) : compared(state, subject, how));
     byId('tag-right').hidden = state.wipe === null;
     byId('ramp').hidden = look === 'srgb' || !known;
     if (look !== 'srgb') {
@@ -124,7 +129,7 @@ export class App {
       from.textContent = significant(look === 'false' ? 2 ** -OCTAVES / this.gain : -1 / this.gain, 2);
       to.textContent = `${significant(1 / this.gain, 2)} ${unit}${look === 'false' ? ', logarithmic' : ''}`;
     }
-    if (this.counts) byId('reading').innerHTML = reading(this, state, subject, this.counts, this.gain);
+    byId('reading').innerHTML = reading(this, state, subject, this.counts, this.gain);
     byId('canvas').setAttribute('aria-label', `${symbol(subject)}: ${meaning(subject, this.run.data.max_bounces)}`);
   }
 
@@ -142,11 +147,22 @@ export class App {
     byId('under').textContent = `${x}, ${y}: ${value}`;
   }
 
+  /** How an image was changed: its first samples only, scaled, terms left out. @param {Subject} subject @param {State} state */
+  #how(subject, state) {
+    if (this.composer.isFirst(subject, state)) return ` · ${state.spp} samples`;
+    if (!this.run.hasTerms(subject.world)) return '';
+    const { scale, on } = state;
+    const s = scale.every((v) => v === scale[0]) ? scale[0].toFixed(2) : scale.map((v) => v.toFixed(2)).join(', ');
+    const off = (subject.kind === 'whole' || subject.kind === 'sum') && !on.every(Boolean);
+    return `${scale.some((v) => v !== 1) ? ` · s = ${s}` : ''}${off ? ' · some terms off' : ''}`;
+  }
+
   /** Tells a screen reader what is shown. */
   speak() {
     const { subject } = this.store.state;
-    const mean = meanOf(this, subject, this.store.state);
-    byId('spoken').textContent = `${meaning(subject, this.run.data.max_bounces)}${mean ? `, mean radiance ${words(mean)}` : ''}`;
+    const { state } = this.store;
+    const mean = this.composer.isFirst(subject, state) ? null : meanOf(this, subject, state);
+    byId('spoken').textContent = `${meaning(subject, this.run.data.max_bounces)}${this.#how(subject, state)}${mean ? `, mean radiance ${words(mean)}` : ''}`;
   }
 
   /** True if there is such an image. @param {Subject} subject */
@@ -226,23 +242,24 @@ export class App {
   }
 }
 
-/** How the series was changed, in words. @param {State} state */
-function changed({ scale, on }) {
-  const s = scale.every((v) => v === scale[0]) ? scale[0].toFixed(2) : scale.map((v) => v.toFixed(2)).join(', ');
-  return `${scale.some((v) => v !== 1) ? ` · s = ${s}` : ''}${on.every(Boolean) ? '' : ' · some terms off'}`;
-}
-
-/** What a difference is, in words. @param {State} state @param {Subject} subject */
-function compared({ metric, reference }, subject) {
-  const [a, b] = [subject, reference].map((s) => `${symbol(s)} (${WORLD_NAMES[s.world]})`);
+/**
+ * What a difference is, in words.
+ * @param {State} state @param {Subject} subject @param {(s: Subject) => string} how
+ */
+function compared({ metric, reference }, subject, how) {
+  const [a, b] = [subject, reference].map((s) => `${symbol(s)} (${WORLD_NAMES[s.world]}${how(s)})`);
   return { value: a, difference: `${a} − ${b}`, absolute: `|${a} − ${b}|`, relative: `relative: ${a} − ${b}`, z: `z of ${a} − ${b}` }[metric];
 }
 
-/** Share of the pixels with |z| > 2. @param {Float32Array} z three equal values per pixel */
+/** Share of the pixels with |z| > 2, of those that have a z. @param {Float32Array} z three equal values per pixel */
 function farOut(z) {
-  let count = 0;
-  for (let i = 0; i < z.length; i += 3) count += Math.abs(z[i]) > 2 ? 1 : 0;
-  return (3 * count) / z.length;
+  // where no light arrived there is no z
+  let [far, all] = [0, 0];
+  for (let i = 0; i < z.length; i += 3) {
+    all += z[i] === 0 ? 0 : 1;
+    far += Math.abs(z[i]) > 2 ? 1 : 0;
+  }
+  return far / Math.max(all, 1);
 }
 
 /** Starts the page. */

@@ -7,7 +7,7 @@ import { linear } from '#page/tone.js';
 /** @import { App } from '#page/main.js' */
 /** @import { Exr } from '#page/exr.js' */
 
-/** @typedef {{width: number, height: number, pixels: Float32Array, errors: Float32Array | null, said: string}} Picture */
+/** @typedef {{width: number, height: number, pixels: Float32Array, errors: Float32Array | null, eightBit: boolean, said: string}} Picture */
 
 /** @param {App} app */
 export function own(app) {
@@ -51,7 +51,7 @@ function fromExr({ width, height, channels }) {
   if (!planes) throw new Error(`it has no channels R, G, B, only ${[...channels.keys()].slice(0, 8).join(', ')}`);
   const errors = whole ? mixed(/** @type {Float32Array[]} */ (rgb(`${whole}_se`))) : null;
   const said = whole ? `floats of the layer ${whole}, with its standard errors.` : 'floats; its errors are not known.';
-  return { width, height, pixels: mixed(/** @type {Float32Array[]} */ (planes)), errors, said };
+  return { width, height, pixels: mixed(/** @type {Float32Array[]} */ (planes)), errors, eightBit: false, said };
 }
 
 /** @param {Float32Array[]} planes */
@@ -74,7 +74,7 @@ async function fromPng(file) {
     for (let c = 0; c < 3; c += 1) pixels[3 * i + c] = curve[data[4 * i + c]];
   }
   const said = '8 bits per channel, read as sRGB; its exposure and its errors are not known, and what was clipped is lost.';
-  return { width, height, pixels, errors: null, said };
+  return { width, height, pixels, errors: null, eightBit: true, said };
 }
 
 /**

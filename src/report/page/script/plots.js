@@ -69,6 +69,7 @@ function drawn(app, id, plot, how) {
     });
   draw(into, {
     title: plot.title,
+    titled: true,
     x: how.x,
     y: how.y,
     logX: how.logX,
@@ -82,6 +83,7 @@ function drawn(app, id, plot, how) {
     lines: how.logX ? [slope(plot)] : plot.lines.map((l, i) => ({
       label: l.label,
       color: COLORS[(plot.curves.length + i) % COLORS.length],
+      from: l.x0,
       at: (x) => l.value * l.ratio ** (x - l.x0),
     })),
   });
@@ -90,7 +92,7 @@ function drawn(app, id, plot, how) {
 /** Independent samples: the variance falls like 1/n; drawn above the largest curve. @param {Plot} plot */
 function slope(plot) {
   const level = 1.6 * Math.max(...plot.curves.flatMap((c) => c.points.map(([n, v]) => n * v)));
-  return { label: 'slope −1: independent samples', color: 'var(--soft)', at: (/** @type {number} */ n) => level / n };
+  return { label: 'slope −1: independent samples', color: 'var(--ink)', at: (/** @type {number} */ n) => level / n };
 }
 
 /**

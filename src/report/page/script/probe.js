@@ -51,6 +51,9 @@ function show(app, state) {
   const last = app.run.data.max_bounces;
   const terms = app.run.hasTerms(world) ? Array.from({ length: last + 1 }, (_, k) => /** @type {Subject} */ ({ world, kind: 'term', k })) : [];
   if (app.run.layer(world, 'rest')) terms.push({ world, kind: 'rest', k: 0 });
+  // what is switched off is no part of the sum
+  const shown = terms.filter((s) => state.on[s.kind === 'rest' ? last + 1 : s.k]);
+  terms.splice(0, terms.length, ...shown);
   const values = terms.map((s) => valueAt(app, s, state));
   const whole = values.reduce((a, v) => a + (v?.value ?? 0), 0);
   into.innerHTML = '<div id="probe-terms"></div><div id="probe-sums"></div><div id="probe-text"></div>';
@@ -137,15 +140,22 @@ function table(app, state, terms, values, whole) {
   });
   if (app.composer.own && state.pixel) rows.push(row('your picture', valueAt(app, { world: 'own', kind: 'whole', k: 0 }, state), ''));
   const notes = [];
-  if (state.pixel) notes.push('Intervals (95 %) of a changed or partial sum are upper bounds, because the terms of one path are correlated.');
+  if (state.pixel) notes.push('Intervals (95 %) of a changed or partial sum are upper bounds, because terms may come from the same paths.');
   else notes.push('The intervals come from independent replicates of the whole image.');
   const doubts = [...new Set(state.pixel ? terms.map((s) => doubtOf(app, s)).filter(Boolean) : [])];
   if (doubts.length) {
     const names = terms.filter((s) => doubtOf(app, s)).map((s) => symbol(s)).join(', ');
     notes.push(`<span class="flag">⚑ The errors of single pixels cannot be trusted for ${names}: light is found there too seldom.</span>`);
   }
-  const largest = values.reduce((a, v, k) => ((v?.value ?? 0) > (values[a]?.value ?? 0) && terms[k].k > 0 ? k : a), Math.min(1, values.length - 1));
-  const lead = terms.length > 2 ? `<p id="probe-lead">${symbol(terms[largest])} adds most here: ${percent((values[largest]?.value ?? NaN) / (whole - (values[0]?.value ?? 0)))} of the light that was scattered. All terms together: ${significant(whole)}.</p>` : '';
+  const largest = values.reduce((a, v, k) => ((v?.value ?? 0) > (values[a]?.value ?? 0) && (terms[k].k > 0 || terms[k].kind === 'rest') ? k : a), Math.min(1, values.length - 1));
+  const lead = terms.length > 2 ? `<p id="probe-lead">${led(terms, values, largest)} All terms shown together: ${significant(whole)}.</p>` : '';
   return `${lead}<p>${notes.join(' ')}</p><details><summary>All values by channel</summary><div class="wide"><table><thead><tr><th scope="col">term</th>
     <th scope="col">red</th><th scope="col">green</th><th scope="col">blue</th><th scope="col">share</th></tr></thead><tbody>${rows.join('')}${wholes.join('')}</tbody></table></div></details>`;
+}
+
+/** Which term is the largest part of the scattered light. @param {Subject[]} terms @param {ReturnType<typeof valueAt>[]} values @param {number} largest */
+function led(terms, values, largest) {
+  const scattered = values.reduce((a, v, k) => a + (terms[k].kind === 'term' && terms[k].k === 0 ? 0 : (v?.value ?? 0)), 0);
+  if (!(scattered > 0)) return 'No scattered light arrives here.';
+  return `Of the light that was scattered to here, ${symbol(terms[largest])} is the largest part: ${percent((values[largest]?.value ?? NaN) / scattered)}.`;
 }

@@ -41,7 +41,7 @@ export function doubtOf(app, { world, kind, k }) {
 }
 
 /**
- * @param {App} app @param {State} state @param {Subject} subject @param {Counts} counts @param {number} gain
+ * @param {App} app @param {State} state @param {Subject} subject @param {Counts | null} counts @param {number} gain
  */
 export function reading(app, state, subject, counts, gain) {
   const { data } = app.run;
@@ -50,6 +50,8 @@ export function reading(app, state, subject, counts, gain) {
   const first = app.composer.isFirst(subject, state);
   const difference = differenceOf(app, subject, state);
   if (difference) lines.push(difference);
+  const off = state.on.flatMap((on, j) => (on ? [] : [j > data.max_bounces ? 'the rest' : symbol({ world: subject.world, kind: 'term', k: j })]));
+  if (off.length && app.run.hasTerms(subject.world) && (subject.kind === 'whole' || subject.kind === 'sum')) lines.push(`Left out: ${off.join(', ')}.`);
   const mean = first ? null : meanOf(app, subject, state);
   if (mean) {
     const channels = ['red', 'green', 'blue'].map((name, c) => `${name} ${plusMinus(mean.mean[c], mean.half[c])}`);
@@ -58,13 +60,14 @@ export function reading(app, state, subject, counts, gain) {
     if (mesh > 0) lines.push(`The error of the mesh is about ${significant(mesh, 2)}; it is not included in the interval.`);
   } else {
     const own = subject.world === 'own' && app.composer.own?.errors ? 'the errors of its pixels are known, that of the mean is not' : 'its error is not known';
-    lines.push(`Mean radiance <b id="mean">${significant(meanOfPixels(app, subject, state))}</b>, from the pixels; ${own}.`);
+    const what = subject.world === 'own' && app.composer.own?.eightBit ? 'Mean value (of unknown exposure)' : 'Mean radiance';
+    lines.push(`${what} <b id="mean">${significant(meanOfPixels(app, subject, state))}</b>, from the pixels; ${own}.`);
   }
   if (!untouched(state) && !app.run.hasTerms(subject.world)) lines.push('It has no terms, so it is shown at s = 1, with all its light.');
   if (first) lines.push(`These are the first ${state.spp} samples of each pixel.`);
-  lines.push(`Shown ${gainText(gain)}. ${counted(counts, app.run.pixels, lookOf(state) === 'srgb')}`);
+  if (counts) lines.push(`Shown ${gainText(gain)}. ${counted(counts, app.run.pixels, lookOf(state) === 'srgb')}`);
   const doubt = doubtOf(app, subject);
-  if (doubt) lines.push(`<span class="flag">⚑ The errors of single pixels of this image are ${escaped(doubt)}.</span>`);
+  if (doubt) lines.push(`<span class="flag">⚑ The errors of single pixels are unreliable here: ${escaped(doubt.replace('not trusted, because for single pixels: ', ''))}. An event is a sample that found light.</span>`);
   if (data.reduced > 1) {
     lines.push(`Every pixel is the mean of ${data.reduced} × ${data.reduced} pixels of the run; terms.exr has all of them.`);
   }
@@ -74,8 +77,9 @@ export function reading(app, state, subject, counts, gain) {
 /** The mean of a difference, and for z how often it is large. @param {App} app @param {Subject} subject @param {State} state */
 function differenceOf(app, subject, state) {
   const { metric, reference } = state;
-  if (metric === 'z') return app.far === null ? '' : `|z| is above 2 in <b id="far">${percent(app.far)}</b> of the pixels; without a difference about 5 %. Few bright paths make one sign more frequent far out, so the comparisons below test means.`;
+  if (metric === 'z') return app.far === null ? '' : `|z| is above 2 in <b id="far">${percent(app.far)}</b> of the pixels; without a difference about 5 %. Rare bright paths skew z in single pixels; the real test is under “Do the answers agree?”.`;
   if (metric === 'value' || metric === 'relative' || subject.world === reference.world) return '';
+  if (app.composer.isFirst(subject, state)) return `Mean difference from the reference: ${significant(meanOfPixels(app, subject, state) - meanOfPixels(app, reference, state))}, from the pixels. The image itself:`;
   const [a, b] = [subject, reference].map((s) => meanOf(app, s, state));
   if (!a || !b) return '';
   return `Mean difference from the reference: ${plusMinus(a.all[0] - b.all[0], Math.hypot(a.all[1], b.all[1]))} (95 %). The image itself:`;

@@ -43,8 +43,8 @@ export function samples(app) {
     byId('spp-value').textContent = String(shown ?? spp);
     byId('samples-text').innerHTML = told(app, state);
   };
-  app.store.drawnBy(show);
-  show(app.store.state);
+  // the number of clipped pixels is known after the drawing
+  app.drawn.push(() => show(app.store.state));
 }
 
 /** The images whose first samples were kept. @param {App} app @returns {Subject[]} */
@@ -79,8 +79,8 @@ function told(app, state) {
   });
   if (noise.every(Number.isFinite)) {
     lines.push(`The noise of one sample in a pixel, relative to the mean of the term: ${significant(noise[0], 2)} for TE, ${significant(noise[1], 2)} for T²E.
-      A sample of TE chooses only a point on a lamp; a sample of T²E first chooses a direction at random, then the point on the lamp. Every
-      random choice adds variance.`);
+      A sample of TE depends mostly on one random point on a lamp; a sample of T²E depends on a random direction and then on a
+      random point on a lamp. More random choices usually mean more variance.`);
   }
   return lines.join(' ');
 }

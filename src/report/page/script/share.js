@@ -1,8 +1,8 @@
 // Links, pictures and reports to hand in.
 
 import { byId } from '#page/controls.js';
-import { WORLD_NAMES, meaning, percent, plusMinus, symbol } from '#page/format.js';
-import { meanOf, words } from '#page/reading.js';
+import { WORLD_NAMES, meaning, percent, plusMinus, significant, symbol } from '#page/format.js';
+import { meanOf, meanOfPixels, words } from '#page/reading.js';
 import { valueAt } from '#page/probe.js';
 import { nameOf, written } from '#page/state.js';
 
@@ -138,16 +138,24 @@ export function markdown(app) {
 /** The view at this moment. @param {App} app @param {State} state */
 function view(app, state) {
   const { subject } = state;
-  const mean = meanOf(app, subject, state);
-  const lines = ['## This view', '', `${symbol(subject)}: ${meaning(subject, app.run.data.max_bounces)}. Mean radiance ${mean ? words(mean) : '–'}.`];
-  if (state.scale.some((s) => s !== 1)) lines.push('', `Every scattering scaled by s = ${state.scale.join(', ')} in red, green, blue.`);
+  const first = app.composer.isFirst(subject, state);
+  const mean = first ? null : meanOf(app, subject, state);
+  const value = mean ? words(mean) : `${significant(meanOfPixels(app, subject, state))}, from the pixels`;
+  const lines = ['## This view', '', `${byId('tag').textContent}`, '', `${symbol(subject)}: ${meaning(subject, app.run.data.max_bounces)}. Mean radiance ${value}.`];
+  if (first) lines.push('', `Only the first ${state.spp} samples of each pixel.`);
+  if (app.run.hasTerms(subject.world)) {
+    if (state.scale.some((s) => s !== 1)) lines.push('', `Every scattering scaled by s = ${state.scale.join(', ')} in red, green, blue.`);
+    const off = state.on.flatMap((on, j) => (on ? [] : [j > app.run.data.max_bounces ? 'rest' : String(j)]));
+    if (off.length) lines.push('', `Left out of every sum: k = ${off.join(', ')}.`);
+  }
   if (state.pixel || state.tiles) {
     const world = app.run.hasTerms(subject.world) ? subject.world : 'terms';
     const terms = Array.from({ length: app.run.data.max_bounces + 1 }, (_, k) => /** @type {Subject} */ ({ world, kind: 'term', k }));
+    if (app.run.layer(world, 'rest')) terms.push({ world, kind: 'rest', k: 0 });
     const values = terms.filter((s) => app.known(s)).map((s) => valueAt(app, s, state));
     const whole = valueAt(app, { world, kind: 'whole', k: 0 }, state)?.value ?? NaN;
     lines.push('', `### ${byId('probe-title').textContent}`, '', '| k | radiance | share |', '|:---|---:|---:|');
-    values.forEach((v, k) => lines.push(`| ${k} | ${plusMinus(v?.value ?? NaN, v?.half ?? 0)} | ${percent((v?.value ?? NaN) / whole)} |`));
+    values.forEach((v, k) => lines.push(`| ${terms[k].kind === 'rest' ? 'rest' : k} | ${plusMinus(v?.value ?? NaN, v?.half ?? 0)} | ${percent((v?.value ?? NaN) / whole)} |`));
   }
   const part = written(state, app.start);
   if (part) lines.push('', `Open \`index.html#${part}\` to see it.`);

@@ -5,6 +5,7 @@
 // Only choices that differ from those at the start are in the address. What cannot be read is ignored.
 
 import { TILES } from '#page/run.js';
+import { largest } from '#page/scale.js';
 
 /** @import { Data, Look, Metric, State, Subject, World } from '#page/types.js' */
 
@@ -129,7 +130,18 @@ export function written(state, start) {
 export function read(text, start, data) {
   const parts = text.replace(/^#/, '').split('&').map((part) => part.split('='));
   const known = parts.filter(([name]) => Object.hasOwn(PARTS, name));
-  return known.reduce((state, [name, value = '']) => ({ ...state, ...PARTS[name][1](decoded(value), data) }), start);
+  const found = known.reduce((state, [name, value = '']) => ({ ...state, ...PARTS[name][1](decoded(value), data) }), start);
+  const most = largest(data);
+  const scale = found.scale.map((s, c) => Math.min(s, most[c]));
+  return possible(found.spp === null ? { ...found, scale } : { ...found, scale: start.scale, on: start.on }, data);
+}
+
+/** The first samples are kept of some images only. @param {State} state @param {Data} data @returns {State} */
+export function possible(state, data) {
+  const { spp, subject } = state;
+  const slot = subject.kind === 'term' ? subject.k : subject.kind;
+  const kept = data.early.some((l) => l.spp === spp && l.world === subject.world && l.slot === slot);
+  return spp === null || kept ? state : { ...state, spp: null };
 }
 
 /** @param {string} text */
@@ -146,9 +158,10 @@ export class Store {
   /** @type {((state: State, before: State) => void)[]} */
   #drawers = [];
 
-  /** @param {State} state */
-  constructor(state) {
+  /** @param {State} state @param {(state: State) => State} possible the state that is shown for one that is asked for */
+  constructor(state, possible) {
     this.state = state;
+    this.possible = possible;
   }
 
   /** @param {(state: State, before: State) => void} draw */
@@ -159,7 +172,7 @@ export class Store {
   /** @param {Partial<State>} change */
   set(change) {
     const [before, begin] = [this.state, performance.now()];
-    this.state = { ...before, ...change };
+    this.state = this.possible({ ...before, ...change });
     this.#drawers.forEach((draw) => draw(this.state, before));
     performance.measure('state', { start: begin, end: performance.now() });
   }

@@ -9,7 +9,7 @@ import { worldWithTerms } from '#page/what_if.js';
 /** @type {Record<string, {says: string, set: (app: App) => Partial<State> | undefined}>} */
 const TRIES = {
   bounce: {
-    says: 'Press 1, 2, 3 to see the light that was scattered once, twice, three times. Then click a surface: the bars beside the image say how much each bounce adds there. Shift and a drag (or the box “Drag to choose a block”) choose a block of pixels, which has less noise.',
+    says: 'Press 1, 2, 3 to see the light that was scattered once, twice, three times. Then click a surface: the bars beside the image say how much each bounce adds there. Shift and a drag (or the box “Drag to choose a block”) choose a block of pixels, which has less noise. The table “Which bounce lights what?” further down has the shares of whole surfaces.',
     set: (app) => ({ subject: { world: worldWithTerms(app), kind: 'term', k: 1 }, metric: 'value', gain: 'each', spp: null }),
   },
   half: {

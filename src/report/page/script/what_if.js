@@ -107,15 +107,17 @@ function told(app, state) {
   if (cut(run, subject.world)) {
     lines.push(`The first ${last + 1} terms have the mean ${plusMinus(...now.all)}; paths were cut there, so what lies beyond is not known.`);
   } else if (scale.every((s) => s <= 1)) {
-    lines.push(`Mean radiance ${plusMinus(...now.all)} (95 %).`);
-    if (hasRest(state, last)) {
+    lines.push(`Mean radiance of the whole sum ${plusMinus(...now.all)} (95 %).`);
+    if (hasRest(state, last) && scale.some((s) => s < 1)) {
       lines.push(`It may be up to <span id="slack">${significant(rest, 2)}</span> too high, because the rest is known exactly only at s = 1.`);
     }
+  } else if (!hasRest(state, last)) {
+    lines.push(`Mean radiance of the whole sum ${plusMinus(...now.all)} (95 %), without what lies beyond k = ${last}.`);
   } else {
-    lines.push(`Mean radiance ${plusMinus(...now.all)}, of which ${percent(rest / now.all[0])} is extrapolated:
+    lines.push(`Mean radiance of the whole sum ${plusMinus(...now.all)}, of which ${percent(rest / now.all[0])} is extrapolated:
       beyond k = ${last} the terms are assumed to fall by the factor s r, where r = ${bounds.rate.map((r) => significant(r, 3)).join(', ')}
       in red, green, blue is the ${escaped(bounds.rate_is)}. The interval does not include the error of this assumption.`);
-    if (rest / now.all[0] > MUCH) lines.push('<span class="flag">⚑ The extrapolation dominates this picture.</span>');
+    if (rest / now.all[0] > MUCH) lines.push('<span class="flag">⚑ A tenth or more of this picture is extrapolated.</span>');
   }
   lines.push(`That is <b id="share">${percent(share)}</b> of the picture at s = 1${scattered(app, state, subject)}.`);
   const limit = physical(run.data);
