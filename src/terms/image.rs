@@ -2,7 +2,6 @@
 
 use super::deviations::{Deviations, Piece, bands};
 use super::film::TermFilm;
-use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -49,11 +48,18 @@ impl TermImage {
 /// The mean images of the slots of a film, without errors: enough for a preview.
 pub fn means(film: &TermFilm, slots: Range<usize>) -> Vec<Vec<[f32; 3]>> {
     let of = |slot: usize| {
-        let mean = |p: usize| {
-            let sum: DVec3 = (0..film.shape.replicates).map(|r| film.sum(p, r, slot)).sum();
-            (sum / f64::from(film.samples[p])).as_vec3().to_array()
-        };
-        (0..film.shape.pixels()).map(mean).collect()
+        let (mut means, mut sums) = (Vec::with_capacity(film.shape.pixels()), vec![]);
+        // in the order of the memory: the pixels of a replicate are neighbours
+        for piece in Piece::all(film, 0..film.shape.pixels()) {
+            sums.clear();
+            sums.resize(3 * piece.pixels.len(), 0.0);
+            for r in 0..film.shape.replicates {
+                sums.iter_mut().zip(film.row(&piece.pixels, r, slot)).for_each(|(sum, s)| *sum += s);
+            }
+            let each = sums.as_chunks::<3>().0.iter().zip(piece.samples());
+            means.extend(each.map(|(sum, &n)| sum.map(|s| (s / f64::from(n)) as f32)));
+        }
+        means
     };
     slots.into_par_iter().map(of).collect()
 }
@@ -79,5 +85,25 @@ impl PixelEvents {
         }
         let middle = all.len() / 2;
         *all.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    /// The mean of a pixel as its definition says, for a film whose last block is not full.
+    #[test]
+    fn means_are_sums_over_the_replicates_divided_by_the_samples() {
+        let slots: Vec<Vec<DVec3>> =
+            (1..4).map(|s| (0..150).map(|p| DVec3::new(0.1, 0.7, 1.3) * f64::from(s * (p + 1))).collect()).collect();
+        let film = TermFilm::exact([15, 10], &slots);
+        for (i, image) in means(&film, 1..3).iter().enumerate() {
+            for (p, found) in image.iter().enumerate() {
+                let sum: DVec3 = (0..film.shape.replicates).map(|r| film.sum(p, r, 1 + i)).sum();
+                assert_eq!(*found, (sum / f64::from(film.samples[p])).as_vec3().to_array());
+            }
+        }
     }
 }
