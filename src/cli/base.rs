@@ -1,6 +1,6 @@
 //! How a command ends and what it prints: results to stdout, everything else to stderr.
 
-use fredholm::math::names::printable;
+use fredholm::math::names::{printable, turns};
 
 /// An error that ends a command.
 pub enum Failure {
@@ -51,6 +51,24 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// Prints a value as JSON. What a terminal could obey is escaped as JSON does it.
+pub fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    print(&json(&serde_json::to_string_pretty(value)?))
+}
+
+/// Escapes the characters that `printable` would change, all of which are inside strings.
+fn json(text: &str) -> String {
+    let hides = |c: char| c != '\n' && (c.is_control() || turns(c));
+    text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
+        if hides(c) {
+            out += &format!("\\u{:04x}", c as u32)
+        } else {
+            out.push(c)
+        }
+        out
+    })
+}
+
 /// Prints a note to stderr, control characters as `\u{…}`. A closed stderr is no error.
 pub fn note(text: &str) {
     use std::io::Write;
@@ -66,4 +84,17 @@ pub fn paragraphs<S: AsRef<str>>(blocks: &[S]) -> String {
 /// The names as owned strings, for the list of files.
 pub fn names<const N: usize>(all: [&str; N]) -> Vec<String> {
     all.map(String::from).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::json;
+
+    #[test]
+    fn json_keeps_its_strings() {
+        let name = "a\u{202e}b\u{9b}c\u{7f}\n\u{1b}é";
+        let text = json(&serde_json::to_string_pretty(&[name]).unwrap_or_default());
+        assert!(!text.chars().any(|c| c != '\n' && (c.is_control() || c == '\u{202e}')));
+        assert_eq!(serde_json::from_str::<Vec<String>>(&text).ok(), Some(vec![name.to_string()]));
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::base::note;
 use super::signals::stop_flag;
+use fredholm::math::names::visible;
 use fredholm::progress::{Listener, Progress};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
@@ -65,7 +66,7 @@ impl Listener for Bar {
             if let Ok(style) = ProgressStyle::with_template("{msg:32} {wide_bar} {percent:>3} %  ETA {eta}") {
                 bar.set_style(style);
             }
-            bar.set_message(what.to_string());
+            bar.set_message(visible(what));
             bar.enable_steady_tick(Duration::from_millis(200));
             *lock(&self.bar) = Some(bar);
         }

@@ -5,7 +5,7 @@
 //! new → open → make_folder → progress … → sign → show → ending
 //! ```
 
-use super::base::{Ending, Failure, note, paragraphs, print};
+use super::base::{Ending, Failure, note, paragraphs, print, print_json};
 use super::claim::Claim;
 use super::open::{self, Opened};
 use super::options::{Changes, Manner};
@@ -162,7 +162,7 @@ impl Session {
     /// Prints a result: with `--json` the value `machine`, otherwise the text `people`.
     pub fn show(&self, machine: &impl Serialize, people: impl FnOnce() -> String) -> Result<(), Failure> {
         self.clear();
-        if self.manner.json { print(&serde_json::to_string_pretty(machine)?) } else { print(&people()) }
+        if self.manner.json { print_json(machine) } else { print(&people()) }
     }
 
     /// With `--json`, prints warnings to stderr. In text they are part of the result.
