@@ -1,6 +1,6 @@
 //! How a command ends and what it prints: results to stdout, everything else to stderr.
 
-use fredholm::math::names::{printable, turns};
+use fredholm::math::names::{hides, printable};
 
 /// An error that ends a command.
 pub enum Failure {
@@ -58,9 +58,8 @@ pub fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
 
 /// Escapes the characters that `printable` would change, all of which are inside strings.
 fn json(text: &str) -> String {
-    let hides = |c: char| c != '\n' && (c.is_control() || turns(c));
     text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
-        if hides(c) {
+        if c != '\n' && hides(c) {
             out += &format!("\\u{:04x}", c as u32)
         } else {
             out.push(c)

@@ -87,6 +87,11 @@ pub fn turns(c: char) -> bool {
     matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
+/// True for the characters that a terminal may obey, or that hide what a name says.
+pub fn hides(c: char) -> bool {
+    c.is_control() || turns(c)
+}
+
 /// The text with every control character, and every character that changes the direction of writing, as `\u{…}`.
 ///
 /// ```
@@ -95,7 +100,7 @@ pub fn turns(c: char) -> bool {
 /// ```
 pub fn visible(text: &str) -> String {
     text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
-        if c.is_control() || turns(c) {
+        if hides(c) {
             out.extend(c.escape_unicode())
         } else {
             out.push(c)
@@ -106,8 +111,7 @@ pub fn visible(text: &str) -> String {
 
 /// The same for a text with lines and tabs, which stay as they are: what a terminal may be sent.
 pub fn printable(text: &str) -> std::borrow::Cow<'_, str> {
-    let hides = |c: char| !matches!(c, '\n' | '\t') && (c.is_control() || turns(c));
-    if !text.contains(hides) {
+    if !text.contains(|c: char| !matches!(c, '\n' | '\t') && hides(c)) {
         return text.into();
     }
     let pieces = text.split_inclusive(['\n', '\t']).map(|piece| {

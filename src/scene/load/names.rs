@@ -6,7 +6,7 @@
 //! | control characters | a terminal obeys some of them |
 //! | characters that change the direction of writing | a name then looks like another one |
 
-use crate::math::names::{turns, visible};
+use crate::math::names::{hides, turns, visible};
 
 /// Longest name in bytes.
 const LONGEST: usize = 200;
@@ -19,7 +19,7 @@ pub(super) struct Fault {
 
 /// Returns an error if `name`, the name of a `what`, contains characters that hide something.
 pub(super) fn check(name: &str, what: &str) -> Result<(), Fault> {
-    let Some(c) = name.chars().find(|&c| c.is_control() || turns(c)) else { return Ok(()) };
+    let Some(c) = name.chars().find(|&c| hides(c)) else { return Ok(()) };
     let kind = if turns(c) { "changes the direction of writing" } else { "is a control character" };
     let what = format!("the {what} name `{}` contains {}, which {kind}", visible(name), c.escape_unicode());
     Err(Fault { what, help: "use letters, digits, spaces, - and _" })

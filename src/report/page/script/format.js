@@ -54,6 +54,9 @@ export const gainText = (gain) => (gain >= 1 ? `×${+gain.toPrecision(3)}` : `÷
 /** @type {Record<World, string>} */
 export const WORLD_NAMES = { terms: 'series', path: 'path tracer', radiosity: 'radiosity', own: 'your picture' };
 
+/** True if two images are the same. @param {Subject} a @param {Subject} b */
+export const same = (a, b) => a.world === b.world && a.kind === b.kind && a.k === b.k;
+
 /** The symbol of what an image shows, such as T³E. @param {Subject} subject */
 export function symbol({ world, kind, k }) {
   const t = world === 'radiosity' ? 'Tₕ' : 'T';

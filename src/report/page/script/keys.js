@@ -2,7 +2,7 @@
 
 import { byId, subjectsOf, worldsOf } from '#page/controls.js';
 import { LOOKS, METRICS, nameOf } from '#page/state.js';
-import { worldWithTerms } from '#page/what_if.js';
+import { termsOf } from '#page/what_if.js';
 
 /** @import { App } from '#page/main.js' */
 /** @import { Subject } from '#page/types.js' */
@@ -134,6 +134,6 @@ function turn(app, by) {
 /** Term k as the reference, of the world on the canvas if it has terms. @param {App} app @param {number} k */
 function reference(app, k) {
   const { world } = app.store.state.subject;
-  const found = /** @type {Subject} */ ({ world: app.run.hasTerms(world) ? world : worldWithTerms(app), kind: 'term', k });
+  const found = /** @type {Subject} */ ({ world: termsOf(app, world), kind: 'term', k });
   if (app.known(found)) app.store.set({ reference: found });
 }

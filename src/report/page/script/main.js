@@ -8,7 +8,7 @@ import { keys } from '#page/keys.js';
 import { own } from '#page/own.js';
 import { plots } from '#page/plots.js';
 import { probe } from '#page/probe.js';
-import { meanOf, reading, words } from '#page/reading.js';
+import { leftOut, meanOf, reading, words } from '#page/reading.js';
 import { Run } from '#page/run.js';
 import { samples } from '#page/samples.js';
 import { share } from '#page/share.js';
@@ -16,7 +16,7 @@ import { Store, initial, nameOf, possible, read, subjectOf, written } from '#pag
 import { OCTAVES, gradient, tone } from '#page/tone.js';
 import { tries } from '#page/tries.js';
 import { Viewer } from '#page/viewer.js';
-import { whatIf, worldWithTerms } from '#page/what_if.js';
+import { termsOf, whatIf, worldWithTerms } from '#page/what_if.js';
 
 /** @import { Counts } from '#page/tone.js' */
 /** @import { State, Subject, World } from '#page/types.js' */
@@ -151,9 +151,9 @@ export class App {
   #how(subject, state) {
     if (this.composer.isFirst(subject, state)) return ` · ${state.spp} samples`;
     if (!this.run.hasTerms(subject.world)) return '';
-    const { scale, on } = state;
+    const { scale } = state;
     const s = scale.every((v) => v === scale[0]) ? scale[0].toFixed(2) : scale.map((v) => v.toFixed(2)).join(', ');
-    const off = (subject.kind === 'whole' || subject.kind === 'sum') && !on.every(Boolean);
+    const off = leftOut(this, subject, state).length > 0;
     return `${scale.some((v) => v !== 1) ? ` · s = ${s}` : ''}${off ? ' · some terms off' : ''}`;
   }
 
@@ -186,7 +186,7 @@ export class App {
   /** Shows term k, or the partial sum up to it. @param {number} k */
   term(k) {
     const { world } = this.store.state.subject;
-    const subject = /** @type {Subject} */ ({ world: this.run.hasTerms(world) ? world : worldWithTerms(this), kind: this.sums ? 'sum' : 'term', k });
+    const subject = /** @type {Subject} */ ({ world: termsOf(this, world), kind: this.sums ? 'sum' : 'term', k });
     if (this.known(subject)) this.store.set({ subject });
   }
 

@@ -2,7 +2,8 @@
 
 import { COLORS, draw } from '#page/chart.js';
 import { byId } from '#page/controls.js';
-import { significant } from '#page/format.js';
+import { same } from '#page/format.js';
+import { termsOf } from '#page/what_if.js';
 
 /** @import { App } from '#page/main.js' */
 /** @import { Curve, Plot, State, Subject, World } from '#page/types.js' */
@@ -23,7 +24,7 @@ function show(app, state) {
       x: 'bounce k',
       y: 'mean radiance over all surfaces',
       logX: false,
-      subject: (_, x) => ({ world: termsOf(app, state), kind: 'term', k: Math.round(x) }),
+      subject: (_, x) => ({ world: termsOf(app, state.subject.world), kind: 'term', k: Math.round(x) }),
       chosen: (_, x) => state.subject.kind === 'term' && state.subject.k === x,
     });
   }
@@ -36,15 +37,10 @@ function show(app, state) {
       subject,
       chosen: (curve) => {
         const s = subject(curve);
-        return s !== undefined && s.world === state.subject.world && s.kind === state.subject.kind && s.k === state.subject.k;
+        return s !== undefined && same(s, state.subject);
       },
     });
   }
-}
-
-/** @param {App} app @param {State} state @returns {World} */
-function termsOf(app, { subject }) {
-  return app.run.hasTerms(subject.world) ? subject.world : (app.run.data.worlds.find((a) => app.run.hasTerms(a.world))?.world ?? 'terms');
 }
 
 /** @param {[World, import('#page/types.js').Slot]} of @returns {Subject} */
@@ -103,10 +99,4 @@ export function varianceOfOne(app, slot) {
   const curve = app.run.data.variance?.curves.find((c) => c.of?.[0] === 'terms' && c.of[1] === slot);
   const last = curve?.points.at(-1);
   return last && last[0] * last[1];
-}
-
-/** The noise of one sample in units of the mean. @param {App} app @param {number} k @param {number} mean */
-export function relativeNoise(app, k, mean) {
-  const variance = varianceOfOne(app, k);
-  return variance === undefined ? undefined : significant(Math.sqrt(variance) / mean, 2);
 }

@@ -2,7 +2,7 @@
 
 import { byId } from '#page/controls.js';
 import { draw } from '#page/chart.js';
-import { WORLD_NAMES, percent, plusMinus, significant, symbol } from '#page/format.js';
+import { WORLD_NAMES, percent, plusMinus, same, significant, symbol } from '#page/format.js';
 import { doubtOf, meanOf } from '#page/reading.js';
 import { TILES } from '#page/run.js';
 import { untouched } from '#page/scale.js';
@@ -14,8 +14,8 @@ import { summed } from '#page/what_if.js';
 /** @param {App} app */
 export function probe(app) {
   app.store.drawnBy((state, before) => {
-    const same = ['pixel', 'tiles', 'scale', 'on', 'subject'].every((k) => state[/** @type {keyof State} */ (k)] === before[/** @type {keyof State} */ (k)]);
-    if (!same) show(app, state);
+    const unchanged = ['pixel', 'tiles', 'scale', 'on', 'subject'].every((k) => state[/** @type {keyof State} */ (k)] === before[/** @type {keyof State} */ (k)]);
+    if (!unchanged) show(app, state);
   });
   show(app, app.store.state);
 }
@@ -82,9 +82,6 @@ function show(app, state) {
   }
   byId('probe-text').innerHTML = table(app, state, terms, values, whole);
 }
-
-/** @param {Subject} a @param {Subject} b */
-const same = (a, b) => a.world === b.world && a.kind === b.kind && a.k === b.k;
 
 /** Partial sums as points; path tracer and matrix as bands. @param {App} app @param {State} state @param {Subject[]} terms */
 function sums(app, state, terms) {

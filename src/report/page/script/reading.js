@@ -31,6 +31,13 @@ export function meanOf(app, subject, state, block) {
   return { mean: found.mean, half: found.error.map((e) => t * e), all: [mean, t * error] };
 }
 
+/** The terms that are switched off in a sum, by their symbols. @param {App} app @param {Subject} subject @param {State} state */
+export function leftOut(app, { world, kind }, { on }) {
+  if (!app.run.hasTerms(world) || (kind !== 'whole' && kind !== 'sum')) return [];
+  const last = app.run.data.max_bounces;
+  return on.flatMap((on, j) => (on ? [] : [j > last ? 'the rest' : symbol({ world, kind: 'term', k: j })]));
+}
+
 /** `0.1234 ± 0.0012`, from a reading. @param {Reading} r */
 export const words = (r) => plusMinus(r.all[0], r.all[1]);
 
@@ -50,8 +57,8 @@ export function reading(app, state, subject, counts, gain) {
   const first = app.composer.isFirst(subject, state);
   const difference = differenceOf(app, subject, state);
   if (difference) lines.push(difference);
-  const off = state.on.flatMap((on, j) => (on ? [] : [j > data.max_bounces ? 'the rest' : symbol({ world: subject.world, kind: 'term', k: j })]));
-  if (off.length && app.run.hasTerms(subject.world) && (subject.kind === 'whole' || subject.kind === 'sum')) lines.push(`Left out: ${off.join(', ')}.`);
+  const off = leftOut(app, subject, state);
+  if (off.length) lines.push(`Left out: ${off.join(', ')}.`);
   const mean = first ? null : meanOf(app, subject, state);
   if (mean) {
     const channels = ['red', 'green', 'blue'].map((name, c) => `${name} ${plusMinus(mean.mean[c], mean.half[c])}`);

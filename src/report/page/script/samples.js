@@ -2,7 +2,7 @@
 // screen while dark ones are not; its mean is the same. The numbers beside it show both.
 
 import { byId } from '#page/controls.js';
-import { percent, plusMinus, significant, symbol } from '#page/format.js';
+import { percent, plusMinus, same, significant, symbol } from '#page/format.js';
 import { varianceOfOne } from '#page/plots.js';
 import { meanOf, meanOfPixels } from '#page/reading.js';
 
@@ -55,7 +55,7 @@ function kept(app) {
 
 /** @param {App} app @param {Subject} subject */
 function keptOr(app, subject) {
-  const found = kept(app).find((s) => s.world === subject.world && s.kind === subject.kind && s.k === subject.k);
+  const found = kept(app).find((s) => same(s, subject));
   return found ?? /** @type {Subject} */ ({ world: 'terms', kind: 'whole', k: 0 });
 }
 

@@ -2,7 +2,7 @@
 
 import { byId } from '#page/controls.js';
 import { WORLD_NAMES, meaning, percent, plusMinus, significant, symbol } from '#page/format.js';
-import { meanOf, meanOfPixels, words } from '#page/reading.js';
+import { leftOut, meanOf, meanOfPixels, words } from '#page/reading.js';
 import { valueAt } from '#page/probe.js';
 import { nameOf, written } from '#page/state.js';
 
@@ -145,8 +145,8 @@ function view(app, state) {
   if (first) lines.push('', `Only the first ${state.spp} samples of each pixel.`);
   if (app.run.hasTerms(subject.world)) {
     if (state.scale.some((s) => s !== 1)) lines.push('', `Every scattering scaled by s = ${state.scale.join(', ')} in red, green, blue.`);
-    const off = state.on.flatMap((on, j) => (on ? [] : [j > app.run.data.max_bounces ? 'rest' : String(j)]));
-    if (off.length) lines.push('', `Left out of every sum: k = ${off.join(', ')}.`);
+    const off = leftOut(app, subject, state);
+    if (off.length) lines.push('', `Left out: ${off.join(', ')}.`);
   }
   if (state.pixel || state.tiles) {
     const world = app.run.hasTerms(subject.world) ? subject.world : 'terms';

@@ -66,9 +66,12 @@ const snapped = (s) => (Math.abs(s - 1) < 0.004 ? 1 : s);
 
 /** The whole of a world with terms. @param {App} app @param {State} state @returns {Subject} */
 export function summed(app, { subject }) {
-  const world = app.run.hasTerms(subject.world) ? subject.world : worldWithTerms(app);
+  const world = termsOf(app, subject.world);
   return subject.kind === 'sum' && world === subject.world ? subject : { world, kind: 'whole', k: 0 };
 }
+
+/** The world itself if it has terms, otherwise the first one that has. @param {App} app @param {World} world */
+export const termsOf = (app, world) => (app.run.hasTerms(world) ? world : worldWithTerms(app));
 
 /** @param {App} app @returns {World} */
 export const worldWithTerms = (app) => app.run.data.worlds.find((a) => app.run.hasTerms(a.world))?.world ?? 'terms';
