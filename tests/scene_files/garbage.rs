@@ -7,6 +7,21 @@ pub(super) fn runner(cases: u32) -> TestRunner {
     TestRunner::new_with_rng(Config { cases, failure_persistence: None, ..Config::default() }, rng)
 }
 
+/// What was read is sound, or refused in words; counts both.
+pub(super) fn counted(read: Result<Loaded, SceneError>, good: &Cell<u32>, refused: &Cell<u32>) {
+    let count = match read {
+        Ok(l) => {
+            sound(&l);
+            good
+        }
+        Err(e) => {
+            assert!(!e.what.is_empty() && e.help.is_some(), "{e}");
+            refused
+        }
+    };
+    count.set(count.get() + 1);
+}
+
 /// A change to a text: a splice anywhere, or another value for one of its numbers.
 #[derive(Clone, Debug)]
 enum Edit {
@@ -77,16 +92,7 @@ fn garbage_in_toml(cases: u32) {
     runner(cases)
         .run(&(edits(), any::<bool>()), |(edits, rich)| {
             let text = if rich { RICH } else { GOOD };
-            match toml(&edited(text, &edits), &file, &Options::default()) {
-                Ok(l) => {
-                    sound(&l);
-                    good.set(good.get() + 1);
-                }
-                Err(e) => {
-                    assert!(!e.what.is_empty() && e.help.is_some(), "{e}");
-                    refused.set(refused.get() + 1);
-                }
-            }
+            counted(toml(&edited(text, &edits), &file, &Options::default()), &good, &refused);
             Ok(())
         })
         .unwrap();

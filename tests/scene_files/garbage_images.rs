@@ -1,6 +1,6 @@
 //! Images that are damaged, too large, or no files: refused in words, never a panic, never a wait.
 
-use super::garbage::runner;
+use super::garbage::{counted, runner};
 use super::*;
 use fredholm::report::image::exr as layers;
 use std::time::{Duration, Instant};
@@ -36,16 +36,7 @@ fn images(cases: u32) {
             let file = dir.path().join(format!("damaged.{ending}"));
             std::fs::write(&file, damaged(&whole[which], &damage)).unwrap();
             let text = RICH.replace("wall.png", &format!("damaged.{ending}"));
-            match toml(&text, &dir.path().join("rich.toml"), &Options::default()) {
-                Ok(l) => {
-                    sound(&l);
-                    good.set(good.get() + 1);
-                }
-                Err(e) => {
-                    assert!(!e.what.is_empty() && e.help.is_some(), "{e}");
-                    refused.set(refused.get() + 1);
-                }
-            }
+            counted(toml(&text, &dir.path().join("rich.toml"), &Options::default()), &good, &refused);
             if ending == "exr" {
                 let _ = layers::read(&file);
             }
