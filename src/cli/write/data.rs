@@ -65,8 +65,7 @@ fn answers(run: &Run, data: &mut Data) {
             (r.fine.series.image().total.mean - r.coarse.series.image().total.mean).abs().to_array()
         });
         let variance = if world == World::Radiosity { Variance::Finite } else { s.series.variance };
-        let label = (world, s.series.label.as_str(), s.spp);
-        data.answer(label, s.series.image(), &s.replicates, &s.tiles, (variance, apart(s, run)), mesh);
+        data.answer((world, s.series.label.as_str()), &s.replicates, &s.tiles, variance, mesh);
     }
 }
 

@@ -12,7 +12,7 @@
 use super::codes::{Logarithms, Means, text};
 use crate::report::{half_width_95, text::pixel_errors::PixelErrors};
 use crate::terms::functional::Replicates;
-use crate::terms::{Functional, TileSums, Variance, World};
+use crate::terms::{TileSums, Variance, World};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write;
@@ -98,7 +98,7 @@ pub struct Layer {
     /// Exponent of its half floats; none if it has no means.
     pub exponent: Option<i32>,
     /// Lowest logarithm and step of its 8-bit codes: of the errors, or for an early image of the image itself.
-    pub codes: Option<(f64, f64)>,
+    pub codes: (f64, f64),
     /// Why the errors of single pixels cannot be trusted; empty if they can.
     pub doubt: String,
 }
@@ -110,10 +110,6 @@ pub struct Answer {
     pub world: World,
     /// Its label in all tables.
     pub label: String,
-    /// Samples per pixel.
-    pub spp: u32,
-    /// Estimates of the image mean, as in `summary.json`.
-    pub image: Functional,
     /// Mean of each slot over the image, by channel.
     pub mean: Vec<[f64; 3]>,
     /// Deviation of each slot of each replicate; errors and covariances follow from them.
@@ -122,10 +118,6 @@ pub struct Answer {
     pub t95: f64,
     /// Whether the rest and the whole have an error.
     pub variance: Variance,
-    /// True if paths are cut at K, so that nothing is known of the rest.
-    pub cut: bool,
-    /// True if the errors of pixels may be added.
-    pub apart: bool,
     /// Exponent of the tile sums.
     pub tiles: i32,
     /// Error of the mesh in the image mean; zero without a mesh.
@@ -223,7 +215,7 @@ impl Data {
             slot: image.slot,
             spp: image.spp,
             exponent: mean.map(|m| m.exponent),
-            codes: Some((errors.lowest, errors.step)),
+            codes: (errors.lowest, errors.step),
             doubt: if image.trust.trusted { String::new() } else { image.trust.why.clone() },
         };
         (layer, text(&bytes))
@@ -243,19 +235,17 @@ impl Data {
             };
             let id = format!("{name}-{spp}");
             self.chunks.push((format!("px-{id}"), bytes));
-            let (world, codes) = (World::Terms, Some(codes));
-            self.early.push(Layer { id, world, slot, spp, exponent: None, codes, doubt: String::new() });
+            self.early.push(Layer { id, world: World::Terms, slot, spp, exponent: None, codes, doubt: String::new() });
         }
     }
 
     /// Adds the numbers of a world.
     pub fn answer(
         &mut self,
-        (world, label, spp): (World, &str, u32),
-        image: &Functional,
+        (world, label): (World, &str),
         replicates: &Replicates,
         tiles: &TileSums,
-        (variance, apart): (Variance, bool),
+        variance: Variance,
         mesh: [f64; 3],
     ) {
         let codes = Means::of(&rows_of_tiles(tiles));
@@ -264,14 +254,10 @@ impl Data {
         self.worlds.push(Answer {
             world,
             label: label.to_owned(),
-            spp,
-            image: image.clone(),
             mean: replicates.mean.iter().map(|m| m.to_array()).collect(),
             deviation: replicates.deviation.iter().map(|d| d.iter().map(|v| v.to_array()).collect()).collect(),
             t95: half_width_95(1.0, count),
             variance,
-            cut: image.tail.is_none(),
-            apart,
             tiles: codes.exponent,
             mesh,
         });

@@ -36,7 +36,7 @@ fn means_keep_eleven_bits_and_errors_their_logarithm() {
     let (layer, bytes) = (&data.layers[0], unpacked(&data.chunks[0].1));
     assert_eq!(bytes.len(), 9 * n);
     let exponent = layer.exponent.unwrap();
-    let (lowest, step) = layer.codes.unwrap();
+    let (lowest, step) = layer.codes;
     let same = |found: f64, v: f32, error: f64| {
         let v = f64::from(v);
         found == v || (found.is_nan() && v.is_nan()) || (found / v - 1.0).abs() <= error

@@ -28,7 +28,7 @@ export class Run {
     await Promise.all([
       ...layers.map((layer) => this.#layer(layer)),
       ...early.map(async (layer) => {
-        if (layer.codes) this.early.set(layer.id, logarithms(await bytes(`px-${layer.id}`), this.pixels, layer.codes));
+        this.early.set(layer.id, logarithms(await bytes(`px-${layer.id}`), this.pixels, layer.codes));
       }),
       ...worlds.map(async (answer) => {
         const sums = (1 + answer.deviation.length) * answer.mean.length * TILES * TILES;
@@ -45,7 +45,7 @@ export class Run {
       this.means.set(layer.id, means(all, n, layer.exponent));
       errors = all.subarray(6 * n);
     }
-    if (layer.codes) this.errors.set(layer.id, logarithms(errors, n, layer.codes));
+    this.errors.set(layer.id, logarithms(errors, n, layer.codes));
   }
 
   /**

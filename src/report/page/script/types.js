@@ -17,15 +17,8 @@
  * @property {Slot} slot
  * @property {number} spp
  * @property {number | null} exponent        exponent of the half floats; none if the means follow from other layers
- * @property {[number, number] | null} codes lowest logarithm and step of the 8-bit codes
+ * @property {[number, number]} codes lowest logarithm and step of the 8-bit codes
  * @property {string} doubt                  why errors of single pixels cannot be trusted, or nothing
- */
-
-/**
- * @typedef {object} Estimate
- * @property {(number | null)[]} mean
- * @property {(number | null)[]} std_error
- * @property {number} replicates
  */
 
 /**
@@ -33,14 +26,10 @@
  * @typedef {object} Answer
  * @property {World} world
  * @property {string} label
- * @property {number} spp
- * @property {{terms: Estimate[], tail: Estimate, sum: Estimate, total: Estimate}} image
  * @property {number[][]} mean               by slot and channel
  * @property {number[][][]} deviation        by replicate, slot and channel
  * @property {number | null} t95             half width of a 95 % interval in standard errors
  * @property {'finite' | 'infinite' | 'unknown'} variance
- * @property {boolean} cut                   paths are cut at K
- * @property {boolean} apart                 errors of pixels may be added
  * @property {number} tiles                  exponent of the tile sums
  * @property {number[]} mesh                 error of the mesh in the image mean, by channel
  */
