@@ -11,11 +11,16 @@ mod files;
 mod levels;
 #[path = "diagnosis/members.rs"]
 mod members;
+#[path = "diagnosis/strangers.rs"]
+mod strangers;
+#[allow(dead_code, unreachable_pub)]
+#[path = "diagnosis/tracer/mod.rs"]
+mod tracer;
 
 use common::ledger;
 use fredholm::diagnosis::candidates::{Members, own_seed};
 use fredholm::diagnosis::{
-    Basis, Case, Conclusion, Diagnosis, Effort, Pictures, Region, Simulate, Slot, diagnose, evidence, regions,
+    Case, Code, Conclusion, Diagnosis, Effort, Layer, Pictures, Seen, Simulate, Slot, diagnose, regions,
 };
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Estimator};
@@ -39,7 +44,7 @@ fn settings(spp: u32, seed: u64) -> Settings {
 struct Bench {
     scene: Scene,
     right: Pictures,
-    seen: Vec<Region>,
+    seen: Seen,
 }
 
 impl Bench {
@@ -62,15 +67,15 @@ impl Bench {
     ) -> Diagnosis {
         let case = Case {
             suspect,
+            factor: 1,
             reference: &self.right,
             reference_spp: 1024.0,
             seen: &self.seen,
-            counts: evidence::count(suspect, &self.right, 0.0),
-            mask: &[],
             by_samples: &[],
             scaled: None,
             candidates,
             alpha,
+            gain: if suspect.code.for_display() { None } else { Some(1.0) },
             effort: Effort { paths, ..Effort::default() },
         };
         diagnose(&case, Progress::NONE)
@@ -116,19 +121,15 @@ fn hand_in(members: &[&'static Bug], terms: bool, errors: bool, more: u32) -> Ve
             }
             let paths = if more > 8 { 24_000_000 } else { 4_000_000 };
             let d = bench.judge_at_length(&suspect, Some(&candidates), 1e-3, paths);
-            let names: Vec<&str> = d.suspects.iter().map(|s| s.name.as_str()).collect();
-            let points = d.suspects.iter().any(|s| s.basis == Basis::Points);
+            let names: Vec<&str> = d.named().map(|s| s.name.as_str()).collect();
             // the mean of same-numbers is right, and so is the sum of what has no blind scene: this data cannot show it
             let right = if bug.name == "same-numbers" || (!terms && bug.blind.is_none()) {
                 d.verdict == Conclusion::Correct
             } else {
-                d.verdict == Conclusion::Wrong && names.contains(&bug.name) && names.len() <= 3
+                d.verdict == Conclusion::Wrong && d.named().any(|s| s.is(bug.name)) && names.len() <= 3
             };
             let mut line =
                 format!("{} {:<26} {:<16} {:?}", if right { ' ' } else { '!' }, bug.name, stage.label, names);
-            if points {
-                line += " (points)";
-            }
             let first = d.candidates.iter().find(|c| c.name == bug.name);
             write!(line, "  own p {:.1e}, p correct {:.1e}", first.map_or(f64::NAN, |c| c.p), d.p).unwrap();
             answers.push(Answer { right, line });

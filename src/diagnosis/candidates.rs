@@ -5,6 +5,7 @@
 
 use super::elimination::Simulate;
 use super::picture::Pictures;
+use super::variants::{self, Variant};
 use crate::engine::Settings;
 use crate::engine::by_rays::Sampled;
 use crate::math::fnv1a;
@@ -18,13 +19,14 @@ use std::sync::Mutex;
 pub struct Members<'a> {
     scene: &'a Scene,
     settings: Settings,
+    variants: Vec<Variant>,
     progress: Progress<'a>,
     made: Mutex<BTreeMap<(String, u32), Pictures>>,
     shown: Mutex<Option<Vec<String>>>,
 }
 
 /// Samples per pixel of the trial in which a member is compared with the correct renderer.
-const TRIAL: u32 = 8;
+const TRIAL: u32 = 2;
 
 /// Seed for renders with which a suspect is compared. It is a hash, so that it differs from seeds that users type.
 pub fn own_seed(seed: u64) -> u64 {
@@ -41,6 +43,7 @@ impl<'a> Members<'a> {
         Self {
             scene,
             settings,
+            variants: variants::all(),
             progress: progress.silent(),
             made: Mutex::new(BTreeMap::new()),
             shown: Mutex::new(None),
@@ -49,23 +52,48 @@ impl<'a> Members<'a> {
 }
 
 impl Members<'_> {
-    /// Returns true if a member differs from the correct renderer in any pixel when both use the same random numbers.
-    fn shows(&self, bug: &zoo::Bug) -> bool {
+    /// Renders a member of the zoo or a variant; or, if `right`, the correct renderer with the same plan and random numbers. None if
+    /// there is no such mistake.
+    fn render(&self, name: &str, settings: &Settings, right: bool) -> Option<Sampled> {
+        let variant = self.variants.iter().find(|v| v.name == name);
+        let bug = zoo::find(name);
+        let plan = match (&variant, bug) {
+            (Some(v), _) => v.plan(settings.max_bounces, &settings.roulette),
+            (_, Some(bug)) => bug.plan(settings),
+            _ => return None,
+        };
+        let mistake: &dyn zoo::Mistake = match (&variant, bug) {
+            _ if right => &zoo::Right,
+            (Some(v), _) => &*v.mistake,
+            (_, bug) => bug?.mistake,
+        };
+        Some(zoo::of(&plan, mistake, "diagnosis", self.scene, settings, self.progress))
+    }
+
+    /// Returns true if a mistake differs from the correct renderer in any pixel when both use the same random numbers.
+    fn shows(&self, name: &str) -> bool {
         let settings = Settings { spp: TRIAL, ..self.settings.clone() };
-        let plan = bug.plan(&settings);
-        let render = |mistake| zoo::of(&plan, mistake, "trial", self.scene, &settings, self.progress);
-        let (wrong, right) = (render(bug.mistake), render(&zoo::Right));
-        let means = |s: &Sampled| s.terms.iter().chain([&s.tail, &s.total]).map(|i| i.mean.clone()).collect::<Vec<_>>();
-        means(&wrong) != means(&right)
+        let means = |right| {
+            let s = self.render(name, &settings, right)?;
+            Some(s.terms.iter().chain([&s.tail, &s.total]).map(|i| i.mean.clone()).collect::<Vec<_>>())
+        };
+        means(false) != means(true)
     }
 }
 
 impl Simulate for Members<'_> {
-    /// The members whose mistake this scene can show: with the same random numbers they differ from the correct renderer.
+    /// The mistakes that this scene can show: with the same random numbers they differ from the correct renderer.
     fn names(&self) -> Vec<String> {
         let mut shown = self.shown.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let all = || zoo::all().into_iter().filter(|bug| self.shows(bug)).map(|bug| bug.name.to_owned()).collect();
-        shown.get_or_insert_with(all).clone()
+        let names = || {
+            zoo::all().into_iter().map(|bug| bug.name.to_owned()).chain(self.variants.iter().map(|v| v.name.clone()))
+        };
+        shown.get_or_insert_with(|| names().filter(|name| self.shows(name)).collect()).clone()
+    }
+
+    fn what(&self, name: &str) -> String {
+        let variant = self.variants.iter().find(|v| v.name == name);
+        variant.map(|v| v.what.clone()).or(zoo::find(name).map(|bug| bug.what.to_owned())).unwrap_or_default()
     }
 
     fn pictures(&self, name: &str, spp: u32) -> Option<Pictures> {
@@ -74,8 +102,7 @@ impl Simulate for Members<'_> {
         if let Some(pictures) = made.get(&key) {
             return Some(pictures.clone());
         }
-        let settings = Settings { spp, ..self.settings.clone() };
-        let render = zoo::render(zoo::find(name)?, self.scene, &settings, self.progress);
+        let render = self.render(name, &Settings { spp, ..self.settings.clone() }, false)?;
         if self.progress.stopped() {
             return None;
         }

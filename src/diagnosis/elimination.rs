@@ -18,6 +18,8 @@ use crate::progress::Progress;
 pub trait Simulate {
     /// Names of all candidates.
     fn names(&self) -> Vec<String>;
+    /// The mistake of one candidate, in one line.
+    fn what(&self, name: &str) -> String;
     /// The pictures of one candidate with `spp` samples per pixel. None if interrupted.
     fn pictures(&self, name: &str, spp: u32) -> Option<Pictures>;
 }
@@ -46,18 +48,21 @@ pub struct Effort {
     /// Number of stages.
     pub stages: u32,
     /// True if the exposure of the suspect is unknown. Every candidate is then first scaled to the brightness of the
-    /// suspect.
+    /// suspect. Set by [`diagnose`](super::diagnose).
     pub any_gain: bool,
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { first: 16, paths: 6_000_000, stages: 4, any_gain: false }
+        Self { first: 4, paths: 3_000_000, stages: 5, any_gain: false }
     }
 }
 
 /// Fraction of the level α that the first stage gets.
 const FIRST: f64 = 1e-3;
+
+/// Samples per pixel from which on the errors of single pixels are used.
+const KNOWN: u32 = 16;
 
 /// Scales the prediction to the brightness of the suspect, by the mean of the whole image, or of the last picture that both
 /// have.
@@ -91,9 +96,15 @@ pub fn eliminate(
         progress.begin(&format!("{} candidates, {spp} spp", alive.len()), alive.len() as u64);
         tried.retain(|t| t.rejected);
         for name in std::mem::take(&mut alive) {
-            let Some(predicted) = candidates.pictures(&name, spp) else { continue };
+            let Some(mut predicted) = candidates.pictures(&name, spp) else { continue };
+            if spp < KNOWN {
+                // a pixel whose few samples agree by chance has no error; the scatter of pixels has
+                predicted.layers.iter_mut().for_each(|l| l.std_error = None);
+            }
             let predicted = if effort.any_gain { same_brightness(&suspect, predicted, regions) } else { predicted };
-            let fit = compare(&suspect, &predicted, regions);
+            // a simulation that ends after K bounces has no tail, and its whole image lacks it
+            let endless = suspect.last_term().is_some() && predicted.layer(Slot::Tail).is_none();
+            let fit = compare(&suspect.only(|s| !(endless && s == Slot::Whole)), &predicted, regions);
             let rejected = fit.p < level(stage);
             if !rejected {
                 alive.push(name.clone());

@@ -9,7 +9,6 @@
 //! | r_k | ratio of means, with its 95 % interval | [`Ratio`] |
 //! | r_k,i | the same ratio in region i, with standard error s_i | [`Ratio::regions`] |
 //! | – | non-finite values, black pixels, the brightest value | [`Counts`] |
-//! | v/s² | variance of neighbouring pixels divided by the variance in the `_se` layer: 1 for independent pixels | [`Evidence::noise`] |
 
 use super::gap::{difference, ratio};
 use super::picture::{Layer, Pictures, Slot};
@@ -44,8 +43,10 @@ pub struct Counts {
     pub negative: u64,
     /// Fraction of pixels that are black although the reference is not; the largest of all pictures.
     pub black: f64,
-    /// Fraction of pixels of an 8-bit picture that have the value 255.
+    /// Fraction of pixels that are left out because they or their neighbours are clipped.
     pub clipped: f64,
+    /// The level at which finished pixels seem to be clamped.
+    pub plateau: Option<f64>,
 }
 
 /// The evidence about one suspect.
@@ -58,18 +59,12 @@ pub struct Evidence {
     /// Three numbers: the whole image divided by the sum of its own terms and tail, the half width of its 95 % interval, and
     /// the same ratio of the reference (1 if there is a tail). None if a part is missing.
     pub sum: Option<[f64; 3]>,
-    /// Largest value of the whole image divided by that of the reference.
-    pub brightest: f64,
-    /// Scatter of neighbouring pixels divided by the variance in the `_se` layers; NaN without these layers.
-    pub noise: f64,
     /// Number of samples per pixel at which the reference would be as noisy as the suspect; NaN if not known.
     pub samples: f64,
     /// Source of the errors, in words.
     pub errors: &'static str,
     /// Names of the regions.
     pub regions: Vec<String>,
-    /// Correlation with the reference itself, with its left-right mirror image, and with the reference upside down.
-    pub likeness: [f64; 3],
 }
 
 impl Evidence {
@@ -110,12 +105,9 @@ pub fn collect(
         ratios: suspect.layers.iter().filter_map(one).collect(),
         counts,
         sum: sum(suspect, reference, &regions[0]),
-        brightest: brightest(suspect, reference),
-        noise: noise(suspect, reference, &regions[0]),
         samples: reference_spp * samples(suspect, reference, &regions[0]),
         errors: if known { "the _se layers" } else { "the difference of neighbouring pixels from the reference" },
         regions: regions.iter().map(|r| r.name.clone()).collect(),
-        likeness: likeness(suspect, reference),
     }
 }
 
@@ -157,31 +149,6 @@ fn sum(suspect: &Pictures, reference: &Pictures, image: &Region) -> Option<[f64;
     Some([own.mean, critical(0.05, own.dof) * own.std_error.hypot(right.std_error), right.mean])
 }
 
-fn brightest(suspect: &Pictures, reference: &Pictures) -> f64 {
-    let top = |p: &Pictures| -> f64 {
-        let layer = p.layer(Slot::Whole).or(p.layers.first());
-        layer.map_or(f64::NAN, |l| l.mean.iter().flatten().map(|&v| f64::from(v)).fold(0.0, f64::max))
-    };
-    top(suspect) / top(reference)
-}
-
-/// Scatter of S − r T inside blocks, divided by the variance from the errors of both. Measured in the term k ≥ 1 with the
-/// largest claimed variance.
-fn noise(suspect: &Pictures, reference: &Pictures, image: &Region) -> f64 {
-    let one = |l: &Layer| {
-        let right = reference.layer(l.slot)?;
-        let r = ratio(l, right, suspect.size[0], &image.pixels).mean;
-        if l.std_error.is_none() || right.std_error.is_none() || !r.is_finite() {
-            return None;
-        }
-        let v = |known| difference((l, right, r), suspect.size[0], &image.pixels, 1, known).0.std_error.powi(2);
-        let (claimed, found) = (v(true), v(false));
-        (claimed > 0.0).then_some((claimed, found / claimed))
-    };
-    let all = suspect.layers.iter().filter(|l| matches!(l.slot, Slot::Term(k) if k > 0)).filter_map(one);
-    all.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(f64::NAN, |a| a.1)
-}
-
 /// Samples of the suspect divided by those of the reference, estimated from their noise. Uses the term k ≥ 1 whose reference
 /// is noisiest, or else the whole image.
 fn samples(suspect: &Pictures, reference: &Pictures, image: &Region) -> f64 {
@@ -200,51 +167,19 @@ fn samples(suspect: &Pictures, reference: &Pictures, image: &Region) -> f64 {
     best.or_else(|| one(suspect.layer(Slot::Whole)?)).map_or(f64::NAN, |a| a.1)
 }
 
-/// Correlation of log luminance with the reference itself, with the reference mirrored left to right, and with the reference
-/// upside down.
-fn likeness(suspect: &Pictures, reference: &Pictures) -> [f64; 3] {
-    let layer = suspect.layers.iter().rev().find(|l| reference.layer(l.slot).is_some());
-    let Some((a, b)) = layer.and_then(|l| Some((l, reference.layer(l.slot)?))) else { return [f64::NAN; 3] };
-    let [w, h] = suspect.size;
-    let floor = 1e-3 * b.mean.iter().flatten().map(|&v| f64::from(v)).sum::<f64>() / (3 * b.mean.len()) as f64;
-    let log = |v: [f32; 3]| (f64::from(v.iter().sum::<f32>()).max(0.0) + floor).ln();
-    let at = |turn: usize, p: usize| match turn {
-        0 => p,
-        1 => p / w * w + (w - 1 - p % w),
-        _ => (h - 1 - p / w) * w + p % w,
-    };
-    std::array::from_fn(|turn| {
-        let pairs: Vec<(f64, f64)> = (0..w * h)
-            .map(|p| (log(a.mean[at(turn, p)]), log(b.mean[p])))
-            .filter(|(x, y)| x.is_finite() && y.is_finite())
-            .collect();
-        let n = pairs.len() as f64;
-        let (mx, my) = pairs.iter().fold((0.0, 0.0), |s, p| (s.0 + p.0 / n, s.1 + p.1 / n));
-        let (mut xy, mut xx, mut yy) = (0.0, 0.0, 0.0);
-        for (x, y) in pairs {
-            xy += (x - mx) * (y - my);
-            xx += (x - mx).powi(2);
-            yy += (y - my).powi(2);
-        }
-        xy / (xx * yy).sqrt()
-    })
-}
-
-/// Counts special values in the original pictures. The reference shows where black pixels are wrong.
-pub fn count(suspect: &Pictures, reference: &Pictures, clipped: f64) -> Counts {
-    let all = || suspect.layers.iter().flat_map(|l| l.mean.iter().flatten());
+/// Counts special values: in the stored pictures, and black pixels in the pictures of the size of the reference.
+pub fn count(stored: &Pictures, small: &Pictures, reference: &Pictures) -> Counts {
+    let all = || stored.layers.iter().flat_map(|l| l.mean.iter().flatten());
     let black = |l: &Layer| {
         let right = reference.layer(l.slot)?;
-        if right.mean.len() != l.mean.len() {
-            return None;
-        }
         let wrong = l.mean.iter().zip(&right.mean).filter(|(s, t)| **s == [0.0; 3] && t.iter().any(|v| *v > 0.0));
         Some(wrong.count() as f64 / l.mean.len() as f64)
     };
     Counts {
         non_finite: all().filter(|v| !v.is_finite()).count() as u64,
         negative: all().filter(|v| **v < 0.0).count() as u64,
-        black: suspect.layers.iter().filter_map(black).fold(0.0, f64::max),
-        clipped,
+        black: small.layers.iter().filter_map(black).fold(0.0, f64::max),
+        clipped: 0.0,
+        plateau: None,
     }
 }

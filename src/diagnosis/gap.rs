@@ -20,12 +20,15 @@
 //! lower bound κ times the mean corrects this.
 //!
 //! If fewer than ten pixels carry the noise, a t-test is not valid. Then the tests in `rare` look for excessive fireflies
-//! and for missing lamps, and otherwise nothing is rejected. Pixels are treated as independent. References: Welch (1947);
-//! Holm (1979).
+//! and for missing lamps, and otherwise nothing is rejected. Pixels share noise after a wide filter or a lossy file; where
+//! neighbours do, errors are widened ([`inflation`]). A difference within the rounding of the file is none. References: Welch
+//! (1947); Holm (1979).
 
-use super::picture::{Code, Layer, Pictures, Slot};
+use super::correlated::{inflation, without};
+use super::picture::{Layer, Pictures, Slot};
 use super::rare::{Pixel, deficit, excess};
-use super::regions::Region;
+use super::regions::{LAMPS, Region};
+use super::rounding::tolerance;
 use crate::stats::evidence::JUDGED_PIXELS;
 use crate::stats::{Measured, holm, two_sided_p};
 
@@ -47,6 +50,8 @@ pub struct Gap {
     pub predicted: f64,
     /// Standard error of their difference.
     pub std_error: f64,
+    /// Degrees of freedom of the standard error.
+    pub dof: f64,
     /// p-value of no difference, not adjusted. It is 1 if the difference is rounding, or if no valid test exists.
     pub p: f64,
     /// The p-value adjusted for the number of comparisons.
@@ -193,18 +198,51 @@ impl Rare<'_> {
     }
 }
 
+/// Returns true if most light of the layer in this region is emission seen directly.
+fn emits(layer: &Layer, region: &Region) -> bool {
+    region.name == LAMPS && matches!(layer.slot, Slot::Term(0) | Slot::Whole)
+}
+
+/// Variance of the mean over the region of lamps, and the number of pixels that carry it. Wrong emission is no scatter: multiples of the
+/// prediction and of the emission are taken out before the scatter is measured. None for other regions, and if the errors are known.
+fn beside_lamps(a: &Layer, b: &Layer, region: &Region, channel: usize, width: usize) -> Option<(f64, f64)> {
+    if !emits(a, region) || region.emission.is_empty() || (a.std_error.is_some() && b.std_error.is_some()) {
+        return None;
+    }
+    let value = |l: &Layer| region.pixels.iter().map(|&p| f64::from(l.mean[p][channel])).collect::<Vec<f64>>();
+    let emission = region.emission.iter().map(|e| f64::from(e[channel])).collect();
+    let rest = without(value(a), &[emission, value(b)]);
+    let at: std::collections::BTreeMap<usize, f64> = region.pixels.iter().copied().zip(rest).collect();
+    let (variance, carried, _) = spread(&|p| at[&p], width, &region.pixels);
+    // the noise of the prediction was taken out with it
+    let own =
+        |errors: &Vec<[f32; 3]>| region.pixels.iter().map(|&p| f64::from(errors[p][channel]).powi(2)).sum::<f64>();
+    let n = region.pixels.len() as f64;
+    Some((variance + b.std_error.as_ref().map_or(0.0, own) / (n * n), carried))
+}
+
 /// Compares every slot that both sets have, in every region.
 pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> Fit {
-    let rounding = suspect.code.rounding().max(predicted.code.rounding());
-    let (width, exact) = (suspect.size[0], suspect.code != Code::EightBit);
+    compare_within(suspect, predicted, regions, 0.0)
+}
+
+/// The same for a prediction that may be off by a small relative amount, because it has a fitted constant.
+pub fn compare_within(suspect: &Pictures, predicted: &Pictures, regions: &[Region], slack: f64) -> Fit {
+    let rounding = suspect.code.rounding().max(predicted.code.rounding()).max(slack);
+    let (width, exact) = (suspect.size[0], !suspect.code.for_display());
     let mut gaps = vec![];
     for a in &suspect.layers {
         let Some(b) = predicted.layer(a.slot) else { continue };
-        for channel in 0..3 {
+        let shared = if a.std_error.is_some() { [1.0; 3] } else { inflation(a, b, suspect.size) };
+        for (channel, shared) in shared.into_iter().enumerate() {
             let measured: Vec<(Measured, f64, f64)> = regions
                 .iter()
                 .map(|r| {
-                    let (m, carried) = difference((a, b, 1.0), width, &r.pixels, channel, true);
+                    let (mut m, mut carried) = difference((a, b, 1.0), width, &r.pixels, channel, true);
+                    if let Some((variance, lit)) = beside_lamps(a, b, r, channel, width) {
+                        (m.std_error, carried) = (variance.sqrt(), lit);
+                    }
+                    let m = Measured { std_error: m.std_error * shared.sqrt(), ..m };
                     let n = r.pixels.len() as f64;
                     (m, r.pixels.iter().map(|&p| f64::from(b.mean[p][channel])).sum::<f64>() / n, carried)
                 })
@@ -222,10 +260,12 @@ pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> 
             let kappa = median((1..regions.len()).map(usual).filter(|k| *k > 0.0 && k.is_finite()).collect());
             for (r, region) in regions.iter().enumerate() {
                 let (Measured { mean: difference, std_error: own, dof }, predicted, carried) = measured[r];
-                let suspect = difference + predicted;
-                let floor = if r == 0 { 0.0 } else { (kappa * level(r) / size(r)).sqrt() };
+                let seen = difference + predicted;
+                let floor = if r == 0 || emits(a, region) { 0.0 } else { (kappa * level(r) / size(r)).sqrt() };
                 let std_error = own.max(floor);
-                let equal = difference.abs() <= rounding * predicted.abs();
+                let tolerance = tolerance(suspect, (a, b), region, channel, rounding * predicted.abs());
+                let beyond = (difference.abs() - tolerance).max(0.0);
+                let equal = beyond == 0.0;
                 let few = carried < JUDGED_PIXELS && !equal;
                 let p =
                     if exact && differs_without_noise(a, b, &region.pixels, channel, rounding) || difference.is_nan() {
@@ -233,18 +273,22 @@ pub fn compare(suspect: &Pictures, predicted: &Pictures, regions: &[Region]) -> 
                         0.0
                     } else if equal {
                         1.0
+                    } else if few && emits(a, region) {
+                        // Chebyshev's bound needs no normal distribution
+                        (std_error / beyond).powi(2).min(1.0)
                     } else if few {
                         rare.as_ref().map_or(1.0, |rare| rare.p(region, difference > 0.0))
                     } else {
-                        two_sided_p(difference / std_error, dof)
+                        two_sided_p(beyond / std_error, dof)
                     };
                 gaps.push(Gap {
                     slot: a.slot,
                     region: r,
                     channel,
-                    suspect,
+                    suspect: seen,
                     predicted,
                     std_error,
+                    dof,
                     p,
                     adjusted: 1.0,
                     few,
@@ -306,7 +350,7 @@ mod tests {
             mean: mean.collect(),
             std_error: errors.then(|| vec![[0.1 / 12.0f32.sqrt(); 3]; 1024]),
         };
-        Pictures { size: [32, 32], layers: vec![layer], code: Code::Float }
+        Pictures { size: [32, 32], layers: vec![layer], code: Code::Float, step: vec![] }
     }
 
     #[test]
@@ -333,7 +377,7 @@ mod tests {
             let lamp = |p: usize| p == 500 || p == 501 || p == 532 || p == 533;
             let of = |v: f32| (0..1024).map(|p| if lamp(p) { [v; 3] } else { [0.0; 3] }).collect::<Vec<_>>();
             let layer = Layer { slot: Slot::Term(0), mean: of(value), std_error: Some(of(error)) };
-            Pictures { size: [32, 32], layers: vec![layer], code: Code::Float }
+            Pictures { size: [32, 32], layers: vec![layer], code: Code::Float, step: vec![] }
         };
         assert_eq!(compare(&dark(0.0, 0.0), &dark(17.0, 0.0), &regions).p, 0.0);
         assert_eq!(compare(&dark(17.0, 0.0), &dark(17.0, 0.0), &regions).p, 1.0);

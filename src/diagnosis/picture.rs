@@ -50,17 +50,40 @@ pub enum Code {
     Float,
     /// 16-bit floating point, even if it was converted to 32 bits afterwards.
     Half,
-    /// 8 bits, encoded with the sRGB curve.
+    /// Radiance HDR: three mantissas of 8 bits with one exponent.
+    SharedExponent,
+    /// 16 bits, encoded for a display. Values are stored as numbers from 0 to 1.
+    SixteenBit,
+    /// 8 bits, encoded for a display. Values are stored as numbers from 0 to 1.
     EightBit,
+    /// JPEG: 8 bits, encoded for a display, in blocks that lose detail.
+    Jpeg,
 }
 
 impl Code {
-    /// Relative differences of means up to this value are attributed to rounding.
+    /// Relative differences of means up to this value are attributed to rounding. The values of a shared exponent are rounded relative
+    /// to the largest channel.
     pub fn rounding(self) -> f64 {
         match self {
             Self::Float => 1e-5,
             Self::Half => 1e-3,
+            Self::SharedExponent | Self::SixteenBit => 4e-3,
             Self::EightBit => 1e-2,
+            Self::Jpeg => 3e-2,
+        }
+    }
+
+    /// Returns true if the values are encoded for a display, so that their exposure and their curve are unknown.
+    pub fn for_display(self) -> bool {
+        self.step() > 0.0
+    }
+
+    /// Distance between two neighbouring stored values; 0 for floating point.
+    pub fn step(self) -> f64 {
+        match self {
+            Self::Float | Self::Half | Self::SharedExponent => 0.0,
+            Self::SixteenBit => 1.0 / 65535.0,
+            Self::EightBit | Self::Jpeg => 1.0 / 255.0,
         }
     }
 }
@@ -74,6 +97,8 @@ pub struct Pictures {
     pub layers: Vec<Layer>,
     /// Number format of the file.
     pub code: Code,
+    /// Distance between neighbouring stored values, as radiance, for each pixel; empty for floating point.
+    pub step: Vec<[f32; 3]>,
 }
 
 impl Pictures {
@@ -90,7 +115,7 @@ impl Pictures {
             layers.push(layer(Slot::Tail, &sampled.tail));
         }
         layers.push(layer(Slot::Whole, &sampled.total));
-        Self { size: size.map(|s| s as usize), layers, code: Code::Float }
+        Self { size: size.map(|s| s as usize), layers, code: Code::Float, step: vec![] }
     }
 
     /// The layer of a slot, if there is one.
@@ -102,6 +127,23 @@ impl Pictures {
     pub fn last_term(&self) -> Option<usize> {
         let k = |l: &Layer| if let Slot::Term(k) = l.slot { Some(k) } else { None };
         self.layers.iter().filter_map(k).max()
+    }
+
+    /// One image that both sets have, from each: the whole image, or else the sum of the terms in both.
+    pub fn image_in_common(&self, other: &Self) -> Option<(Vec<[f32; 3]>, Vec<[f32; 3]>)> {
+        if let Some((a, b)) = self.layer(Slot::Whole).zip(other.layer(Slot::Whole)) {
+            return Some((a.mean.clone(), b.mean.clone()));
+        }
+        let both: Vec<(&Layer, &Layer)> = self.layers.iter().filter_map(|l| Some((l, other.layer(l.slot)?))).collect();
+        both.first()?;
+        let add = |mut sum: Vec<[f32; 3]>, l: &Layer| {
+            sum.iter_mut().zip(&l.mean).for_each(|(s, v)| (0..3).for_each(|c| s[c] += v[c]));
+            sum
+        };
+        let blank = vec![[0.0f32; 3]; both[0].0.mean.len()];
+        let sum =
+            |pick: &dyn Fn(&(&Layer, &Layer)) -> Layer| both.iter().map(pick).fold(blank.clone(), |s, l| add(s, &l));
+        Some((sum(&|l| l.0.clone()), sum(&|l| l.1.clone())))
     }
 
     /// The same pictures with only the slots that `keep` selects.
@@ -119,6 +161,7 @@ impl Pictures {
             scale(&mut layer.mean);
             layer.std_error.as_mut().map(scale);
         }
+        scale(&mut self.step);
         self
     }
 
@@ -146,7 +189,8 @@ impl Pictures {
             mean: (0..w * h).map(|i| gather(&l.mean, i, 1)).collect(),
             std_error: l.std_error.as_ref().map(|s| (0..w * h).map(|i| gather(s, i, 2)).collect()),
         });
-        Self { size: [w, h], layers: layers.collect(), code: self.code }
+        let step = if self.step.is_empty() { vec![] } else { (0..w * h).map(|i| gather(&self.step, i, 1)).collect() };
+        Self { size: [w, h], layers: layers.collect(), code: self.code, step }
     }
 }
 
@@ -174,7 +218,7 @@ mod tests {
             mean: (0..16).map(|i| [i as f32; 3]).collect(),
             std_error: Some(vec![[2.0; 3]; 16]),
         };
-        let small = Pictures { size: [4, 4], layers: vec![layer], code: Code::Float }.shrunk(2);
+        let small = Pictures { size: [4, 4], layers: vec![layer], code: Code::Float, step: vec![] }.shrunk(2);
         assert_eq!(small.size, [2, 2]);
         assert_eq!(small.layers[0].mean[1], [(2.0 + 3.0 + 6.0 + 7.0) / 4.0; 3]);
         assert_eq!(small.layers[0].std_error.as_ref().map(|s| s[0]), Some([1.0; 3]));

@@ -11,8 +11,12 @@
 //! | – | fraction of the first error that further samples have replaced | [`BySamples::renewed`] |
 //! | p | p-value of the hypothesis that the mean is constant | [`BySamples::p_constant`] |
 
+use super::Case;
+use super::curve::Curve;
+use super::explain::{Suspicion, finding};
 use super::gap::ratio;
-use super::picture::{Pictures, Slot};
+use super::picture::{Layer, Pictures, Slot};
+use super::prepare::Ready;
 use super::regions::Region;
 use crate::stats::{Measured, difference, holm, two_sided_p};
 use serde::Serialize;
@@ -34,8 +38,56 @@ pub struct BySamples {
     pub renewed: f64,
 }
 
-/// Analyses the whole image (or else the first picture) of renders with growing n.
-pub fn by_samples(renders: &[(u32, Pictures)], reference: &Pictures, image: &Region) -> Option<BySamples> {
+/// Analyses the whole image (or else the first picture) of renders with growing n, read like the suspect.
+pub(super) fn by_samples(renders: &[(u32, Pictures)], ready: &Ready, case: &Case) -> Option<BySamples> {
+    let (curve, exposure) = (ready.display.curve, ready.display.exposure as f32);
+    let read = |p: &Pictures| {
+        let radiance = |v: &[f32; 3]| curve.decode(v.map(f64::from)).map(|x| x as f32 / exposure);
+        let layer = |l: &Layer| Layer {
+            slot: l.slot,
+            mean: l.mean.iter().map(radiance).collect(),
+            std_error: l.std_error.clone().filter(|_| curve == Curve::LINEAR),
+        };
+        Pictures { layers: p.layers.iter().map(layer).collect(), ..p.clone() }.shrunk(case.factor)
+    };
+    let renders: Vec<(u32, Pictures)> = renders.iter().map(|(n, p)| (*n, read(p))).collect();
+    analysed(&renders, &ready.reference, ready.regions.first()?)
+}
+
+/// What the growth of the number of samples shows to be wrong, if anything. `rejected` is true if the picture with the most samples is
+/// wrong.
+pub(super) fn in_words(s: &BySamples, rejected: bool) -> Option<Suspicion> {
+    if s.p_constant < 1e-3 && s.largest_change > 5e-3 {
+        let means: Vec<String> = s.means.iter().map(|m| format!("{:.4} at {}", m[1], m[0])).collect();
+        let found = finding(
+            "mean-changes-with-samples",
+            "its mean changes with the number of samples per pixel".into(),
+            format!(
+                "{} (p = {:.1e}): the mean of an unbiased estimator does not change. A nonlinear step acts before the mean: gamma, \
+                 tone map, clamp or 8 bits",
+                means.join(", "),
+                s.p_constant
+            ),
+            "average linear radiance, and apply gamma, tone map and clamp afterwards",
+        );
+        return Some(Suspicion { members: vec!["gamma-before-mean"], ..found });
+    }
+    if s.renewed < 0.3 && !rejected {
+        let found = finding(
+            "same-numbers",
+            "further samples repeat the first ones".into(),
+            format!(
+                "further samples replace {:.1} % of the error of the first ones; independent samples would replace nearly all of it",
+                100.0 * s.renewed
+            ),
+            "give every sample its own random numbers",
+        );
+        return Some(found);
+    }
+    None
+}
+
+fn analysed(renders: &[(u32, Pictures)], reference: &Pictures, image: &Region) -> Option<BySamples> {
     let pick = |p: &Pictures| p.layer(Slot::Whole).or(p.layers.first()).map(|l| l.slot);
     let slot = pick(&renders.first()?.1)?;
     let right = reference.layer(slot)?;

@@ -230,6 +230,12 @@ pub const ENTRIES: &[Entry] = &[
     entry("right_renderers_are_called_correct", 44),
     entry("false_alarms_keep_their_level", 2),
     entry("a_bias_of_the_size_that_is_promised_is_seen", 1),
+    entry("strangers_are_named_from_layers", 11),
+    entry("strangers_are_named_from_images", 9),
+    entry("all_strangers_are_named_or_honestly_unnamed", 120),
+    entry("correct_strangers_are_not_accused", 1),
+    entry("two_hundred_correct_strangers_are_not_accused", 1),
+    entry("an_unknown_curve_is_said_to_be_unknown", 2),
     entry("the_strip_of_whole_pictures_has_the_means_of_the_image", 9),
     entry("the_surfaces_add_up_to_the_norm_over_all_surfaces", 15),
 ];

@@ -7,6 +7,11 @@ fn run(desk: &tempfile::TempDir, line: &str) -> Said {
     run_tidily(desk.path(), line)
 }
 
+/// What was said, without the ends of lines.
+fn unwrapped(said: &Said) -> String {
+    said.out.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// Writes layers as an EXR.
 fn write_exr(desk: &tempfile::TempDir, name: &str, [w, h]: [usize; 2], layers: &[(&str, &[[f32; 3]])]) {
     use fredholm::report::image::exr;
@@ -34,19 +39,28 @@ fn the_command_says_correct_or_names_the_mistake() {
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
     assert!(said.out.starts_with("good.exr is correct, as far as this data can tell"), "{}", said.out);
     assert!(
-        said.out.contains("a uniform bias") && said.out.contains("cannot show samples that repeat"),
+        said.out.contains("a uniform bias above") && said.out.contains("cannot show samples that repeat"),
         "{}",
         said.out
     );
 
     let said = run(&desk, &format!("diagnose bad.exr --against cornell -o b {QUICK}"));
     assert_eq!(said.code, 1, "{}{}", said.out, said.err);
-    assert!(said.out.starts_with("bad.exr is wrong: missing-pi-connection"), "{}", said.out);
+    assert!(said.out.starts_with("bad.exr is wrong: all reflected light is 3.1"), "{}", said.out);
+    assert!(
+        said.out.contains("(π)") && said.out.contains("\nEvidence: ") && said.out.contains("\nNext: "),
+        "{}",
+        said.out
+    );
+    // the table is behind --verbose
+    assert!(!said.out.contains("same r everywhere?"), "{}", said.out);
+    let long = run(&desk, &format!("diagnose bad.exr --against cornell -o b2 {QUICK} -v"));
+    assert!(long.out.contains("same r everywhere?") && long.out.contains("missing-pi-connection"), "{}", long.out);
     for file in ["diagnosis.png", "diagnosis.svg", "diagnosis.json", "summary.json"] {
         assert!(desk.path().join("b").join(file).is_file(), "{file}");
     }
     let svg = std::fs::read_to_string(desk.path().join("b/diagnosis.svg")).unwrap();
-    assert!(svg.contains("missing-pi-connection") && svg.contains("scene cornell"));
+    assert!(svg.contains("constant-in-the-connection") && svg.contains("scene cornell"));
 
     // several files: a table, and the same numbers for any number of threads
     let line = format!("diagnose good.exr bad.exr --against cornell {QUICK}");
@@ -59,7 +73,7 @@ fn the_command_says_correct_or_names_the_mistake() {
     );
     let json = run(&desk, &format!("{line} --json -o c -t 2"));
     let json: serde_json::Value = serde_json::from_str(&json.out).unwrap();
-    assert_eq!(json[1]["diagnosis"]["suspects"][0]["name"], "missing-pi-connection");
+    assert_eq!(json[1]["diagnosis"]["suspects"][0]["name"], "constant-in-the-connection");
     assert_eq!(json[0]["diagnosis"]["verdict"], "correct");
     let stored = std::fs::read_to_string(desk.path().join("c/diagnosis.json")).unwrap();
     assert_eq!(serde_json::from_str::<serde_json::Value>(&stored).unwrap(), json);
@@ -70,12 +84,15 @@ fn the_command_says_correct_or_names_the_mistake() {
     }
     let said = run(&desk, &format!("diagnose T00.exr T01.exr T02.exr T03.exr --against cornell -o d {QUICK}"));
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    assert!(said.out.contains("the terms of one render"), "{}", said.out);
     let developed = fredholm::report::image::picture::develop(16, 16, &good.total.mean, 2.0);
     developed.picture.write(&desk.path().join("good.png")).unwrap();
     let said = run(&desk, &format!("diagnose good.png --against cornell -o e {QUICK}"));
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    assert!(said.out.contains("The exposure is unknown") && said.out.contains("end of 8 bits"), "{}", said.out);
+    assert!(
+        said.out.contains("Read as 8 bits, sRGB, exposure 2.0") && unwrapped(&said).contains("the exposure is unknown"),
+        "{}",
+        said.out
+    );
 }
 
 #[test]
@@ -93,11 +110,15 @@ fn growing_samples_show_what_one_picture_cannot() {
         }
         let files = [16, 64, 256].map(|n| format!("{name}_{n}.exr")).join(" ");
         let said = run(&desk, &format!("diagnose {files} --against cornell -o {name} {QUICK}"));
-        assert!(said.out.contains("growing samples per pixel"), "{}", said.out);
         match bug {
             Some(bug) => {
                 assert_eq!(said.code, 1, "{}", said.out);
-                assert!(said.out.lines().next().unwrap().contains(bug), "{}", said.out);
+                let words = if bug == "same-numbers" {
+                    "repeat the first ones"
+                } else {
+                    "gamma-encoded before they are averaged"
+                };
+                assert!(unwrapped(&said).contains(words), "{}", said.out);
             }
             None => assert_eq!(said.code, 0, "{}", said.out),
         }
@@ -123,8 +144,8 @@ fn a_larger_scene_shows_mixed_measures() {
     let few = "--spp 256 --paths 1 -q --json";
     let names = |said: &Said| {
         let json: serde_json::Value = serde_json::from_str(&said.out).unwrap();
-        let list = json[0]["diagnosis"]["suspects"].as_array().unwrap().clone();
-        list.iter().map(|s| s["name"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+        let list = json[0]["diagnosis"]["findings"].as_array().unwrap().clone();
+        list.iter().map(|s| s["members"][0].as_str().unwrap().to_owned()).collect::<Vec<_>>()
     };
     let said = run(&desk, &format!("diagnose wrong1.exr --scale 10=wrong10.exr --against sphere -o a {few}"));
     assert_eq!(said.code, 1, "{}", said.err);
@@ -158,7 +179,7 @@ fn too_few_pixels_are_said_to_be_too_few() {
     let mut one = render(false).only(|s| s == Slot::Term(1));
     one.layers[0].mean[40] = [10.0; 3];
     let d = bench.judge(&one, None, 1e-6);
-    assert_eq!((d.verdict, d.undecided.as_slice()), (Conclusion::Correct, &[Slot::Term(1)][..]), "{}", d.p);
+    assert_eq!((d.verdict, d.outliers.len(), d.limits.len()), (Conclusion::Undecided, 1, 1), "{}", d.p);
 }
 
 /// A lamp of few pixels: it is seen that it is missing, with its term and in the whole image.
@@ -172,9 +193,6 @@ fn a_small_lamp_is_missed() {
         let d = bench.judge(&part, None, 1e-6);
         assert_eq!(d.verdict, Conclusion::Wrong, "{:?} {}", d.evidence.ratios, d.p);
     }
-    // black alone does not tell how many samples saw nothing
-    let d = bench.judge(&all.only(|s| s == Slot::Term(0)), None, 1e-6);
-    assert_eq!((d.verdict, d.undecided.as_slice()), (Conclusion::Correct, &[Slot::Term(0)][..]));
 }
 
 #[test]

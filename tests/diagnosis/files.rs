@@ -46,8 +46,6 @@ fn pictures_that_are_something_else_are_named() {
         ("red.exr", "has only the channel R"),
         ("crop.exr", "a crop: the pixels (8, 8) to (23, 23) of a picture of 64×64"),
         ("overscan.exr", "a picture with overscan"),
-        ("srgb.exr", "encoded for a display"),
-        ("gamma.exr", "encoded for a display"),
         ("grey.png", "has one channel, grey"),
         ("folder.exr", "not a file"),
     ] {
@@ -61,6 +59,13 @@ fn pictures_that_are_something_else_are_named() {
             "{file}: {}",
             said.err
         );
+    }
+    for (file, what) in [("srgb.exr", "display (sRGB)"), ("gamma.exr", "display (gamma 2.2)")] {
+        let line = format!("diagnose {file} --against cornell --spp 256 --paths 100000 -q -o {file}.out");
+        let said = run_tidily(desk.path(), &line);
+        assert_eq!(said.code, 1, "{file}: {}{}", said.out, said.err);
+        let words = said.out.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(what) && !words.contains("more is wrong"), "{file}: {}", said.out);
     }
     let said = run_tidily(desk.path(), "diagnose right.exr --against cornell --spp 256 --paths 400000 -q -o right");
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);

@@ -45,7 +45,15 @@ fn right_renderers_are_called_correct() {
         for (name, pictures) in right_renderers(&bench.scene, account.seed()) {
             for suspect in [pictures.clone(), without_errors(pictures)] {
                 let d = bench.judge(&suspect, None, account.spend(1));
-                assert_eq!(d.verdict, Conclusion::Correct, "{} by {name}: {} {:?}", stage.label, d.worst, d.suspects);
+                assert_eq!(
+                    d.verdict,
+                    Conclusion::Correct,
+                    "{} by {name}: {} {:?} {:?}",
+                    stage.label,
+                    d.worst,
+                    d.suspects,
+                    d.limits
+                );
                 assert!(d.visible < 0.5, "{}: {}", name, d.visible);
             }
         }
@@ -53,7 +61,7 @@ fn right_renderers_are_called_correct() {
 }
 
 /// P(B(n, p) ≥ k).
-fn upper_tail(n: u64, p: f64, k: u64) -> f64 {
+pub(super) fn upper_tail(n: u64, p: f64, k: u64) -> f64 {
     use statrs::distribution::{Binomial, DiscreteCDF};
     if k == 0 { 1.0 } else { Binomial::new(p, n).unwrap().sf(k - 1) }
 }
@@ -88,6 +96,7 @@ fn a_bias_of_the_size_that_is_promised_is_seen() {
     assert_eq!(d.verdict, Conclusion::Correct, "{}", d.worst);
     // twice the size that is seen with probability 0.99 lies far enough beyond for any run
     let d = bench.judge(&suspect.times(1.0 + 2.0 * d.visible), None, alpha);
-    assert_eq!(d.verdict, Conclusion::Wrong);
+    // a factor on all light may be the exposure
+    assert_ne!(d.verdict, Conclusion::Correct);
     assert!(d.suspects.iter().any(|s| s.name == "exposure"), "{:?}", d.suspects);
 }

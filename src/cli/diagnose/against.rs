@@ -8,7 +8,7 @@ use crate::cli::{notes, open, preflight};
 use clap::{Parser, Subcommand};
 use fredholm::diagnosis::candidates::own_seed;
 use fredholm::diagnosis::picture::{Code, Layer, Pictures, Slot, shrink_factor};
-use fredholm::diagnosis::{Region, WIDEST, regions};
+use fredholm::diagnosis::{Seen, WIDEST, regions};
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Estimator};
 use fredholm::engine::known::resort::with_last_resort;
@@ -38,8 +38,8 @@ pub struct Right {
     pub factor: usize,
     /// Its samples per pixel of the averaged picture; NaN if not known.
     pub spp: f64,
-    /// Regions of the image by the surfaces that the camera sees.
-    pub seen: Vec<Region>,
+    /// What the camera sees.
+    pub seen: Seen,
     /// The scene at that size, in which mistakes are simulated.
     pub scene: Option<Scene>,
     /// Scene, estimator, K, samples per pixel and size, in words.
@@ -49,16 +49,16 @@ pub struct Right {
 }
 
 /// Loads the scene or the run that `--against` names.
-pub fn source(args: &Diagnose) -> Result<Source, Failure> {
-    let path = Path::new(&args.against);
+pub fn source(args: &Diagnose, against: &str) -> Result<Source, Failure> {
+    let path = Path::new(against);
     if path.is_dir() || path.file_name().is_some_and(|n| n == "summary.json") {
         if let Some(flag) = args.shared.changes.first() {
-            let what = format!("{flag} changes a scene, and {} is a finished run", args.against);
+            let what = format!("{flag} changes a scene, and {against} is a finished run");
             return Err(usage(&what, "give the scene itself to --against"));
         }
         return finished(path);
     }
-    let (description, hash) = open::description(&args.against, &args.shared.changes, None)?;
+    let (description, hash) = open::description(against, &args.shared.changes, None)?;
     Ok(Source { name: description.name.clone(), hash, description: Some(description), run: None })
 }
 
@@ -85,7 +85,7 @@ fn finished(path: &Path) -> Result<Source, Failure> {
             folder.join("terms.exr").display()
         )));
     }
-    let pictures = Pictures { size: [image.width, image.height], layers, code: Code::Float };
+    let pictures = Pictures { size: [image.width, image.height], layers, code: Code::Float, step: vec![] };
     let description = scene_of(&record.command);
     if description.is_none() {
         note("note: the scene of that run cannot be loaded again; no candidates are simulated");
@@ -167,7 +167,7 @@ impl Source {
             d.camera.size = small;
             with_last_resort(Scene::new(&d))
         });
-        let seen = scene.as_ref().map_or(vec![], regions::seen);
+        let seen = scene.as_ref().map_or(Seen { regions: vec![], edges: vec![] }, regions::seen);
         if let Some((label, pictures, samples)) = &self.run {
             let pictures = pictures.shrunk(factor);
             let spp = *samples * (factor * factor) as f64;

@@ -13,14 +13,15 @@ pub const HELP: &str = "Examples:
   fredholm diagnose mine.exr --scale 10=large.exr --against cornell
   fredholm diagnose mine.png --gain 2 --against fredholm-out/cornell
   fredholm diagnose zoo-out/*.exr --against cornell
+  fredholm diagnose --how
 
-The pictures are compared with the right terms, region by region. If they differ, every known mistake is rendered in the same \
-scene, and each mistake that contradicts the pictures is excluded. The answer is the name of the mistake that remains, or a short \
-list that this data cannot distinguish.
+First the curve, the exposure and the clipped pixels of a picture are found. Then it is compared with the correct terms, region by \
+region. If it differs, families of mistakes with a constant are fitted, and the known mistakes are rendered in the same scene. The \
+answer is the explanation that remains, or a short list that this data cannot distinguish. If too many remain, no cause is named.
 
 A file with the terms in layers T00, T01, … carries the most information. The whole image alone carries less, 8 bits the least.
 
-Exit code 0: correct, as far as the data can tell. Exit code 1: something is wrong.";
+Exit code 0: correct, as far as the data can tell. Exit code 1: something is wrong, or the data cannot tell.";
 
 /// How several files belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -42,13 +43,18 @@ pub struct Diagnose {
     ///
     /// An EXR may have layers. Files named T00.exr, T01.exr, … are read as the terms of one render, files named r_16.exr, r_64.exr,
     /// … as one render at growing samples per pixel, and all others separately; --as changes that.
-    #[arg(required = true, value_name = "RENDER", help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
+    #[arg(required_unless_present = "how", value_name = "RENDER", help_heading = WHAT, value_hint = clap::ValueHint::FilePath)]
     pub renders: Vec<PathBuf>,
     /// The scene, or the output folder of a run
     ///
     /// The right answer: a built-in scene, a .toml or .obj file, or the output folder of a run.
-    #[arg(long, value_name = "SCENE|DIR", help_heading = WHAT)]
-    pub against: String,
+    #[arg(long, value_name = "SCENE|DIR", required_unless_present = "how", help_heading = WHAT)]
+    pub against: Option<String>,
+    /// How to write the pictures in C++, Python and Mitsuba
+    ///
+    /// Prints how to write a file with the terms in layers, and exits.
+    #[arg(long, exclusive = true, help_heading = WHAT)]
+    pub how: bool,
     /// auto, separate, bounces or spp
     ///
     /// How several files belong together.
@@ -61,12 +67,12 @@ pub struct Diagnose {
     pub scale: Option<(f64, PathBuf)>,
     /// Divide the pictures by G first
     ///
-    /// 0 means that the exposure is unknown. [default: 1; 0 for 8-bit pictures]
+    /// 0 means that the exposure is unknown. [default: 1; 0 for PNG and JPEG]
     #[arg(long, value_name = "G", value_parser = fraction, help_heading = WHAT)]
     pub gain: Option<f64>,
     /// K of the reference, if the file has no terms
     ///
-    /// [default: as the file says, or 8]
+    /// [default: as the file says, or 20]
     #[arg(long, value_name = "K", help_heading = HOW, value_parser = clap::value_parser!(u16).range(0..=64))]
     pub max_bounces: Option<u16>,
     /// Samples per pixel of the reference

@@ -1,6 +1,6 @@
 //! The result for one picture.
 
-use fredholm::diagnosis::Diagnosis;
+use fredholm::diagnosis::{Code, Diagnosis};
 
 /// The diagnosis of one picture, with facts about its file.
 pub struct Diagnosed {
@@ -8,8 +8,8 @@ pub struct Diagnosed {
     pub name: String,
     /// True if the file has terms.
     pub terms: bool,
-    /// True if the exposure is unknown.
-    pub any_gain: bool,
+    /// Number format of the file.
+    pub code: Code,
     /// Names of layers that are neither a term nor a whole image.
     pub ignored: Vec<String>,
     /// Samples per pixel according to the file.

@@ -8,15 +8,13 @@ mod read;
 mod suspects;
 mod text;
 
-use super::base::{Ending, Failure, usage};
+use super::base::{Ending, Failure, print, usage};
 use super::session::Session;
 use against::{Right, Source};
 pub use args::{Diagnose, HELP};
 use found::Diagnosed;
 use fredholm::diagnosis::candidates::Members;
-use fredholm::diagnosis::encoding::is_encoded;
-use fredholm::diagnosis::picture::{Code, Layer, Pictures};
-use fredholm::diagnosis::{self, Case, Conclusion, Effort, evidence as counting};
+use fredholm::diagnosis::{self, Case, Conclusion, Effort};
 use fredholm::engine::known::coplanar;
 use fredholm::progress::Progress;
 use fredholm::report::figures::diagnosis as figure;
@@ -29,10 +27,14 @@ use suspects::{Suspect, size_mismatch, suspects};
 
 /// Diagnoses every picture, writes the figures and prints the text.
 pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
+    let Some(against) = args.against.as_deref().filter(|_| !args.how) else {
+        print(&how())?;
+        return Ok(Ending::Ok);
+    };
     let mut session = Session::new(&args.shared, args.seed)?;
     let (suspects, how) = suspects(args)?;
     let scaled = args.scale.as_ref().map(|(s, file)| Ok::<_, Failure>((*s, read::file(file)?))).transpose()?;
-    let source = against::source(args)?;
+    let source = against::source(args, against)?;
     for s in &suspects {
         source.suits(&s.name, s.file.pictures.size)?;
     }
@@ -44,7 +46,7 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     session.about(&source.name, &source.hash);
     let inputs = args.renders.iter().chain(args.scale.iter().map(|(_, file)| file));
     inputs.for_each(|input| session.reads(input));
-    session.reads(&args.against);
+    session.reads(against);
     session.make_folder(&format!("{}-diagnose", source.name))?;
     let judged = judge(args, &suspects, scaled.as_ref(), &source, session.progress())?;
     session.clear();
@@ -52,7 +54,12 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     let page = text::Text { how, label: &label, rare_paths: rare_paths.as_deref() };
     let files = write(&session, &found)?;
     session.show(&text::json(&found), || page.people(&session, &found, &files))?;
-    Ok(session.ending(found.iter().any(|f| f.diagnosis.verdict == Conclusion::Wrong)))
+    Ok(session.ending(found.iter().any(|f| f.diagnosis.verdict != Conclusion::Correct)))
+}
+
+/// How to write the pictures. The book shows parts of the same text, between marks.
+fn how() -> String {
+    include_str!("how.txt").lines().filter(|l| !l.starts_with("ANCHOR")).collect::<Vec<_>>().join("\n")
 }
 
 /// The diagnoses of all pictures, and the reference.
@@ -92,12 +99,14 @@ fn judge(
                 "error: {why}, so no picture of this scene is the right one\nhelp: move one of them by a thousandth of the scene"
             )));
         }
-        let candidates = right.scene.as_ref().map(|s| Members::new(s, *max_bounces, args.seed, progress));
+        let deepest =
+            if members.iter().any(|(_, s)| s.file.pictures.last_term().is_some()) { usize::MAX } else { SIMULATED };
+        let candidates =
+            right.scene.as_ref().map(|s| Members::new(s, (*max_bounces).min(deepest), args.seed, progress));
         for (i, suspect) in members {
             if progress.stopped() {
                 break;
             }
-            is_linear(suspect, &right)?;
             let progress = progress.named(&suspect.name);
             found.insert(*i, one(args, suspect, scaled, &right, candidates.as_ref(), progress));
         }
@@ -105,33 +114,19 @@ fn judge(
     Ok(Judged { found: found.into_values().collect(), label, rare_paths })
 }
 
-/// Refuses floats that are encoded for a display: the commonest mistake of all is one of the file, not of the light.
-fn is_linear(suspect: &Suspect, right: &Right) -> Result<(), Failure> {
-    let file = &suspect.file;
-    if file.pictures.code == Code::EightBit {
-        return Ok(());
-    }
-    let small = file.pictures.shrunk(right.factor);
-    let twin =
-        |l: &Layer| right.pictures.layers.iter().find(|r| r.slot == l.slot).map(|r| (l.mean.clone(), r.mean.clone()));
-    match small.layers.iter().rev().find_map(twin) {
-        Some((picture, right)) if is_encoded(&picture, &right) => Err(Failure::Input(format!(
-            "error: the values of the picture are encoded for a display (sRGB, or a gamma of about 2.2)\n  --> {}\n\
-             help: write linear radiance into float files, without a view transform; or give the picture as PNG",
-            suspect.name
-        ))),
-        _ => Ok(()),
-    }
-}
+/// K of the reference if a file has no terms. The tail after K cannot be taken apart, so it should be dim.
+const DEEP: usize = 20;
+/// Largest K of the simulated mistakes, if a file has no terms.
+const SIMULATED: usize = 8;
 
-/// K of the reference: the last term of the picture, else `--max-bounces`, else the file's attribute, else 8.
+/// K of the reference: the last term of the picture, else `--max-bounces`, else the file's attribute, else [`DEEP`].
 fn last_term(args: &Diagnose, file: &File) -> usize {
     let told = || file.attribute("max_bounces").and_then(|k| k.parse().ok());
     let asked = args.max_bounces.map(usize::from);
-    file.pictures.last_term().or(asked).or_else(told).unwrap_or(8)
+    file.pictures.last_term().or(asked).or_else(told).unwrap_or(DEEP)
 }
 
-/// Diagnoses one picture, averaged down to the size of the reference.
+/// Diagnoses one picture.
 fn one(
     args: &Diagnose,
     suspect: &Suspect,
@@ -141,48 +136,32 @@ fn one(
     progress: Progress<'_>,
 ) -> Diagnosed {
     let file = &suspect.file;
-    let gain = args.gain.unwrap_or(if file.pictures.code == Code::EightBit { 0.0 } else { 1.0 });
-    let any_gain = gain == 0.0;
-    let prepare = |p: &Pictures| {
-        let small = p.shrunk(right.factor);
-        if any_gain { small } else { small.times(1.0 / gain) }
-    };
-    let pictures = prepare(&file.pictures);
-    let by_samples: Vec<(u32, Pictures)> = suspect.by_samples.iter().map(|(n, p)| (*n, prepare(p))).collect();
-    let large = scaled.map(|(s, f)| (*s, prepare(&f.pictures)));
-    let mask = file.mask.as_ref().map_or(vec![], |m| shrink_mask(m, file.pictures.size[0], right.factor));
+    let usual = if file.pictures.code.for_display() { 0.0 } else { 1.0 };
+    let gain = args.gain.unwrap_or(usual);
     let case = Case {
-        suspect: &pictures,
+        suspect: &file.pictures,
+        factor: right.factor,
         reference: &right.pictures,
         reference_spp: right.spp,
         seen: &right.seen,
-        counts: counting::count(&file.pictures, &right.pictures, file.clipped),
-        mask: &mask,
-        by_samples: &by_samples,
-        scaled: large.as_ref().map(|(s, p)| (*s, p)),
+        by_samples: &suspect.by_samples,
+        scaled: scaled.map(|(s, f)| (*s, &f.pictures)),
         candidates: candidates.map(|c| c as &dyn diagnosis::Simulate),
         alpha: args.alpha,
-        effort: Effort { paths: args.paths, any_gain, ..Effort::default() },
+        gain: (gain > 0.0).then_some(gain),
+        effort: Effort { paths: args.paths, ..Effort::default() },
     };
     let diagnosis = diagnosis::diagnose(&case, progress);
-    let terms = pictures.last_term().is_some();
     let told = file.attribute("spp").and_then(|n| n.parse().ok());
-    let (name, ignored) = (suspect.name.clone(), file.ignored.clone());
-    Diagnosed { name, terms, any_gain, ignored, told, factor: right.factor, diagnosis }
-}
-
-/// Shrinks a mask. A pixel of the small picture is masked if one of its own or of its neighbours' large pixels is masked: noise
-/// decides which of them are clipped, and must not decide which are compared.
-fn shrink_mask(mask: &[bool], width: usize, factor: usize) -> Vec<bool> {
-    let height = mask.len() / width;
-    let (w, h) = (width / factor, height / factor);
-    let at = |i: usize| {
-        let (x, y) = (i % w, i / w);
-        let columns = x.saturating_sub(1) * factor..((x + 2) * factor).min(width);
-        (y.saturating_sub(1) * factor..((y + 2) * factor).min(height))
-            .any(|y| columns.clone().any(|x| mask[y * width + x]))
-    };
-    (0..w * h).map(at).collect()
+    Diagnosed {
+        name: suspect.name.clone(),
+        terms: file.pictures.last_term().is_some(),
+        code: file.pictures.code,
+        ignored: file.ignored.clone(),
+        told,
+        factor: right.factor,
+        diagnosis,
+    }
 }
 
 /// Writes the figures, `diagnosis.json` and `summary.json`; returns the names of the files.
@@ -199,8 +178,7 @@ fn write(session: &Session, found: &[Diagnosed]) -> Result<Vec<String>, Failure>
             let name = if used.insert(name.clone()) { name } else { format!("{name}-{i}") };
             format!("diagnosis-{name}")
         };
-        let title = format!("{}: {}", text::short(&f.name), text::headline(&f.diagnosis));
-        figure::draw(&f.diagnosis, &title, &caption)?.write(&session.folder, &stem)?;
+        figure::draw(&f.diagnosis, &text::title(f), &caption)?.write(&session.folder, &stem)?;
         files.extend([format!("{stem}.png"), format!("{stem}.svg")]);
     }
     files.sort();

@@ -18,10 +18,6 @@ use std::path::{Path, PathBuf};
 pub struct File {
     /// Its pictures.
     pub pictures: Pictures,
-    /// Fraction of pixels at the upper end of 8 bits.
-    pub clipped: f64,
-    /// For 8-bit files, true where a pixel is clipped and so not compared.
-    pub mask: Option<Vec<bool>>,
     /// Text attributes.
     pub attributes: BTreeMap<String, String>,
     /// Names of layers that are neither a term nor a whole image.
@@ -114,42 +110,31 @@ fn layered(path: &Path) -> Result<File, Failure> {
         .collect();
     let code = if half { Code::Half } else { Code::Float };
     Ok(File {
-        pictures: Pictures { size: [image.width, image.height], layers, code },
-        clipped: 0.0,
-        mask: None,
+        pictures: Pictures { size: [image.width, image.height], layers, code, step: vec![] },
         attributes: image.attributes.into_iter().collect(),
         ignored,
     })
 }
 
-/// Reads an image without layers: 8-bit values by the inverse of the sRGB curve, `.hdr` values unchanged.
+/// Reads an image without layers. Values are kept as they are stored; the diagnosis finds their curve.
 fn plain(path: &Path, bytes: &[u8]) -> Result<File, Failure> {
     let help = "give an .exr, .png, .jpg or .hdr file";
     let image = image::load_from_memory(bytes).map_err(|e| wrong(path, &format!("not a readable image: {e}"), help))?;
-    let float = matches!(image.color(), image::ColorType::Rgb32F | image::ColorType::Rgba32F);
     if !image.color().has_color() {
         return Err(one_channel_only(path, "grey".into()));
     }
-    let size = [image.width() as usize, image.height() as usize];
-    let (mean, code): (Pixels, Code) = if float {
-        (image.to_rgb32f().pixels().map(|p| p.0).collect(), Code::Float)
-    } else {
-        let linear = |v: u16| {
-            let s = f32::from(v) / 65535.0;
-            if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) }
-        };
-        (image.to_rgb16().pixels().map(|p| p.0.map(linear)).collect(), Code::EightBit)
+    let format = image::guess_format(bytes).ok();
+    let code = match image.color() {
+        image::ColorType::Rgb32F | image::ColorType::Rgba32F => Code::SharedExponent,
+        image::ColorType::Rgb16 | image::ColorType::Rgba16 => Code::SixteenBit,
+        _ if format == Some(image::ImageFormat::Jpeg) => Code::Jpeg,
+        _ => Code::EightBit,
     };
-    let clipped: Vec<bool> = mean.iter().map(|v| !float && v.iter().any(|x| *x >= 0.999)).collect();
-    let share = clipped.iter().filter(|c| **c).count() as f64 / clipped.len().max(1) as f64;
+    let size = [image.width() as usize, image.height() as usize];
+    let mean: Pixels = image.to_rgb32f().pixels().map(|p| p.0).collect();
     let layers = vec![Layer { slot: Slot::Whole, mean, std_error: None }];
-    Ok(File {
-        pictures: Pictures { size, layers, code },
-        clipped: share,
-        mask: (!float).then_some(clipped),
-        attributes: BTreeMap::new(),
-        ignored: vec![],
-    })
+    let pictures = Pictures { size, layers, code, step: vec![] };
+    Ok(File { pictures, attributes: BTreeMap::new(), ignored: vec![] })
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

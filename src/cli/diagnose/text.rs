@@ -1,4 +1,5 @@
-//! The text of a diagnosis. One picture: the verdict, the ratios r_k, the suspects. Many pictures: a table with a line for each.
+//! The text of a diagnosis. One picture: what is wrong, the evidence and the next step, a line each. Many pictures: a table with a line
+//! for each.
 
 use super::args::Grouping;
 use super::evidence::{self, percent};
@@ -8,7 +9,6 @@ use fredholm::diagnosis::{Basis, Conclusion, Diagnosis, Slot, Suspicion};
 use fredholm::report::figures::diagnosis as figure;
 use fredholm::report::text::prose::{WIDTH, counted, wrapped, wrapped_after};
 use fredholm::report::text::table::significant;
-use fredholm::zoo;
 
 /// Facts about a command that all its texts use.
 pub struct Text<'a> {
@@ -20,9 +20,6 @@ pub struct Text<'a> {
     pub rare_paths: Option<&'a str>,
 }
 
-/// Suspects that are described without `--verbose`.
-const SHOWN: usize = 1;
-
 /// The name of a file without its folders.
 pub fn short(name: &str) -> String {
     name.rsplit('/').next().unwrap_or(name).to_owned()
@@ -30,45 +27,109 @@ pub fn short(name: &str) -> String {
 
 /// The verdict in a few words, for figures and JSON.
 pub fn headline(d: &Diagnosis) -> String {
-    match (d.verdict, d.suspects.as_slice()) {
-        (Conclusion::Correct, _) => "correct, as far as this data can tell".into(),
-        (_, []) => "wrong, and unlike anything in the zoo".into(),
-        (_, list) if list.iter().all(|s| s.basis == Basis::Points) => {
-            format!("wrong; the evidence points to {}", names(list))
+    match d.verdict {
+        Conclusion::Correct => "correct, as far as this data can tell".into(),
+        Conclusion::Undecided => {
+            let why: Vec<&str> = d.limits.iter().map(|l| l.why.as_str()).collect();
+            format!("cannot tell, because {}", why.join("; "))
         }
-        (_, [one]) => format!("wrong: {}", one.name),
-        (_, list) => format!("wrong: {}", names(list)),
+        Conclusion::Wrong => match what(d) {
+            Some(what) => format!("wrong: {what}"),
+            None => "wrong, and the cause is not in the list of known mistakes".into(),
+        },
     }
 }
 
-fn names(list: &[Suspicion]) -> String {
-    let all: Vec<&str> = list.iter().take(4).map(|s| s.name.as_str()).collect();
-    let more = if list.len() > 4 { format!(" or {} more", list.len() - 4) } else { String::new() };
-    all.join(" or ") + &more
+/// The title of a figure: the file, the verdict, and the names of what is wrong.
+pub fn title(f: &Diagnosed) -> String {
+    let names: Vec<&str> = f.diagnosis.named().map(|s| s.name.as_str()).take(2).collect();
+    let verdict = match f.diagnosis.verdict {
+        Conclusion::Correct => "correct",
+        Conclusion::Undecided => "cannot tell",
+        Conclusion::Wrong if names.is_empty() => "wrong, of unknown cause",
+        Conclusion::Wrong => "wrong",
+    };
+    format!("{}: {}", short(&f.name), [&[verdict], names.as_slice()].concat().join(", "))
+}
+
+/// What is wrong: everything that the file shows, and the explanations of the rest.
+fn what(d: &Diagnosis) -> Option<String> {
+    let found = d.findings.iter().map(|s| s.what.clone());
+    let rest: Vec<&str> = d.suspects.iter().map(|s| s.what.as_str()).collect();
+    let rest = (!rest.is_empty()).then(|| rest.join(", or "));
+    // a wrong rest without an explanation
+    let more = (rest.is_none() && !d.findings.is_empty() && !d.worst.is_empty())
+        .then(|| "more is wrong, of unknown cause".to_owned());
+    let all: Vec<String> = found.chain(rest).chain(more).collect();
+    (!all.is_empty()).then(|| all.join("; and "))
 }
 
 /// The verdict on one picture as a sentence.
 fn sentence(f: &Diagnosed) -> String {
     let (d, name) = (&f.diagnosis, short(&f.name));
-    match (d.verdict, d.suspects.as_slice()) {
-        (Conclusion::Correct, _) if d.visible.is_infinite() => {
-            format!("{name}: nothing can be told, because too few pixels carry the noise.")
-        }
-        (Conclusion::Correct, _) => format!(
-            "{name} is correct, as far as this data can tell: a uniform bias above {} would have been seen with probability \
-             0.99.",
-            percent(d.visible)
-        ),
-        (_, []) => format!("{name} is wrong, and unlike every mistake of the zoo."),
-        (_, list) if list.iter().all(|s| s.basis == Basis::Points) => {
-            format!("{name} is wrong; the evidence points to {}.", names(list))
-        }
-        (_, [one]) => match zoo::find(&one.name) {
-            Some(bug) => format!("{name} is wrong: {}, {}.", one.name, bug.what),
-            None => format!("{name} is wrong: {}.", one.name),
+    match d.verdict {
+        Conclusion::Correct => format!("{name} is correct, as far as this data can tell."),
+        Conclusion::Undecided => format!("{name}: {}.", headline(d)),
+        Conclusion::Wrong => match what(d) {
+            Some(what) => format!("{name} is wrong: {what}."),
+            None => format!("{name} is wrong, and the cause is not in the list of known mistakes."),
         },
-        (_, list) => format!("{name} is wrong: {}; this data cannot tell them apart.", names(list)),
     }
+}
+
+/// The evidence for the verdict.
+fn reasons(f: &Diagnosed) -> String {
+    let d = &f.diagnosis;
+    let mut all: Vec<String> = evidence::read_as(f).into_iter().collect();
+    all.extend(d.findings.iter().map(|s| sentence_of(&s.why)));
+    match d.suspects.as_slice() {
+        [] => {
+            all.extend(d.hints.iter().map(|h| sentence_of(h)));
+            if !d.worst.is_empty() {
+                all.push(format!("Furthest off: {} (adjusted p = {}).", d.worst, significant(d.p, 2)));
+            }
+        }
+        [one] => all.push(sentence_of(&one.why)),
+        many => all.push(format!(
+            "This data cannot tell the {} apart; first: {}.",
+            counted(many.len(), "explanation"),
+            many[0].why
+        )),
+    }
+    match d.verdict {
+        Conclusion::Correct => all.extend(evidence::power(f)),
+        // the limits are the sentence itself
+        Conclusion::Undecided => {}
+        Conclusion::Wrong => all.extend(d.limits.iter().map(|l| sentence_of(&l.why))),
+    }
+    all.extend(undecided(d).filter(|_| d.verdict == Conclusion::Correct));
+    all.join(" ")
+}
+
+/// The next step.
+fn next(f: &Diagnosed) -> String {
+    let d = &f.diagnosis;
+    let steps: Vec<String> = match d.verdict {
+        Conclusion::Undecided => d.limits.iter().map(|l| l.next.clone()).collect(),
+        Conclusion::Wrong => d.named().take(2).map(|s| s.next.clone()).filter(|n| !n.is_empty()).collect(),
+        Conclusion::Correct => vec![evidence::more(f)],
+    };
+    let steps = if steps.is_empty() { vec![unknown_cause(f)] } else { steps };
+    sentence_of(&steps.join("; "))
+}
+
+/// What to do about a picture whose cause is not known.
+fn unknown_cause(f: &Diagnosed) -> String {
+    let layers = if f.terms { "" } else { ", and send the terms as layers (fredholm diagnose --how)" };
+    format!("compare scene, materials and camera with `fredholm info`{layers}")
+}
+
+fn sentence_of(text: &str) -> String {
+    let mut letters = text.chars();
+    let first: String = letters.next().map_or(String::new(), |c| c.to_uppercase().collect());
+    let rest = letters.as_str().trim_end_matches('.');
+    let end = if rest.ends_with('?') { "" } else { "." };
+    format!("{first}{rest}{end}")
 }
 
 impl Text<'_> {
@@ -89,70 +150,51 @@ impl Text<'_> {
         let below = wrapped(&below);
         match found {
             [one] => {
-                let (answer, mut tables, mut details) = page(one);
-                if let Some(ratios) = tables.first_mut() {
-                    *ratios = format!("{}\n{below}", ratios.trim_end());
-                }
-                details.insert(0, session.command().into());
-                session.text(&answer, &tables, &details, files)
+                let lines = [sentence(one), format!("Evidence: {}", reasons(one)), format!("Next: {}", next(one))];
+                let mut details = vec![below, session.command().into()];
+                details.extend(page(one));
+                let warning = self.rare_paths.filter(|_| wrong).map(|r| {
+                    format!("Warning: of the reference: {r}. A difference may be light that it has not found yet.")
+                });
+                let answer: Vec<String> = lines.into_iter().chain(warning).map(|l| wrapped(&l)).collect();
+                session.text(&answer.join("\n"), &[], &details, files)
             }
             all => {
-                let wrong = all.iter().filter(|f| f.diagnosis.verdict == Conclusion::Wrong).count();
-                let (is, of) = (if wrong == 1 { "is" } else { "are" }, counted(all.len(), "picture"));
-                let answer = format!("{wrong} of {of} {is} wrong.");
-                let details: Vec<String> = all
-                    .iter()
-                    .map(|f| format!("The ratios of {}.\n{}", short(&f.name), figure::table(&f.diagnosis, usize::MAX)))
-                    .collect();
+                let of = counted(all.len(), "picture");
+                let count = |c| all.iter().filter(|f| f.diagnosis.verdict == c).count();
+                let (wrong, open) = (count(Conclusion::Wrong), count(Conclusion::Undecided));
+                let is = if wrong == 1 { "is" } else { "are" };
+                let undecided = if open > 0 { format!(" {open} cannot be judged.") } else { String::new() };
+                let answer = format!("{wrong} of {of} {is} wrong.{undecided}");
+                let mut details: Vec<String> = vec![below];
+                details.extend(all.iter().flat_map(|f| {
+                    let lines = [sentence(f), format!("Evidence: {}", reasons(f)), format!("Next: {}", next(f))];
+                    [lines.map(|l| wrapped(&l)).join("\n"), figure::table(&f.diagnosis, usize::MAX)]
+                }));
                 let numbers = [format!("diagnosis.json and {} more files", files.len().saturating_sub(1))];
-                session.text(&answer, &[table(all), below], &details, &numbers)
+                session.text(&answer, &[table(all)], &details, &numbers)
             }
         }
     }
 }
 
-/// The text about one picture: answer, tables, details.
-fn page(f: &Diagnosed) -> (String, Vec<String>, Vec<String>) {
+/// Everything behind the three lines: facts, ratios, explanations, families and simulations.
+fn page(f: &Diagnosed) -> Vec<String> {
     let d = &f.diagnosis;
-    let mut answer = vec![sentence(f)];
-    match d.verdict {
-        Conclusion::Correct => answer.extend(undecided(d)),
-        Conclusion::Wrong if d.worst.is_empty() => {}
-        Conclusion::Wrong => answer.push(format!("Furthest off: {} (adjusted p = {}).", d.worst, significant(d.p, 2))),
+    let above = "Means of the picture and of the correct one for every term, their ratio r, and whether r is the same in all regions of \
+                 the image; if not, its range.";
+    let mut details =
+        vec![wrapped(&evidence::facts(f).join("\n")), format!("{}\n{}", wrapped(above), figure::table(d, usize::MAX))];
+    if d.named().next().is_some() {
+        details.push(explanations(d));
     }
-    if d.verdict == Conclusion::Wrong && d.suspects.is_empty() {
-        let nearest = d.candidates.first().map_or(String::new(), |c| {
-            format!(" The nearest is {}, off by {:.1} standard errors in the mean square.", c.name, c.misfit.sqrt())
-        });
-        answer.push(format!(
-            "None of the {} known mistakes explains the ratios of your terms to the correct ones, and they follow no simple rule.{nearest} Are scene, materials and camera the same?",
-            d.candidates.len()
-        ));
-    }
-    let [important, other] = evidence::facts(f).map(|facts| wrapped(&facts.join("\n")));
-    let ratios = format!(
-        "{}\n{}{important}",
-        wrapped(
-            "Means of the picture and of the right one for every term, their ratio r, and whether r is the same in all regions \
-             of the image; if not, its range."
-        ),
-        figure::table(d, evidence::ROWS)
-    );
-    let mut tables = vec![ratios];
-    let mut details = vec![other];
-    if d.evidence.ratios.len() > evidence::ROWS {
-        details.push(format!("The ratios of all terms.\n{}", figure::table(d, usize::MAX)));
-    }
-    if !d.suspects.is_empty() {
-        tables.push(suspects(&d.suspects, SHOWN));
-    }
-    if d.suspects.len() > SHOWN {
-        details.push(suspects(&d.suspects, usize::MAX));
+    if !d.families.is_empty() {
+        details.push(evidence::families(d));
     }
     if !d.candidates.is_empty() {
         details.push(evidence::candidates(d));
     }
-    (wrapped(&answer.join("\n")), tables, details)
+    details
 }
 
 /// The terms about which a verdict of *correct* says nothing, if there are any.
@@ -170,56 +212,37 @@ fn undecided(d: &Diagnosis) -> Option<String> {
     })
 }
 
-/// The first `most` suspects: the mistake, the reason why it is suspected, and the next step.
-fn suspects(list: &[Suspicion], most: usize) -> String {
+/// Every finding and explanation: its name, the kind of reason, the evidence and the next step.
+fn explanations(d: &Diagnosis) -> String {
     let one = |(i, s): (usize, &Suspicion)| {
-        let bug = zoo::find(&s.name);
-        let what = bug.map_or(String::new(), |b| format!(": {}", b.what));
         let basis = match s.basis {
+            Basis::Found => "the file itself shows it".into(),
             Basis::Simulated => {
                 format!("simulated on this scene, it cannot be told from the picture (p = {})", significant(s.p, 2))
             }
-            Basis::Pattern => {
-                format!("a rule for r_k that fits every term and region (p = {})", significant(s.p, 2))
-            }
-            Basis::Points => "single pieces of evidence, which do not explain everything".into(),
+            Basis::Family => format!("it describes every term and region (p = {})", significant(s.p, 2)),
         };
         // blanks that wrapping keeps
         let indented = |text: &str| wrapped_after(&format!("\u{a0}\u{a0}\u{a0}{text}"), "   ");
-        let mut lines = vec![wrapped_after(&format!("{}. {}{what}", i + 1, s.name), "   "), indented(&basis)];
-        if !s.why.is_empty() {
-            lines.push(indented(&s.why));
-        }
-        let next = match bug {
-            _ if list.len() == 1 && !s.next.is_empty() => s.next.clone(),
-            Some(b) => format!(
-                "{}`fredholm zoo {}` shows it; a scene that shows it well: {}",
-                if s.next.is_empty() { String::new() } else { format!("{}; ", s.next) },
-                s.name,
-                b.exposed_by.label
-            ),
-            None => s.next.clone(),
+        let members = if s.members.is_empty() {
+            String::new()
+        } else {
+            format!("looks like: fredholm zoo {}", s.members.join(", "))
         };
-        lines.push(indented(&format!("next: {next}")));
-        lines.join("\n")
+        let lines = [s.what.clone(), basis, s.why.clone(), format!("next: {}", s.next), members];
+        let head = wrapped_after(&format!("{}. {}", i + 1, s.name), "   ");
+        let rest = lines.iter().filter(|l| !l.is_empty()).map(|l| indented(l));
+        std::iter::once(head).chain(rest).collect::<Vec<_>>().join("\n")
     };
-    let head = if list.len() == 1 {
-        "The mistake that fits:"
-    } else {
-        "The mistakes that fit; this data cannot tell them apart:"
-    };
-    let shown: Vec<String> = list.iter().take(most).enumerate().map(one).collect();
-    let left = list.len() - shown.len();
-    let more = if left > 0 { format!("\n… and {left} more in diagnosis.json") } else { String::new() };
-    format!("{head}\n{}{more}", shown.join("\n"))
+    let all: Vec<String> = d.named().enumerate().map(one).collect();
+    format!("What is wrong, or could be:\n{}", all.join("\n"))
 }
 
 /// The verdict in a table; *correct* comes with the smallest bias that would have been seen.
 fn brief(d: &Diagnosis) -> String {
     let undecided: Vec<String> = d.undecided.iter().map(ToString::to_string).collect();
     match d.verdict {
-        Conclusion::Wrong => headline(d),
-        Conclusion::Correct if d.visible.is_infinite() => "nothing can be told: too few pixels carry the noise".into(),
+        Conclusion::Wrong | Conclusion::Undecided => headline(d),
         Conclusion::Correct if undecided.is_empty() => {
             format!("correct, as far as this data can tell: bias < {}", percent(d.visible))
         }
@@ -233,7 +256,7 @@ fn brief(d: &Diagnosis) -> String {
 /// One line per picture.
 fn table(found: &[Diagnosed]) -> String {
     let width = found.iter().map(|f| short(&f.name).chars().count()).max().unwrap_or(4).clamp(4, 30);
-    let above = "The ratio r = mean of the picture/mean of the right one for the whole image, and the verdict; \
+    let above = "The ratio r = mean of the picture/mean of the correct one for the whole image, and the verdict; \
                  bias < x: a larger uniform bias would have been seen with probability 0.99.";
     let mut out = format!("{}\n{:<width$}  {:>8}  verdict\n{}\n", wrapped(above), "file", "r", "─".repeat(WIDTH));
     for f in found {
@@ -259,7 +282,8 @@ pub fn json(found: &[Diagnosed]) -> serde_json::Value {
         serde_json::json!({
             "file": f.name,
             "headline": headline(&f.diagnosis),
-            "exposure_unknown": f.any_gain,
+            "evidence": reasons(f),
+            "next": next(f),
             "diagnosis": f.diagnosis,
         })
     };

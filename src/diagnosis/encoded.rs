@@ -32,7 +32,7 @@ const RANGE: f64 = 0.3;
 /// Returns true if the values of a picture are those of the right one after the curve of a display.
 ///
 /// ```
-/// use fredholm::diagnosis::encoding::is_encoded;
+/// use fredholm::diagnosis::encoded::is_encoded;
 /// let right: Vec<[f32; 3]> = (1..100).map(|i| [0.01 * i as f32, 0.2, 0.004 * i as f32]).collect();
 /// let encoded: Vec<[f32; 3]> = right.iter().map(|p| p.map(|v| (0.7 * v).powf(1.0 / 2.2))).collect();
 /// assert!(is_encoded(&encoded, &right) && !is_encoded(&right, &right));
