@@ -5,6 +5,8 @@
 mod comparisons;
 #[path = "cli/exercise.rs"]
 mod exercise;
+#[path = "cli/export.rs"]
+mod export;
 #[path = "cli/folders.rs"]
 mod folders;
 #[path = "cli/process.rs"]

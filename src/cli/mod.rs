@@ -20,6 +20,7 @@ mod claim;
 mod compare;
 mod diagnose;
 mod exercise;
+mod export;
 mod figure;
 mod help;
 mod info;
@@ -103,6 +104,9 @@ enum Command {
     /// Lists scenes, or describes one: materials, lights, bounds on ‖T‖
     #[command(after_long_help = info::HELP)]
     Info(info::Info),
+    /// Writes a scene for Mitsuba 3 or pbrt-v4
+    #[command(after_long_help = export::HELP)]
+    Export(export::Export),
     /// Runs a chapter of the book
     #[command(after_long_help = chapter::HELP)]
     Chapter(chapter::Options),
@@ -166,6 +170,7 @@ fn run(command: &Command, all: &clap::Command) -> Result<Ending, Failure> {
         Command::Roulette(args) => roulette::run(args),
         Command::Zoo(args) => zoo::run(args),
         Command::Info(args) => info::run(args),
+        Command::Export(args) => export::run(args),
         Command::Chapter(args) => chapter::run(args),
         Command::Exercise(args) => exercise::run(args),
         Command::Book(args) => book::run(args),

@@ -68,7 +68,7 @@ const NEARER: f64 = 0.4;
 
 /// The displacement of a picture, if there is a significant one. Pixels of the mask are left out.
 pub fn shift(suspect: &Pictures, reference: &Pictures, mask: &[bool]) -> Option<Shift> {
-    let (a, b) = suspect.image_in_common(reference)?;
+    let [a, b] = suspect.image_in_common(reference)?;
     let field = field(&grey(&a), &grey(&b), suspect.size, mask)?;
     let [w, h] = suspect.size;
     if w.min(h) < 4 * SIDE {
@@ -99,7 +99,7 @@ pub fn shift(suspect: &Pictures, reference: &Pictures, mask: &[bool]) -> Option<
 
 /// The contrast of edges, with its standard error. Pixels of the mask are left out. None if there are too few edges.
 pub fn sharpness(suspect: &Pictures, reference: &Pictures, mask: &[bool]) -> Option<[f64; 2]> {
-    let (a, b) = suspect.image_in_common(reference)?;
+    let [a, b] = suspect.image_in_common(reference)?;
     let field = field(&grey(&a), &grey(&b), suspect.size, mask)?;
     let (edges, [w, _], floor) = (field.edges(), suspect.size, field.floor());
     let seen = Field { right: field.seen.clone(), ..field.clone() };

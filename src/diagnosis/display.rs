@@ -216,13 +216,13 @@ fn clipped(stored: &Pictures, full: &mut Pictures, curve: Curve) -> Vec<bool> {
     let largest = stored.layers.iter().flat_map(|l| l.mean.iter().flatten()).fold(0.0f32, |a, v| a.max(*v));
     let top = 1.0 - 0.5 * stored.code.step().max(1e-3) as f32;
     for (from, to) in stored.layers.iter().zip(&mut full.layers) {
-        for p in 0..pixels {
+        for (p, flag) in flags.iter_mut().enumerate() {
             let clips = largest <= 1.0 + 1e-3 && from.mean[p].iter().any(|v| *v >= top);
             let unknown = from.mean[p].iter().all(|v| v.is_finite()) && to.mean[p].iter().any(|v| v.is_nan());
             if unknown && !clips && !stored.code.for_display() {
                 return vec![true; pixels];
             }
-            flags[p] |= clips || unknown;
+            *flag |= clips || unknown;
             if unknown {
                 to.mean[p] = [0.0; 3];
             }

@@ -14,7 +14,7 @@ use super::family::joined;
 use super::gap::{Fit, compare_within};
 use super::hints::{hints, with_scale};
 use super::limits::undecided;
-use super::prepare::prepare;
+use super::prepare::{blurred, prepare};
 use super::regions::{self, Region};
 use super::{Candidate, Case, Conclusion, Diagnosis, MOST, series};
 use crate::math::CHANNELS;
@@ -43,6 +43,9 @@ pub fn diagnose(case: &Case, progress: Progress<'_>) -> Diagnosis {
     findings.extend(samples.as_ref().and_then(|s| series::in_words(s, rejected)));
     findings.extend(c.scaled().and_then(|(s, e)| with_scale(&evidence, (s, &e))));
 
+    if !rejected {
+        findings.extend(ready.contrast.and_then(blurred));
+    }
     // a shifted reference is not accurate enough to name more than the shift
     let search = rejected && ready.shift.is_none();
     let families = if search { c.families() } else { vec![] };

@@ -130,9 +130,9 @@ impl Pictures {
     }
 
     /// One image that both sets have, from each: the whole image, or else the sum of the terms in both.
-    pub fn image_in_common(&self, other: &Self) -> Option<(Vec<[f32; 3]>, Vec<[f32; 3]>)> {
+    pub fn image_in_common(&self, other: &Self) -> Option<[Vec<[f32; 3]>; 2]> {
         if let Some((a, b)) = self.layer(Slot::Whole).zip(other.layer(Slot::Whole)) {
-            return Some((a.mean.clone(), b.mean.clone()));
+            return Some([a.mean.clone(), b.mean.clone()]);
         }
         let both: Vec<(&Layer, &Layer)> = self.layers.iter().filter_map(|l| Some((l, other.layer(l.slot)?))).collect();
         both.first()?;
@@ -143,7 +143,7 @@ impl Pictures {
         let blank = vec![[0.0f32; 3]; both[0].0.mean.len()];
         let sum =
             |pick: &dyn Fn(&(&Layer, &Layer)) -> Layer| both.iter().map(pick).fold(blank.clone(), |s, l| add(s, &l));
-        Some((sum(&|l| l.0.clone()), sum(&|l| l.1.clone())))
+        Some([sum(&|l| l.0.clone()), sum(&|l| l.1.clone())])
     }
 
     /// The same pictures with only the slots that `keep` selects.

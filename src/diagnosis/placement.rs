@@ -105,7 +105,7 @@ impl std::fmt::Display for Placement {
 
 /// The placement that explains a picture much better than the right one does, with the correlation of both.
 pub fn placement(suspect: &Pictures, reference: &Pictures) -> Option<(Placement, [f64; 2])> {
-    let (a, b) = suspect.image_in_common(reference)?;
+    let [a, b] = suspect.image_in_common(reference)?;
     let size = suspect.size;
     let right = blocks(&b, size);
     let floor = 1e-3 * right.iter().flatten().sum::<f64>() / (3 * right.len()) as f64;

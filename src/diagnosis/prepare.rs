@@ -119,7 +119,6 @@ pub(super) fn prepare(case: &Case) -> Ready {
         ));
     }
     let contrast = sharpness(&pictures, &reference, &with_lamps(case, &mask)).filter(|_| magnified.is_none());
-    findings.extend(contrast.and_then(blurred));
     let regions = regions_of(case, &mask, &edges);
     Ready { pictures, reference, mask, edges, shift, contrast, regions, display, findings, counts, outliers, audits }
 }
@@ -208,8 +207,8 @@ const FILTERS: [f64; 2] = [0.6, 1.25];
 /// A contrast must be this many standard errors outside.
 const CERTAIN: f64 = 3.0;
 
-/// Edges that are much softer or sharper than any pixel filter makes them.
-fn blurred([contrast, error]: [f64; 2]) -> Option<Suspicion> {
+/// Edges that are much softer or sharper than any pixel filter makes them. Wrong light changes them, too.
+pub(super) fn blurred([contrast, error]: [f64; 2]) -> Option<Suspicion> {
     let (name, how, cause) = if contrast + CERTAIN * error < FILTERS[0] {
         ("blurred", "blurred", "a denoiser, a blur, or a lens")
     } else if contrast - CERTAIN * error > FILTERS[1] {

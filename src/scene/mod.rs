@@ -24,6 +24,7 @@ pub mod description;
 mod emitted;
 pub mod emitter;
 mod error;
+pub mod export;
 mod faces;
 mod flat;
 mod groups;

@@ -182,6 +182,7 @@ fn help_says_how_k_counts() {
       roulette     Predicts, verifies and optimises Russian roulette
       zoo          Shows estimators that are wrong on purpose
       info         Lists scenes, or describes one: materials, lights, bounds on ‖T‖
+      export       Writes a scene for Mitsuba 3 or pbrt-v4
       chapter      Runs a chapter of the book
       exercise     Asks an exercise with your own numbers, and judges the answer
       book         Opens the book in the browser
