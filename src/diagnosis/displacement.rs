@@ -97,6 +97,9 @@ pub fn shift(suspect: &Pictures, reference: &Pictures, mask: &[bool]) -> Option<
     (far && nearer && (0..3).all(agrees) && delta.iter().all(|d| d.abs() < FARTHEST as f64 - 0.25)).then_some(shift)
 }
 
+/// Smallest mean change over two pixels, relative to the brightness, at what counts as edges.
+const STEEP: f64 = 0.2;
+
 /// The contrast of edges, with its standard error. Pixels of the mask are left out. None if there are too few edges.
 pub fn sharpness(suspect: &Pictures, reference: &Pictures, mask: &[bool]) -> Option<[f64; 2]> {
     let [a, b] = suspect.image_in_common(reference)?;
@@ -104,6 +107,7 @@ pub fn sharpness(suspect: &Pictures, reference: &Pictures, mask: &[bool]) -> Opt
     let (edges, [w, _], floor) = (field.edges(), suspect.size, field.floor());
     let seen = Field { right: field.seen.clone(), ..field.clone() };
     let mut blocks = vec![[0.0; 2]; SIDE * SIDE];
+    let mut steep = 0.0;
     for (x, y, block) in field.pixels().filter(|(x, y, _)| edges[y * w + x]) {
         let slope = |f: &Field| {
             let (x, y) = (x as f64, y as f64);
@@ -112,7 +116,14 @@ pub fn sharpness(suspect: &Pictures, reference: &Pictures, mask: &[bool]) -> Opt
         let (s, t) = (slope(&seen), slope(&field));
         let weight = (field.at(x as f64, y as f64) + floor).powi(-2);
         blocks[block][0] += weight * (s[0] * t[0] + s[1] * t[1]);
-        blocks[block][1] += weight * (t[0] * t[0] + t[1] * t[1]);
+        let square = weight * (t[0] * t[0] + t[1] * t[1]);
+        blocks[block][1] += square;
+        steep += square.sqrt();
+    }
+    let n = edges.iter().filter(|e| **e).count() as f64;
+    // without edges, the steepest places of the correct picture are noise
+    if steep < STEEP * n {
+        return None;
     }
     blocks.retain(|b| b[1] > 0.0);
     let total = |leave: Option<usize>| {

@@ -18,7 +18,7 @@
 //! Noise decides which pixels are clipped. A pixel is therefore left out if several of its neighbours are clipped, or if the correct
 //! picture would be clipped there; a single clipped pixel is not left out.
 
-use super::curve::Curve;
+use super::curve::{Curve, Tone};
 use super::encoded::is_encoded;
 use super::gap::{Fit, compare_within, ratio};
 use super::picture::{Code, Layer, Pictures, Slot};
@@ -39,6 +39,8 @@ pub struct Display {
     pub fitted: bool,
     /// Share of pixels that are left out because they are clipped.
     pub hidden: f64,
+    /// Share of the values that should be far above the largest stored value, and are not even near it; 0 if there are none.
+    pub dark: f64,
     /// True if stored values were rounded down instead of to the nearest value.
     pub rounded_down: bool,
     /// False if the values follow a rising curve of brightness that is not known.
@@ -85,6 +87,8 @@ const MOST_HIDDEN: f64 = 0.9;
 /// A curve of a file in floating point is taken only if it fits this well: least p-value, and largest mean squared deviation.
 const CERTAIN: f64 = 0.02;
 const GOOD: f64 = 1.6;
+/// Fewest values that should be white, for a judgement on them.
+const FEWEST: usize = 12;
 /// Number of brightness levels of an unknown curve.
 const LEVELS: usize = 32;
 /// Relative error of straight lines between levels.
@@ -167,6 +171,8 @@ fn try_curve(
         }
     }
     let always = (0..mask.len()).map(|p| beside[p] || given(p)).collect();
+    let plain = curve.tone == Tone::None && stored.code != Code::Jpeg;
+    let dark = pair.filter(|_| plain).map_or(0.0, |(layer, right)| dark_whites(layer, right, exposure, top, given));
     let hidden = mask.iter().enumerate().filter(|(p, m)| **m && !given(*p)).count() as f64 / mask.len().max(1) as f64;
     if mask.iter().all(|m| !m) {
         mask.clear();
@@ -176,8 +182,21 @@ fn try_curve(
     let slack = if gain.is_none() { 2.0 * half_width / exposure + 1e-3 } else { 0.0 };
     let fit = compare_within(&pictures, reference, &regions::without(against.regions.to_vec(), &mask), slack.min(0.02));
     let fitted = gain.is_none();
-    let display = Display { curve, exposure, half_width, fitted, hidden, rounded_down, known: true };
+    let display = Display { curve, exposure, half_width, fitted, hidden, dark, rounded_down, known: true };
     Developed { display, pictures, mask, always, fit }
+}
+
+/// The share of the values above six times the largest stored one that are stored as less than half of it. A pixel at the edge of a lamp
+/// may be dark, because filters differ.
+fn dark_whites(layer: &Layer, right: &Layer, exposure: f64, top: f64, given: impl Fn(usize) -> bool) -> f64 {
+    let white = |p: usize, c: usize| exposure * f64::from(right.mean[p][c]) > 6.0 * top;
+    let all: Vec<(usize, usize)> = (0..layer.mean.len())
+        .filter(|p| !given(*p))
+        .flat_map(|p| (0..3).map(move |c| (p, c)))
+        .filter(|(p, c)| white(*p, *c))
+        .collect();
+    let dark = all.iter().filter(|(p, c)| f64::from(layer.mean[*p][*c]) < 0.5 * top).count();
+    if all.len() < FEWEST { 0.0 } else { dark as f64 / all.len() as f64 }
 }
 
 /// The layers as radiance, and the distance between neighbouring stored values.

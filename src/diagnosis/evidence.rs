@@ -106,7 +106,7 @@ pub fn collect(
         counts,
         sum: sum(suspect, reference, &regions[0]),
         samples: reference_spp * samples(suspect, reference, &regions[0]),
-        errors: if known { "the _se layers" } else { "the difference of neighbouring pixels from the reference" },
+        errors: if known { "the _se layers" } else { "the scatter of neighbouring pixels" },
         regions: regions.iter().map(|r| r.name.clone()).collect(),
     }
 }

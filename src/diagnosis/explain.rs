@@ -102,7 +102,8 @@ pub fn of_family(family: Family, constants: &[Constant], terms: bool) -> Suspici
         Family::Exposure => (
             "exposure",
             format!("all light, emission included, is {number} times the correct one"),
-            "every term and every region has the same ratio".into(),
+            if terms { "every term and every region has the same ratio" } else { "every region has the same ratio" }
+                .into(),
             "compare the exposure, the units of the emission, and the number of samples by which you divide",
             vec![],
         ),
@@ -114,7 +115,7 @@ pub fn of_family(family: Family, constants: &[Constant], terms: bool) -> Suspici
                 in_words(constants[1]),
                 in_words(constants[2])
             ),
-            "every term and every region has these three ratios".into(),
+            "every region has these three ratios".into(),
             "compare the colour of the lamp, the white balance and the colour space",
             vec![],
         ),
@@ -136,8 +137,8 @@ pub fn of_family(family: Family, constants: &[Constant], terms: bool) -> Suspici
                 "constant-in-the-connection",
                 format!("all reflected light is {number} times the correct one, the same at every bounce{alone}"),
                 format!(
-                    "T0 is correct, and r_k is the same for all k ≥ 1, so the mistake occurs once per path, in the connection to \
-                     the light. {cause}"
+                    "T0 is correct, and every later term has the same ratio to the correct one, so the mistake occurs once per \
+                     path, in the connection to the light. {cause}"
                 ),
                 apart,
                 members,
@@ -147,7 +148,7 @@ pub fn of_family(family: Family, constants: &[Constant], terms: bool) -> Suspici
             "constant-in-the-bsdf",
             format!("every reflection, the first included, is {number} times the correct one{alone}"),
             format!(
-                "r_k = c^k: one factor for every application of T, so the BSDF is wrong{}",
+                "the ratio of T_k to the correct term is c^k: one factor for every reflection, so the BSDF is wrong{}",
                 if known == "π" { ". A BSDF without its 1/π gives π" } else { "" }
             ),
             "render a furnace of albedo 1/2: the sum must be 2",
@@ -169,13 +170,12 @@ pub fn of_family(family: Family, constants: &[Constant], terms: bool) -> Suspici
                  {:.3} times the right one",
                 1.0 / value
             );
-            let first =
-                if from == 1 { "Direct light is correct".to_owned() } else { format!("T0 to T{from} are correct") };
+            let first = if from == 1 { "direct light is correct".to_owned() } else { correct_up_to(from) };
             (
                 "constant-in-the-bounce",
                 format!("from bounce {} on, every bounce is {number} times the correct one{alone}{example}", from + 1),
                 format!(
-                    "{first}, and then r_k changes by the same factor at every bounce: r_k = c^(k − {from}). {cause}"
+                    "{first}, and then the ratio of T_k to the correct term is c^(k − {from}): one factor for every bounce. {cause}"
                 ),
                 "render it without roulette; if nothing changes, divide by the density with which the direction was sampled",
                 members,
@@ -184,7 +184,7 @@ pub fn of_family(family: Family, constants: &[Constant], terms: bool) -> Suspici
         Family::Term(k) => (
             "one-term-scaled",
             format!("T{k} is {number} times the correct one, and all other terms are correct{alone}"),
-            format!("r_{k} differs from 1, and no other r_k does"),
+            format!("only T{k} has a ratio to the correct term that differs from 1"),
             "look for a weight or a condition on the number of bounces",
             vec![],
         ),
@@ -198,7 +198,7 @@ pub fn of_family(family: Family, constants: &[Constant], terms: bool) -> Suspici
         Family::Missing(k) => (
             "one-term-missing",
             format!("T{k} is missing, and all other terms are correct{alone}"),
-            format!("r_{k} = 0, and no other r_k differs from 1"),
+            format!("only T{k} differs from the correct term, and it is black"),
             "look for a condition on the number of bounces",
             vec![],
         ),
@@ -208,15 +208,15 @@ pub fn of_family(family: Family, constants: &[Constant], terms: bool) -> Suspici
                 "light after more than {n} {} is missing{alone}",
                 if n == 1 { "reflection" } else { "reflections" }
             ),
-            format!("T0 to T{n} are correct, and all longer terms are 0"),
+            format!("{}, and all longer terms are 0", correct_up_to(n)),
             "increase the number of bounces: the sum must increase",
             vec!["truncated", "one-bounce-short"],
         ),
         Family::Renumbered(by) => (
             "off-by-one",
-            format!("the terms are misnumbered: slot k shows T^(k{}1) E", if by > 0 { "+" } else { "−" }),
+            format!("the terms are misnumbered: layer k holds T^(k{}1) E", if by > 0 { "+" } else { "−" }),
             "the terms agree with their neighbours, and the sum is correct".into(),
-            "count applications of T: k = 0 is emission seen directly",
+            "number the terms by reflections: T0 is the emission seen directly",
             vec!["off-by-one"],
         ),
         Family::Added(k) => (
@@ -245,6 +245,15 @@ pub fn of_family(family: Family, constants: &[Constant], terms: bool) -> Suspici
         ),
     };
     Suspicion { basis: Basis::Family, constants: constants.to_vec(), members, ..finding(name, what, why, next) }
+}
+
+/// The terms up to k, as correct ones.
+pub(super) fn correct_up_to(k: usize) -> String {
+    match k {
+        0 => "T0 is correct".into(),
+        1 => "T0 and T1 are correct".into(),
+        _ => format!("T0 to T{k} are correct"),
+    }
 }
 
 /// A mistake whose simulation cannot be distinguished from the picture.

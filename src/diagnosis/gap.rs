@@ -296,6 +296,11 @@ pub fn compare_within(suspect: &Pictures, predicted: &Pictures, regions: &[Regio
             }
         }
     }
+    adjusted(gaps)
+}
+
+/// Adjusts the p-values by Holm, and finds the worst comparison.
+fn adjusted(mut gaps: Vec<Gap>) -> Fit {
     // half of the level goes to the few comparisons of image means, which detect small differences that cover the whole
     // image
     let adjust = |gaps: &[Gap], image: bool| {

@@ -9,7 +9,7 @@
 //! | the scene scaled | lengths do not cancel; this is a finding |
 
 use super::evidence::{Evidence, Ratio};
-use super::explain::{Suspicion, finding};
+use super::explain::{Suspicion, correct_up_to, finding};
 use super::gap::Fit;
 use super::picture::Slot;
 use super::regions::MIRRORS;
@@ -26,14 +26,19 @@ fn differs(r: &Ratio) -> bool {
     (r.value - 1.0).abs() > 2.0 * r.half_width.max(1e-4) || r.flat < 1e-6
 }
 
+/// The first term that differs, as an index into the terms of the picture.
+pub fn first_wrong_term(e: &Evidence) -> Option<usize> {
+    let mut terms = e.ratios.iter().filter(|r| matches!(r.slot, Slot::Term(_)) && !r.value.is_nan());
+    terms.position(differs)
+}
+
 fn first_difference(e: &Evidence) -> Option<String> {
     let terms: Vec<&Ratio> = e.ratios.iter().filter(|r| matches!(r.slot, Slot::Term(_)) && !r.value.is_nan()).collect();
-    let first = terms.iter().position(|r| differs(r))?;
+    let first = first_wrong_term(e)?;
     let r = terms[first];
     let right = match first {
         0 => String::new(),
-        1 => format!("{} is correct; ", terms[0].slot),
-        _ => format!("{} to {} are correct; ", terms[0].slot, terms[first - 1].slot),
+        k => format!("{}; ", correct_up_to(k - 1)),
     };
     let how = if r.flat < 1e-6 { ", and not the same everywhere" } else { "" };
     Some(format!(

@@ -13,9 +13,10 @@ use super::explain::Suspicion;
 use super::family::joined;
 use super::gap::{Fit, compare_within};
 use super::hints::{hints, with_scale};
-use super::limits::undecided;
+use super::limits::{few_pixels, undecided};
+use super::picture::Slot;
 use super::prepare::{blurred, prepare};
-use super::regions::{self, Region};
+use super::regions::{self, Region, SIDE};
 use super::{Candidate, Case, Conclusion, Diagnosis, MOST, series};
 use crate::math::CHANNELS;
 use crate::progress::Progress;
@@ -43,11 +44,11 @@ pub fn diagnose(case: &Case, progress: Progress<'_>) -> Diagnosis {
     findings.extend(samples.as_ref().and_then(|s| series::in_words(s, rejected)));
     findings.extend(c.scaled().and_then(|(s, e)| with_scale(&evidence, (s, &e))));
 
-    if !rejected {
+    if !rejected && !ready.empty {
         findings.extend(ready.contrast.and_then(blurred));
     }
-    // a shifted reference is not accurate enough to name more than the shift
-    let search = rejected && ready.shift.is_none();
+    // a shifted reference is not accurate enough to name more than the shift, and an empty picture has nothing to name
+    let search = rejected && ready.shift.is_none() && !ready.empty;
     let families = if search { c.families() } else { vec![] };
     let clamped = if search { c.clamped() } else { None };
     let mut suspects: Vec<Suspicion> =
@@ -58,7 +59,9 @@ pub fn diagnose(case: &Case, progress: Progress<'_>) -> Diagnosis {
     let simulated = c.simulated(&tried, &evidence);
     suspects.extend(simulated.into_iter().filter(|s| suspects.iter().all(|f| !f.is(&s.name))).collect::<Vec<_>>());
     let visible = ready.regions.iter().map(|r| c.visible(r, fit.gaps.len())).fold(f64::INFINITY, f64::min);
-    let limits = c.limits(rejected, visible, &suspects);
+    let undecided = undecided(fit, &evidence, visible);
+    let mut limits = c.limits(rejected, visible, &suspects);
+    limits.extend(few_pixels(&undecided, &evidence).filter(|_| !rejected && limits.is_empty()));
     if suspects.len() > MOST {
         suspects.clear();
     }
@@ -76,7 +79,7 @@ pub fn diagnose(case: &Case, progress: Progress<'_>) -> Diagnosis {
         worst: if search { worst(fit, &ready.regions) } else { String::new() },
         visible,
         limits,
-        undecided: undecided(fit, &evidence, visible),
+        undecided,
         suspects: if ready.display.known { suspects } else { vec![] },
         hints,
         display: ready.display.clone(),
@@ -100,13 +103,27 @@ fn row(t: &Tried) -> Candidate {
 /// Description of the most significant comparison.
 fn worst(fit: &Fit, regions: &[Region]) -> String {
     let Some(g) = fit.worst() else { return String::new() };
-    let channel = CHANNELS[g.channel];
-    format!(
-        "{} in {} ({channel}): {:.4} instead of {:.4}, {:.1} standard errors",
-        g.slot,
-        regions[g.region].name,
-        g.suspect,
-        g.predicted,
-        (g.suspect - g.predicted) / g.std_error
-    )
+    let (slot, channel) =
+        (if g.slot == Slot::Whole { "the image".into() } else { g.slot.to_string() }, CHANNELS[g.channel]);
+    let place = place(&regions[g.region].name);
+    let errors = ((g.suspect - g.predicted) / g.std_error).abs();
+    let errors = if errors.is_finite() { format!(", {errors:.0} standard errors") } else { String::new() };
+    format!("{slot}{place}, {channel}: mean {:.4}, correct {:.4}{errors}", g.suspect, g.predicted)
+}
+
+/// Where a region lies, after the name of a picture.
+fn place(region: &str) -> String {
+    match region {
+        "image" => String::new(),
+        regions::LAMPS => " at the lamps".into(),
+        "grazing" => " at grazing angles".into(),
+        "beside lamps" => " beside the lamps".into(),
+        name => match name.strip_prefix("region ").and_then(|n| n.split_once(',')) {
+            Some((row, column)) => {
+                let from_one = |n: &str| n.parse::<usize>().map_or(0, |n| n + 1);
+                format!(" in row {}, column {} of {SIDE} × {SIDE}", from_one(row), from_one(column))
+            }
+            None => format!(" in {name}"),
+        },
+    }
 }

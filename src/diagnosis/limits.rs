@@ -26,7 +26,7 @@ impl Compared<'_> {
         let percent = |x: f64| format!("{:.0} %", 100.0 * x);
         let mut add = |why: String, next: &str| limits.push(Limit { why, next: next.into() });
         if !ready.display.known {
-            let why = "its brightness follows a curve that is not known, and a mistake could hide in it";
+            let why = "no known tone curve fits its brightness, and a mistake could hide in an unknown one";
             add(why.into(), "send linear radiance as EXR");
         }
         if !rejected && ready.display.hidden > HIDDEN {
@@ -93,4 +93,18 @@ pub(super) fn undecided(fit: &Fit, evidence: &Evidence, visible: f64) -> Vec<Slo
     let least = if visible.is_finite() { visible.max(0.05) } else { 0.05 };
     let off = evidence.ratios.iter().filter(|r| r.slot != Slot::Tail && (r.value - 1.0).abs() > least);
     off.map(|r| r.slot).filter(|slot| doubtful(*slot)).collect()
+}
+
+/// The limit that some pictures are off, but not significantly.
+pub(super) fn few_pixels(undecided: &[Slot], evidence: &Evidence) -> Option<Limit> {
+    let of = |slot: &Slot| {
+        let ratio = evidence.ratio(*slot).map_or(f64::NAN, |r| r.value);
+        let name = if *slot == Slot::Whole { "the image".into() } else { slot.to_string() };
+        format!("{name} is {ratio:.3} times the correct one")
+    };
+    let all: Vec<String> = undecided.iter().map(of).collect();
+    (!all.is_empty()).then(|| Limit {
+        why: format!("{}, and its noise is too large for a decision", all.join(", ")),
+        next: "render it with more samples per pixel".into(),
+    })
 }

@@ -95,10 +95,16 @@ impl std::fmt::Display for Placement {
             (true, true, true) => "with rows and columns exchanged, and turned by 180°",
             (true, ..) => "turned by 90°",
         };
+        let turn = if turn.is_empty() { String::new() } else { format!("the picture is {turn}") };
         let order: String = self.channels.iter().map(|c| ["R", "G", "B"][*c]).collect();
-        let channels =
-            if self.channels == ORDERS[0] { String::new() } else { format!("with its channels in the order {order}") };
-        let both = if turn.is_empty() || channels.is_empty() { "" } else { " and " };
+        let channels = match order.as_str() {
+            "RGB" => String::new(),
+            "BGR" => "its red and blue channels are exchanged".to_owned(),
+            "GRB" => "its red and green channels are exchanged".to_owned(),
+            "RBG" => "its green and blue channels are exchanged".to_owned(),
+            order => format!("its channels are in the order {order}"),
+        };
+        let both = if turn.is_empty() || channels.is_empty() { "" } else { ", and " };
         write!(f, "{turn}{both}{channels}")
     }
 }

@@ -16,6 +16,8 @@ use super::{Case, plateau};
 
 /// A suspect as radiance, with all that its file shows.
 pub(super) struct Ready {
+    /// True if all its pixels have one value.
+    pub(super) empty: bool,
     /// Radiance, of the size of the reference.
     pub(super) pictures: Pictures,
     /// The reference, shifted like the suspect.
@@ -42,32 +44,47 @@ pub(super) struct Ready {
     pub(super) audits: Vec<Audit>,
 }
 
-/// Prepares a suspect.
-pub(super) fn prepare(case: &Case) -> Ready {
-    let mut findings = vec![];
+/// A file after its first steps: finite values, in the right place.
+struct Placed {
+    stored: Pictures,
+    findings: Vec<Suspicion>,
+    counts: Counts,
+    outliers: Vec<Outlier>,
+    /// Pixels that no comparison can use; empty if there are none.
+    left_out: Vec<bool>,
+    empty: bool,
+}
+
+/// Values that are not finite, empty pictures, placement and outliers.
+fn placed(case: &Case) -> Placed {
     let (finite, broken) = without_broken(case.suspect);
-    let mut counts = count(case.suspect, &shown(case, &finite), case.reference);
-    if let Some(f) = not_finite(&counts) {
-        findings.push(f);
-    }
+    let counts = count(case.suspect, &shown(case, &finite), case.reference);
+    let empty = empty(&finite, case.reference);
+    let mut findings: Vec<Suspicion> =
+        not_finite(&counts, &broken, case.suspect.size[0]).into_iter().chain(empty.clone()).collect();
     let mut stored = finite;
     if let Some((place, [here, there])) = placement(&shown(case, &stored), case.reference) {
         stored = place.undo_all(&stored);
         findings.push(finding(
             "another-view",
-            format!("the picture is {place}"),
+            place.to_string(),
             format!("its correlation with the correct picture rises from {here:.3} to {there:.3} if that is undone"),
             "compare the order of rows, columns and channels in the file with that of the camera",
         ));
     }
-    let size = case.reference.size;
     let small = shown(case, &stored);
     let outliers = if stored.code.for_display() { vec![] } else { outliers(&small, case.reference) };
     let mut left_out = shrink(&broken, case.suspect.size[0], case.factor);
-    outliers.iter().for_each(|o| left_out[o.pixel[1] * size[0] + o.pixel[0]] = true);
+    outliers.iter().for_each(|o| left_out[o.pixel[1] * case.reference.size[0] + o.pixel[0]] = true);
     if left_out.iter().all(|m| !m) {
         left_out.clear();
     }
+    Placed { stored, findings, counts, outliers, left_out, empty: empty.is_some() }
+}
+
+/// Prepares a suspect.
+pub(super) fn prepare(case: &Case) -> Ready {
+    let Placed { stored, mut findings, mut counts, outliers, left_out, empty } = placed(case);
     let all = regions_of(case, &left_out, &case.seen.edges);
     let against = Against {
         reference: case.reference,
@@ -77,50 +94,81 @@ pub(super) fn prepare(case: &Case) -> Ready {
         mask: &left_out,
         alpha: case.alpha,
     };
-    let Developed { display, mut pictures, mask, .. } = develop(&stored, &against);
+    let Developed { display, mut pictures, mut mask, .. } = develop(&stored, &against);
     if !stored.code.for_display() && display.curve != Curve::LINEAR {
         findings.push(encoded(&display));
     }
+    findings.extend(dark_whites(&display));
     counts.clipped = display.hidden;
-    if let Some(level) = plateau::level(&pictures, case.reference).filter(|_| display.curve == Curve::LINEAR) {
-        // whether the clamp explains the picture is decided with the other explanations
-        counts.plateau = Some(f64::from(level));
-    }
+    // whether a clamp explains the picture is decided with the other explanations
+    let level = plateau::level(&pictures, case.reference).filter(|_| display.curve == Curve::LINEAR);
+    counts.plateau = level.map(f64::from);
     let audits = audit(&pictures, case.reference, &mask);
     if let Some(a) = audits.iter().find(|a| !a.honest()) {
         findings.push(error_bars(a));
         pictures.layers.iter_mut().for_each(|l| l.std_error = None);
     }
-    let mut reference = case.reference.clone();
-    let (mut mask, mut edges) = (mask, case.seen.edges.clone());
+    let (mut reference, mut edges) = (case.reference.clone(), case.seen.edges.clone());
     let magnified = magnified(case.suspect);
-    if let Some(n) = magnified {
-        findings.push(finding(
-            "low-resolution",
-            format!("every block of {n} × {n} pixels holds one value"),
-            "the picture was rendered smaller and enlarged".into(),
-            "render it at the size of the file",
-        ));
-    }
+    findings.extend(magnified.map(enlarged));
     let shift = shift(&pictures, case.reference, &with_lamps(case, &mask)).filter(|_| magnified.is_none());
     if let Some(s) = shift {
-        let [x, y] = s.by;
+        let reach = s.by.iter().fold(0.0f64, |a, d| a.max(d.abs())).ceil() as usize;
         reference = s.applied(&reference);
-        mask = s.border(&mask, size);
-        edges = regions::widened(&edges, size, s.by.iter().fold(0.0f64, |a, d| a.max(d.abs())).ceil() as usize);
-        findings.push(finding(
-            "shifted",
-            format!(
-                "the picture is shifted by {x:.2} ± {:.2} pixels to the right and {y:.2} ± {:.2} down",
-                s.half_width[0], s.half_width[1]
-            ),
-            "all parts of the picture are displaced by the same amount".into(),
-            "sample each pixel from its corner to the next one, and compare the camera",
-        ));
+        mask = s.border(&mask, reference.size);
+        edges = regions::widened(&edges, reference.size, reach);
+        findings.push(shifted(&s));
     }
     let contrast = sharpness(&pictures, &reference, &with_lamps(case, &mask)).filter(|_| magnified.is_none());
     let regions = regions_of(case, &mask, &edges);
-    Ready { pictures, reference, mask, edges, shift, contrast, regions, display, findings, counts, outliers, audits }
+    Ready {
+        empty,
+        pictures,
+        reference,
+        mask,
+        edges,
+        shift,
+        contrast,
+        regions,
+        display,
+        findings,
+        counts,
+        outliers,
+        audits,
+    }
+}
+
+/// Values that should be clipped, and are dark.
+fn dark_whites(display: &Display) -> Option<Suspicion> {
+    let found = finding(
+        "white-is-dark",
+        "places that should be white are dark".into(),
+        format!(
+            "{:.0} % of the values that should be far above 1 are not: the writer lets values wrap around, or the lamp is missing",
+            100.0 * display.dark
+        ),
+        "clip values at 1 before they become integers, and look whether the lamp is seen",
+    );
+    (display.dark > 0.5).then_some(Suspicion { members: vec!["emission-missing"], ..found })
+}
+
+fn enlarged(n: usize) -> Suspicion {
+    finding(
+        "low-resolution",
+        format!("every block of {n} × {n} pixels holds one value"),
+        "the picture was rendered smaller and enlarged".into(),
+        "render it at the size of the file",
+    )
+}
+
+fn shifted(s: &Shift) -> Suspicion {
+    let ([x, y], [dx, dy]) = (s.by, s.half_width);
+    finding(
+        "shifted",
+        format!("the picture is shifted by {x:.2} ± {dx:.2} pixels to the right and {y:.2} ± {dy:.2} down"),
+        "all parts of the picture are displaced by the same amount".into(),
+        "sample each pixel from its corner to the next one, and compare the camera",
+    )
 }
 
 /// The mask with the surroundings of lamps, whose edges are too bright for a fit.
@@ -181,35 +229,63 @@ fn regions_of(case: &Case, mask: &[bool], edges: &[bool]) -> Vec<Region> {
     regions::lit(regions::without(all, mask), case.reference)
 }
 
-fn not_finite(counts: &Counts) -> Option<Suspicion> {
-    let n = counts.non_finite;
-    let (values, are) = if n == 1 { ("value", "is") } else { ("values", "are") };
+/// A picture with one value in all pixels, where the correct picture has many. White may be a matter of exposure.
+fn empty(stored: &Pictures, reference: &Pictures) -> Option<Suspicion> {
+    let first = stored.layers.first()?.mean.first()?;
+    let same = stored.layers.iter().all(|l| l.mean.iter().all(|v| v == first));
+    let white = stored.code.for_display() && first.iter().any(|v| *v >= 1.0);
+    let right = reference.layers.last()?.mean.iter().flatten();
+    let (low, high) = right.fold((f32::INFINITY, 0.0f32), |a, v| (a.0.min(*v), a.1.max(*v)));
+    if !same || white || high < 1.5 * low {
+        return None;
+    }
+    let what =
+        if *first == [0.0; 3] { "it is black".to_owned() } else { format!("all its pixels have one value, {first:?}") };
+    let why = "the correct picture has many values".to_owned();
+    Some(finding("empty", what, why, "look at the file in a viewer, and at the camera"))
+}
+
+fn not_finite(counts: &Counts, broken: &[bool], width: usize) -> Option<Suspicion> {
+    let first = broken.iter().position(|b| *b)?;
+    let (values, are) = if counts.non_finite == 1 { ("value", "is") } else { ("values", "are") };
+    let pixels = broken.iter().filter(|b| **b).count();
     let found = finding(
         "not-a-number",
-        format!("{n} {values} {are} not finite"),
-        "probably a value was divided by a density of 0 and added to the image".into(),
-        "find such a pixel, and print the density of the first sample in it that is not finite",
+        format!("{} {values} in {pixels} of its pixels {are} not finite", counts.non_finite),
+        format!(
+            "the first one is in column {}, row {}. Probably a value was divided by a density of 0 and added to the image",
+            first % width,
+            first / width
+        ),
+        "print the density of every sample of this pixel",
     );
-    (n > 0).then(|| Suspicion { members: vec!["not-a-number"], ..found })
+    Some(Suspicion { members: vec!["not-a-number"], ..found })
 }
 
 fn encoded(display: &Display) -> Suspicion {
     finding(
         "encoded",
         format!("the file holds values that are encoded for a display ({}), not linear radiance", display.curve),
-        format!("decoded, and divided by an exposure of {:.4}, it is compared below", display.exposure),
+        format!(
+            "decoded with this curve, and divided by an exposure of {:.4}, the values are radiance",
+            display.exposure
+        ),
         "write linear radiance into float files, without a view transform",
     )
 }
 
 /// Contrasts of edges outside this range are those of no pixel filter.
 const FILTERS: [f64; 2] = [0.6, 1.25];
+/// Largest standard error of a contrast.
+const VAGUE: f64 = 0.08;
 /// A contrast must be this many standard errors outside.
 const CERTAIN: f64 = 3.0;
 
 /// Edges that are much softer or sharper than any pixel filter makes them. Wrong light changes them, too.
 pub(super) fn blurred([contrast, error]: [f64; 2]) -> Option<Suspicion> {
-    let (name, how, cause) = if contrast + CERTAIN * error < FILTERS[0] {
+    let (name, how, cause) = if error > VAGUE {
+        return None;
+    } else if contrast + CERTAIN * error < FILTERS[0] {
         ("blurred", "blurred", "a denoiser, a blur, or a lens")
     } else if contrast - CERTAIN * error > FILTERS[1] {
         ("sharpened", "sharpened", "a sharpening filter")

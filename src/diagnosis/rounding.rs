@@ -38,7 +38,7 @@ fn largest(predicted: &Layer, region: &Region) -> f64 {
 /// The part of the mean that may be rounding, if values are stored in steps. Where the values of the region cover many steps, rounding up
 /// and down cancel. JPEG rounds whole blocks of pixels, by a few steps.
 fn coarse(suspect: &Pictures, layer: &Layer, region: &Region, channel: usize) -> f64 {
-    if suspect.step.is_empty() {
+    if suspect.step.is_empty() || region.pixels.is_empty() {
         return 0.0;
     }
     let n = region.pixels.len() as f64;

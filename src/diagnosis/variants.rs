@@ -37,6 +37,7 @@ impl Variant {
 }
 
 /// All variants.
+// long, because it is a table: a line or two for each variant
 pub(super) fn all() -> Vec<Variant> {
     let connect = |name: &str, what: &str, mistake: Box<dyn Mistake>| Variant {
         name: name.into(),

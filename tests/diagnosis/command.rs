@@ -39,7 +39,7 @@ fn the_command_says_correct_or_names_the_mistake() {
     assert_eq!(said.code, 0, "{}{}", said.out, said.err);
     assert!(said.out.starts_with("good.exr is correct, as far as this data can tell"), "{}", said.out);
     assert!(
-        said.out.contains("a uniform bias above") && said.out.contains("cannot show samples that repeat"),
+        said.out.contains("a uniform bias above") && unwrapped(&said).contains("To see whether samples repeat"),
         "{}",
         said.out
     );
@@ -174,7 +174,7 @@ fn too_few_pixels_are_said_to_be_too_few() {
     let d = bench.judge(&render(true), None, 1e-6);
     assert!(d.verdict == Conclusion::Wrong || !d.undecided.is_empty(), "{:?}", d.evidence.ratios);
     let d = bench.judge(&render(false), None, 1e-6);
-    assert_eq!(d.verdict, Conclusion::Correct, "{}", d.worst);
+    assert!(d.verdict == Conclusion::Correct || !d.undecided.is_empty(), "{}", d.worst);
     // one firefly, as bright as half of all pixels together, decides nothing, and that is said
     let mut one = render(false).only(|s| s == Slot::Term(1));
     one.layers[0].mean[40] = [10.0; 3];
@@ -219,7 +219,7 @@ fn bad_input_is_refused_in_words() {
         ("diagnose cut.exr --against cornell", 3, "not a readable OpenEXR file"),
         ("diagnose albedo.exr --against cornell", 3, "no layer is a term or a whole image: albedo, normal"),
         ("diagnose tiny.exr --against cornell", 3, "too few to tell a bias from noise"),
-        ("diagnose wide.exr --against cornell", 3, "has not the shape of the scene's"),
+        ("diagnose wide.exr --against cornell", 3, "their aspect ratios differ"),
         ("diagnose small.exr --scale 10=wide.exr --against cornell", 3, "different sizes, 16×4 and 8×8"),
         ("diagnose small.exr --against corneII", 3, "corneII"),
         ("diagnose small.exr --against empty", 3, "summary.json"),

@@ -45,9 +45,10 @@ fn right_renderers_are_called_correct() {
         for (name, pictures) in right_renderers(&bench.scene, account.seed()) {
             for suspect in [pictures.clone(), without_errors(pictures)] {
                 let d = bench.judge(&suspect, None, account.spend(1));
-                assert_eq!(
-                    d.verdict,
-                    Conclusion::Correct,
+                // a term of rare paths may be too noisy for a decision, and then it is said
+                let open = d.verdict == Conclusion::Undecided && !d.undecided.is_empty();
+                assert!(
+                    d.verdict == Conclusion::Correct || open,
                     "{} by {name}: {} {:?} {:?}",
                     stage.label,
                     d.worst,

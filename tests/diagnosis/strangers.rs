@@ -317,3 +317,32 @@ fn an_unknown_curve_is_said_to_be_unknown() {
     assert_eq!((d.verdict, d.display.curve), (Conclusion::Correct, curve), "{}", d.worst);
     assert!((d.display.exposure - 0.7).abs() < 3.0 * d.display.half_width.max(2e-3), "{:?}", d.display);
 }
+
+/// A picture that shows nothing is never called correct: all white, all black, one grey, noise, and values of every size.
+#[test]
+fn pictures_that_show_nothing_are_not_called_correct() {
+    let truth = Truth::new(32, DEEP, 8);
+    let n = 32 * 32;
+    let random =
+        |p: usize| (0..3).map(move |c| fredholm::math::fnv1a([p as u8, (p >> 8) as u8, c]) as f32 / u64::MAX as f32);
+    let noise = |p: usize| -> [f32; 3] { random(p).collect::<Vec<f32>>().try_into().unwrap() };
+    let flat = |v: f32| vec![[v; 3]; n];
+    let pictures = [
+        ("white", flat(1.0)),
+        ("black", flat(0.0)),
+        ("grey", flat(0.4)),
+        ("noise", (0..n).map(noise).collect()),
+        ("tiny", flat(1e-30)),
+        ("huge", flat(1e30)),
+        ("negative", flat(-1.0)),
+        ("not finite", flat(f32::NAN)),
+        ("infinite", flat(f32::INFINITY)),
+    ];
+    for (name, mean) in pictures {
+        for code in [Code::Float, Code::Half, Code::SharedExponent, Code::SixteenBit, Code::EightBit, Code::Jpeg] {
+            let layers = vec![Layer { slot: Slot::Whole, mean: mean.clone(), std_error: None }];
+            let d = truth.bench.judge(&Pictures { size: [32, 32], layers, code, step: vec![] }, None, 1e-3);
+            assert_ne!(d.verdict, Conclusion::Correct, "{name} as {code:?}");
+        }
+    }
+}

@@ -142,8 +142,8 @@ impl Source {
             // a picture with a caption, a crop: the camera of the scene makes no such picture
             None => match self.description.as_ref().map(|d| d.camera.size.map(|s| s as usize)) {
                 Some([w, h]) if size[0] * h != size[1] * w => Err(Failure::Input(format!(
-                    "error: a picture of {}×{} pixels has not the shape of the scene's {w}×{h}\n  --> {name}\n\
-                     help: crop nothing and caption nothing, or set the camera with --set camera.size=[{},{}]",
+                    "error: the picture has {}×{} pixels and the scene {w}×{h}: their aspect ratios differ\n  --> {name}\n\
+                     help: do not crop the picture or add a caption, or set the camera: --set camera.size=[{},{}]",
                     size[0], size[1], size[0], size[1]
                 ))),
                 _ => Ok(()),

@@ -15,9 +15,10 @@ pub const HELP: &str = "Examples:
   fredholm diagnose zoo-out/*.exr --against cornell
   fredholm diagnose --how
 
-First the curve, the exposure and the clipped pixels of a picture are found. Then it is compared with the correct terms, region by \
-region. If it differs, families of mistakes with a constant are fitted, and the known mistakes are rendered in the same scene. The \
-answer is the explanation that remains, or a short list that this data cannot distinguish. If too many remain, no cause is named.
+First the command finds the tone curve, the exposure and the clipped pixels of a picture. Then it compares the picture with the \
+correct terms, region by region. If they differ, it fits mistakes with a constant, such as 'every bounce times c', and renders the \
+known mistakes in the same scene. It answers in three lines: what is wrong, the evidence, and the next step. If too many \
+explanations remain, it names none.
 
 A file with the terms in layers T00, T01, … carries the most information. The whole image alone carries less, 8 bits the least.
 
@@ -47,7 +48,7 @@ pub struct Diagnose {
     pub renders: Vec<PathBuf>,
     /// The scene, or the output folder of a run
     ///
-    /// The right answer: a built-in scene, a .toml or .obj file, or the output folder of a run.
+    /// The right answer: a built-in scene, a .toml or .obj file, or the output folder of `fredholm series`.
     #[arg(long, value_name = "SCENE|DIR", required_unless_present = "how", help_heading = WHAT)]
     pub against: Option<String>,
     /// How to write the pictures in C++, Python and Mitsuba
@@ -80,7 +81,7 @@ pub struct Diagnose {
     /// [default: 8 million paths in all]
     #[arg(long, value_name = "N", help_heading = HOW, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     pub spp: Option<u32>,
-    /// Paths for all candidates per stage
+    /// Paths for simulating the known mistakes, per stage
     #[arg(long, default_value_t = Effort::default().paths, value_name = "N", help_heading = HOW)]
     pub paths: u64,
     /// Probability of a false alarm

@@ -40,6 +40,9 @@ pub fn read_as(f: &Diagnosed) -> Option<String> {
     } else {
         String::new()
     };
+    if !display.known {
+        return Some(format!("It was read as {code}; of the known curves, none fits."));
+    }
     Some(format!("Read as {code}{down}, {}, exposure {exposure}{hidden}.", display.curve))
 }
 
@@ -81,14 +84,14 @@ pub fn more(f: &Diagnosed) -> String {
     } else if !f.terms {
         "send the terms as layers, which tell most (fredholm diagnose --how)".into()
     } else {
-        "one file cannot show samples that repeat; two with different samples per pixel can (r_16.exr r_64.exr)".into()
+        "nothing is left to do. To see whether samples repeat, give two renders with different samples per pixel (r_16.exr r_64.exr)".into()
     }
 }
 
 /// Facts about a picture in sentences.
 pub fn facts(f: &Diagnosed) -> Vec<String> {
     let (d, e) = (&f.diagnosis, &f.diagnosis.evidence);
-    let mut facts = vec![format!("Errors of the picture: from {}.", e.errors)];
+    let mut facts = vec![format!("The errors of the pixels come from {}.", e.errors)];
     if !f.terms {
         facts.push("The file has no terms, so only the whole image is compared.".into());
     }

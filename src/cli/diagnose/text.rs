@@ -5,6 +5,7 @@ use super::args::Grouping;
 use super::evidence::{self, percent};
 use super::found::Diagnosed;
 use crate::cli::session::Session;
+use fredholm::diagnosis::hints::first_wrong_term;
 use fredholm::diagnosis::{Basis, Conclusion, Diagnosis, Slot, Suspicion};
 use fredholm::report::figures::diagnosis as figure;
 use fredholm::report::text::prose::{WIDTH, counted, wrapped, wrapped_after};
@@ -56,7 +57,14 @@ pub fn title(f: &Diagnosed) -> String {
 fn what(d: &Diagnosis) -> Option<String> {
     let found = d.findings.iter().map(|s| s.what.clone());
     let rest: Vec<&str> = d.suspects.iter().map(|s| s.what.as_str()).collect();
-    let rest = (!rest.is_empty()).then(|| rest.join(", or "));
+    let rest = match rest.as_slice() {
+        [] => None,
+        [one] => Some((*one).to_owned()),
+        many => {
+            let each: Vec<String> = many.iter().enumerate().map(|(i, what)| format!("({}) {what}", i + 1)).collect();
+            Some(format!("one of these, which this data cannot tell apart: {}", each.join("; ")))
+        }
+    };
     // a wrong rest without an explanation
     let more = (rest.is_none() && !d.findings.is_empty() && !d.worst.is_empty())
         .then(|| "more is wrong, of unknown cause".to_owned());
@@ -86,15 +94,14 @@ fn reasons(f: &Diagnosed) -> String {
         [] => {
             all.extend(d.hints.iter().map(|h| sentence_of(h)));
             if !d.worst.is_empty() {
-                all.push(format!("Furthest off: {} (adjusted p = {}).", d.worst, significant(d.p, 2)));
+                all.push(format!("Largest difference: {}.", d.worst));
             }
         }
         [one] => all.push(sentence_of(&one.why)),
-        many => all.push(format!(
-            "This data cannot tell the {} apart; first: {}.",
-            counted(many.len(), "explanation"),
-            many[0].why
-        )),
+        many if many.iter().all(|s| s.basis == Basis::Simulated) => {
+            all.push("Simulations of all of them agree with the picture.".into());
+        }
+        many => all.extend(many.iter().enumerate().map(|(i, s)| format!("({}) {}", i + 1, sentence_of(&s.why)))),
     }
     match d.verdict {
         Conclusion::Correct => all.extend(evidence::power(f)),
@@ -102,7 +109,6 @@ fn reasons(f: &Diagnosed) -> String {
         Conclusion::Undecided => {}
         Conclusion::Wrong => all.extend(d.limits.iter().map(|l| sentence_of(&l.why))),
     }
-    all.extend(undecided(d).filter(|_| d.verdict == Conclusion::Correct));
     all.join(" ")
 }
 
@@ -111,7 +117,11 @@ fn next(f: &Diagnosed) -> String {
     let d = &f.diagnosis;
     let steps: Vec<String> = match d.verdict {
         Conclusion::Undecided => d.limits.iter().map(|l| l.next.clone()).collect(),
-        Conclusion::Wrong => d.named().take(2).map(|s| s.next.clone()).filter(|n| !n.is_empty()).collect(),
+        Conclusion::Wrong => {
+            let mut steps: Vec<String> = d.named().take(2).map(|s| s.next.clone()).collect();
+            steps.dedup();
+            steps
+        }
         Conclusion::Correct => vec![evidence::more(f)],
     };
     let steps = if steps.is_empty() { vec![unknown_cause(f)] } else { steps };
@@ -120,8 +130,29 @@ fn next(f: &Diagnosed) -> String {
 
 /// What to do about a picture whose cause is not known.
 fn unknown_cause(f: &Diagnosed) -> String {
-    let layers = if f.terms { "" } else { ", and send the terms as layers (fredholm diagnose --how)" };
-    format!("compare scene, materials and camera with `fredholm info`{layers}")
+    match first_wrong_term(&f.diagnosis.evidence) {
+        _ if !f.terms => {
+            "send the terms as layers (fredholm diagnose --how): the first wrong term tells where to look".into()
+        }
+        Some(0) => "compare the emission of the lamps and the camera with `fredholm info`".into(),
+        Some(1) => {
+            "look at direct light: lamps, shadow rays, BSDF and normals (`fredholm info` prints the scene)".into()
+        }
+        Some(k) => format!(
+            "emission, camera and direct light are right, so look at what happens from the {} reflection on: directions, \
+             roulette, clamps, the weight of the path",
+            ordinal(k)
+        ),
+        None => "compare the longest paths: their number of bounces, and roulette".into(),
+    }
+}
+
+fn ordinal(k: usize) -> String {
+    match k {
+        2 => "second".into(),
+        3 => "third".into(),
+        k => format!("{k}th"),
+    }
 }
 
 fn sentence_of(text: &str) -> String {
@@ -197,21 +228,6 @@ fn page(f: &Diagnosed) -> Vec<String> {
     details
 }
 
-/// The terms about which a verdict of *correct* says nothing, if there are any.
-fn undecided(d: &Diagnosis) -> Option<String> {
-    let of = |slot: &Slot| {
-        let r = d.evidence.ratio(*slot).map_or(f64::NAN, |r| r.value);
-        format!("{slot} (r = {})", significant(r, 3))
-    };
-    let undecided: Vec<String> = d.undecided.iter().map(of).collect();
-    (!undecided.is_empty()).then(|| {
-        format!(
-            "Nothing can be said about {}: fewer than ten pixels carry the noise there. More samples per pixel would decide.",
-            undecided.join(", ")
-        )
-    })
-}
-
 /// Every finding and explanation: its name, the kind of reason, the evidence and the next step.
 fn explanations(d: &Diagnosis) -> String {
     let one = |(i, s): (usize, &Suspicion)| {
@@ -240,16 +256,9 @@ fn explanations(d: &Diagnosis) -> String {
 
 /// The verdict in a table; *correct* comes with the smallest bias that would have been seen.
 fn brief(d: &Diagnosis) -> String {
-    let undecided: Vec<String> = d.undecided.iter().map(ToString::to_string).collect();
     match d.verdict {
         Conclusion::Wrong | Conclusion::Undecided => headline(d),
-        Conclusion::Correct if undecided.is_empty() => {
-            format!("correct, as far as this data can tell: bias < {}", percent(d.visible))
-        }
-        Conclusion::Correct => {
-            let open = undecided.join(", ");
-            format!("undecided in {open}; elsewhere correct: bias < {}", percent(d.visible))
-        }
+        Conclusion::Correct => format!("correct, as far as this data can tell: bias < {}", percent(d.visible)),
     }
 }
 
@@ -269,6 +278,7 @@ fn table(found: &[Diagnosed]) -> String {
             out += &format!("{}…\n", line.chars().take(WIDTH - 1).collect::<String>());
         }
     }
+    out += "Give one file, or --verbose, for the evidence and the next step.\n";
     if found.iter().any(|f| f.diagnosis.verdict == Conclusion::Correct) {
         out +=
             &wrapped("One file cannot show samples that repeat; two with different samples per pixel can (--as spp).");

@@ -88,10 +88,10 @@ fn ratios(page: &Canvas, d: &Diagnosis) -> Drawn {
     let positive = values().filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
     let log = hi > 8.0 * positive && (hi > 4.0 || lo > 0.0);
     let y = if log {
-        Axis::log("r_k, suspect/correct", values().filter(|v| *v > 0.0))
+        Axis::log("r_k, picture/correct", values().filter(|v| *v > 0.0))
     } else {
         let air = 0.1 * (hi - lo).max(0.1);
-        Axis::linear("r_k, suspect/correct", (lo - air).max(0.0), hi + air, 6)
+        Axis::linear("r_k, picture/correct", (lo - air).max(0.0), hi + air, 6)
     };
     let last = seen.iter().map(|p| p.x).fold(1.0, f64::max);
     let panel = Panel::draw(

@@ -37,7 +37,11 @@ pub fn export(d: &Description, settings: &Settings) -> Result<Exported, Unsuppor
         writeln!(text, "\n{}", emitter(i, light)?).ok();
     }
     text += "</scene>\n";
-    Ok(Exported { text, beside, notes: vec![] })
+    let rough_plastic = |m: &&Material| matches!(&m.bsdf, BsdfDescription::Plastic(p) if p.rough.is_some());
+    let note = |m: &Material| {
+        format!("the rough plastic of Mitsuba, material `{}`, differs by about 1 %: its coat is tabulated", m.name)
+    };
+    Ok(Exported { text, beside, notes: d.materials.iter().filter(rough_plastic).map(note).collect() })
 }
 
 fn head(d: &Description, settings: &Settings) -> String {
