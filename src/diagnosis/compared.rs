@@ -36,7 +36,7 @@ const NAMED: f64 = 0.02;
 /// Largest mean squared deviation of an explanation that is named, in squared standard errors.
 const GOOD: f64 = 1.6;
 /// The same for a picture for a display, whose errors contain the rounding.
-const GOOD_IN_STEPS: f64 = 0.5;
+const GOOD_IN_STEPS: f64 = 0.3;
 /// Largest χ² per cell of a family that is named. The cells of the fit are smaller than the regions of the comparison.
 const CHI2: f64 = 2.5;
 /// An image without terms whose mean differs by less than this names no family: too many of them have so small an effect.

@@ -57,6 +57,8 @@ pub struct Developed {
     pub mask: Vec<bool>,
     /// True for pixels that are left out whatever the curve is.
     always: Vec<bool>,
+    /// True if the values are hardly larger than one step, so that any curve fits them.
+    faint: bool,
     fit: Fit,
 }
 
@@ -87,6 +89,8 @@ const MOST_HIDDEN: f64 = 0.9;
 /// A curve of a file in floating point is taken only if it fits this well: least p-value, and largest mean squared deviation.
 const CERTAIN: f64 = 0.02;
 const GOOD: f64 = 1.6;
+/// Mean value, in steps, below which a picture is too dark.
+const FAINT: f64 = 1.5;
 /// Fewest values that should be white, for a judgement on them.
 const FEWEST: usize = 12;
 /// Number of brightness levels of an unknown curve.
@@ -99,8 +103,10 @@ const RANGE: f64 = 0.3;
 /// Reads a picture as radiance, with the curve and the exposure that explain it.
 pub fn develop(stored: &Pictures, against: &Against) -> Developed {
     let with = |curve| try_curve(stored, (curve, false), against.gain, against);
-    let explains =
-        |d: &Developed| d.fit.p >= against.alpha && !d.fit.gaps.is_empty() && d.display.hidden <= MOST_HIDDEN;
+    let explains = |d: &Developed| {
+        let seen = !d.fit.gaps.is_empty() && d.display.hidden <= MOST_HIDDEN && !d.faint;
+        seen && d.fit.p >= against.alpha
+    };
     let best = || {
         let gain = against.gain.filter(|_| stored.code.for_display());
         let down = if stored.code == Code::EightBit { vec![false, true] } else { vec![false] };
@@ -151,10 +157,10 @@ fn try_curve(
     let pair = small.layers.iter().rev().find_map(|l| Some((l, reference.layer(l.slot)?)));
     let top = if stored.code.for_display() { curve.decode([1.0; 3])[0] } else { f64::INFINITY };
     let (mut exposure, mut half_width) = (gain.unwrap_or(1.0), 0.0);
+    // lamps and edges do not decide the exposure: curves compress them most
+    let inner: Vec<usize> =
+        against.regions.iter().filter(|r| r.name.starts_with("region")).flat_map(|r| r.pixels.clone()).collect();
     if let Some((layer, right)) = pair {
-        // lamps and edges do not decide the exposure: curves compress them most
-        let inner: Vec<usize> =
-            against.regions.iter().filter(|r| r.name.starts_with("region")).flat_map(|r| r.pixels.clone()).collect();
         for _ in 0..3 {
             let mut seen: Vec<usize> = inner.iter().copied().filter(|&p| !mask[p]).collect();
             if seen.len() < regions::FEWEST {
@@ -177,13 +183,16 @@ fn try_curve(
     if mask.iter().all(|m| !m) {
         mask.clear();
     }
+    let dim: Vec<usize> = inner.iter().copied().filter(|&p| !mask.get(p).copied().unwrap_or(false)).collect();
+    let sum = |v: &[[f32; 3]]| dim.iter().flat_map(|&p| v[p]).map(f64::from).sum::<f64>();
+    let faint = !small.step.is_empty() && pair.is_some_and(|(l, _)| sum(&l.mean) < FAINT * sum(&small.step));
     let pictures = small.times(1.0 / exposure);
     // a fitted exposure may be off by its error
     let slack = if gain.is_none() { 2.0 * half_width / exposure + 1e-3 } else { 0.0 };
     let fit = compare_within(&pictures, reference, &regions::without(against.regions.to_vec(), &mask), slack.min(0.02));
     let fitted = gain.is_none();
     let display = Display { curve, exposure, half_width, fitted, hidden, dark, rounded_down, known: true };
-    Developed { display, pictures, mask, always, fit }
+    Developed { display, pictures, mask, always, faint, fit }
 }
 
 /// The share of the values above six times the largest stored one that are stored as less than half of it. A pixel at the edge of a lamp

@@ -19,6 +19,9 @@ use crate::stats::min_detectable;
 /// A picture is undecided if more than this share of it is clipped and nothing is found in the rest.
 const HIDDEN: f64 = 0.3;
 
+/// A picture is undecided if a bias of this size could hide in it.
+const VAGUE: f64 = 0.2;
+
 impl Compared<'_> {
     /// Reasons why nothing, or not everything, can be told.
     pub(super) fn limits(&self, rejected: bool, visible: f64, suspects: &[Suspicion]) -> Vec<Limit> {
@@ -37,6 +40,10 @@ impl Compared<'_> {
             );
         } else if !rejected && visible.is_infinite() {
             add("too few pixels carry its noise".into(), "render it with more samples per pixel");
+        }
+        if !rejected && visible.is_finite() && visible > VAGUE {
+            let share = percent(visible);
+            add(format!("its noise would hide a bias of {share}"), "render it with more samples per pixel");
         }
         if let Some(o) = ready.outliers.first() {
             let image = if o.slot == Slot::Whole { "the image".into() } else { o.slot.to_string() };

@@ -144,7 +144,7 @@ fn dark_whites(display: &Display) -> Option<Suspicion> {
         "white-is-dark",
         "places that should be white are dark".into(),
         format!(
-            "{:.0} % of the values that should be far above 1 are not: the writer lets values wrap around, or the lamp is missing",
+            "{:.0} % of the values that should be far above 1 are not: the writer lets values wrap around, or the lamp is missing or elsewhere",
             100.0 * display.dark
         ),
         "clip values at 1 before they become integers, and look whether the lamp is seen",

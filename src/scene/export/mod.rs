@@ -73,7 +73,8 @@ impl Unsupported {
 /// let cornell = load::scene("cornell", &load::Options::default())?.description;
 /// let settings = Settings { max_bounces: None, spp: 64, stem: "cornell".into() };
 /// let file = export(&cornell, Renderer::Mitsuba, &settings).unwrap();
-/// assert!(file.text.contains(r#"<sensor type="perspective">"#) && file.beside.is_empty());
+/// assert!(file.text.contains(r#"<sensor type="perspective">"#));
+/// assert_eq!(file.beside.len(), 2); // the two blocks are meshes
 /// # Ok::<(), fredholm::scene::SceneError>(())
 /// ```
 ///
