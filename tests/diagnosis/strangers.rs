@@ -10,6 +10,7 @@
 
 use super::tracer::{BUGS, Bug, Kind, Picture, RIGHT, render};
 use super::*;
+use fredholm::diagnosis::Suspicion;
 use fredholm::diagnosis::curve::{Curve, Tone, Transfer};
 
 const SIDE: usize = 64;
@@ -126,13 +127,17 @@ fn grade(bug: &Bug, form: Form, d: &Diagnosis) -> Grade {
     }
     let truth = TRUTH.iter().find(|t| t.0 == bug.name);
     let named: Vec<_> = d.named().collect();
-    // without a known exposure, a factor on every reflection is one on every later bounce
-    let also =
-        |name: &str| form == Form::EightBits && name == "constant-in-the-bounce" && matches!(bug.kind, Kind::NoPi);
+    // without a known exposure, a factor on every reflection is one on every later bounce; and the sum of layers that begin with T1 lacks
+    // the emission
+    let also = |s: &Suspicion| match bug.kind {
+        Kind::NoPi => form == Form::EightBits && s.is("constant-in-the-bounce"),
+        Kind::LayersOffByOne => form != Form::Layers && s.is("emission-missing"),
+        _ => false,
+    };
     let Some((_, names, constant)) = truth else {
         return if named.is_empty() { Grade::Open } else { Grade::Wrong };
     };
-    let right = named.iter().find(|s| names.iter().any(|n| s.is(n)) || also(&s.name));
+    let right = named.iter().find(|s| names.iter().any(|n| s.is(n)) || also(s));
     let Some(right) = right else { return if named.is_empty() { Grade::Open } else { Grade::Wrong } };
     let close = |c: &fredholm::diagnosis::fit::Constant| {
         constant.is_none_or(|truth| (c.value - truth).abs() < 5.0 * c.std_error.max(1e-4 * truth))
