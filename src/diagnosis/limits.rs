@@ -20,7 +20,9 @@ use crate::stats::min_detectable;
 const HIDDEN: f64 = 0.3;
 
 /// A picture is undecided if a bias of this size could hide in it.
-const VAGUE: f64 = 0.2;
+const VAGUE: f64 = 0.5;
+/// A fitted exposure must have a smaller relative error.
+const UNKNOWN: f64 = 0.2;
 
 impl Compared<'_> {
     /// Reasons why nothing, or not everything, can be told.
@@ -44,6 +46,9 @@ impl Compared<'_> {
         if !rejected && visible.is_finite() && visible > VAGUE {
             let share = percent(visible);
             add(format!("its noise would hide a bias of {share}"), "render it with more samples per pixel");
+        }
+        if !rejected && ready.display.fitted && ready.display.half_width > UNKNOWN * ready.display.exposure {
+            add("its noise is too large even for its exposure".into(), "render it with more samples per pixel");
         }
         if let Some(o) = ready.outliers.first() {
             let image = if o.slot == Slot::Whole { "the image".into() } else { o.slot.to_string() };

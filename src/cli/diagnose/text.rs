@@ -106,6 +106,7 @@ fn reasons(f: &Diagnosed) -> String {
     match d.verdict {
         Conclusion::Correct => all.extend(evidence::power(f)),
         // the limits are the sentence itself
+        Conclusion::Undecided if d.worst.is_empty() => all.extend(evidence::power(f)),
         Conclusion::Undecided => {}
         Conclusion::Wrong => all.extend(d.limits.iter().map(|l| sentence_of(&l.why))),
     }
