@@ -21,7 +21,7 @@
 //!
 //! If fewer than ten pixels carry the noise, a t-test is not valid. Then the tests in `rare` look for excessive fireflies
 //! and for missing lamps, and otherwise nothing is rejected. Pixels share noise after a wide filter or a lossy file; where
-//! neighbours do, errors are widened ([`inflation`]). A difference within the rounding of the file is none. References: Welch
+//! neighbours do, errors are widened (`correlated`). A difference within the rounding of the file is none. References: Welch
 //! (1947); Holm (1979).
 
 use super::correlated::{inflation, without};
