@@ -25,7 +25,7 @@ fn commands() -> Vec<String> {
 }
 
 /// Flags that make a command quick, by the words with which it starts.
-const QUICK: [(&str, &str); 13] = [
+const QUICK: [(&str, &str); 15] = [
     ("series", "--spp 16 --size 16x16 --patches 60"),
     ("sweep", "--spp 16 --size 16x16"),
     ("check bias", "--spp 64 --size 8x8"),
@@ -34,6 +34,8 @@ const QUICK: [(&str, &str); 13] = [
     ("roulette", "--spp 16 --size 16x16"),
     ("radiosity", "--patches 60 --spp 16 --size 16x16"),
     ("walk", "--patches 60 --spp 64"),
+    ("diagnose --how", ""),
+    ("export", ""),
     ("diagnose", "--spp 64 --paths 4096"),
     ("zoo", "--spp 16 --size 16x16"),
     ("info", ""),

@@ -13,6 +13,7 @@
 //! Errors that are too small make a correct picture look wrong. If they are not honest, the comparison uses the scatter instead.
 
 use super::picture::{Layer, Pictures, Slot};
+use super::regions::holds;
 use serde::Serialize;
 
 /// The audit of one picture.
@@ -51,7 +52,7 @@ fn one(layer: &Layer, right: &Layer, [w, h]: [usize; 2], mask: &[bool]) -> Optio
     let mut logs = vec![];
     for (y0, x0) in (0..h / BLOCK).flat_map(|y| (0..w / BLOCK).map(move |x| (y * BLOCK, x * BLOCK))) {
         let inside = (0..BLOCK * BLOCK).map(|i| (y0 + i / BLOCK) * w + x0 + i % BLOCK);
-        let pixels: Vec<usize> = inside.filter(|&p| !mask.get(p).copied().unwrap_or(false)).collect();
+        let pixels: Vec<usize> = inside.filter(|&p| !holds(mask, p)).collect();
         if 2 * pixels.len() < BLOCK * BLOCK {
             continue;
         }

@@ -41,6 +41,7 @@ const GOOD_IN_STEPS: f64 = 0.3;
 const CHI2: f64 = 2.5;
 /// An image without terms whose mean differs by less than this names no family: too many of them have so small an effect.
 const SLIGHT: f64 = 0.02;
+
 /// A suspect that is compared: the terms, and the whole image or the rest.
 pub(super) struct Compared<'a> {
     pub(super) case: &'a Case<'a>,
@@ -48,10 +49,8 @@ pub(super) struct Compared<'a> {
     /// The pictures with the rest in place of the whole image.
     pub(super) suspect: Pictures,
     pub(super) relation: Relation,
-    /// Regions of the comparison, and smaller ones for fits.
-    pub(super) regions: &'a [Region],
+    /// Regions for fits, smaller than those of the comparison.
     pub(super) cells: Vec<Region>,
-    pub(super) any_gain: bool,
     /// The comparison with the correct pictures.
     pub(super) correct: Fit,
 }
@@ -81,7 +80,7 @@ impl Compared<'_> {
     /// All families that have a best parameter, the best fit first.
     pub(super) fn families(&self) -> Vec<Tested> {
         let reference = &self.ready.reference;
-        let cells = Cells::new(&self.suspect, reference, &self.cells, self.any_gain);
+        let cells = Cells::new(&self.suspect, reference, &self.cells, self.ready.display.fitted);
         let slots: Vec<Slot> = self.suspect.layers.iter().map(|l| l.slot).collect();
         let last = reference.last_term().unwrap_or(0);
         let test = |family: Family| {
@@ -96,7 +95,8 @@ impl Compared<'_> {
             let second = self.tested(family, Fitted { constants: vec![mean], chi2 }, &slots, cells.count());
             Some(if second.kept { second } else { first })
         };
-        let mut all: Vec<Tested> = Family::all(&slots, last, self.any_gain).into_iter().filter_map(test).collect();
+        let mut all: Vec<Tested> =
+            Family::all(&slots, last, self.ready.display.fitted).into_iter().filter_map(test).collect();
         all.sort_by(|a, b| b.kept.cmp(&a.kept).then(a.fitted.chi2.total_cmp(&b.fitted.chi2)));
         select(&mut all);
         all
@@ -106,7 +106,7 @@ impl Compared<'_> {
     fn mean_ratio(&self) -> Option<Constant> {
         let layer = self.suspect.layers.last()?;
         let right = self.ready.reference.layer(layer.slot)?;
-        let grid = self.regions.iter().filter(|r| r.name.starts_with("region"));
+        let grid = self.ready.regions.iter().filter(|r| r.in_grid());
         let pixels: Vec<usize> = grid.flat_map(|r| r.pixels.clone()).collect();
         let r = ratio(layer, right, self.suspect.size[0], &pixels);
         (r.mean.is_finite() && r.std_error > 0.0).then_some(Constant { value: r.mean, std_error: r.std_error })
@@ -117,7 +117,7 @@ impl Compared<'_> {
         let predicted = self.brightened(family.predict(&self.ready.reference, slots, fitted.by_channel()));
         let slack = |c: &Constant| 4.0 * c.std_error / c.value.abs().max(0.5);
         let slack = fitted.constants.iter().map(slack).fold(SLACK, f64::max).min(0.05);
-        let fit = compare_within(&self.suspect, &predicted, self.regions, slack);
+        let fit = compare_within(&self.suspect, &predicted, &self.ready.regions, slack);
         let whole = |slot: &&Slot| predicted.layer(**slot).is_some() || family.leaves_out(**slot);
         let explained = slots.iter().filter(whole).count() == slots.len();
         // without terms, a factor that makes one term many times brighter stands for something else
@@ -135,7 +135,11 @@ impl Compared<'_> {
 
     /// Scales a prediction to the brightness of the suspect, if the exposure of the suspect is unknown.
     fn brightened(&self, predicted: Pictures) -> Pictures {
-        if self.any_gain { elimination::same_brightness(&self.suspect, predicted, self.regions) } else { predicted }
+        if self.ready.display.fitted {
+            elimination::same_brightness(&self.suspect, predicted, &self.ready.regions)
+        } else {
+            predicted
+        }
     }
 
     /// Returns true if an explanation fits well enough to be named.
@@ -146,15 +150,15 @@ impl Compared<'_> {
 
     /// Returns true if a family fits well enough to be named, and its effect is large enough.
     pub(super) fn is_named(&self, t: &Tested) -> bool {
-        let grid = || self.correct.gaps.iter().filter(|g| self.regions[g.region].name.starts_with("region"));
+        let grid = || self.correct.gaps.iter().filter(|g| self.ready.regions[g.region].in_grid());
         let (seen, right) = grid().fold((0.0, 0.0), |a, g| (a.0 + g.suspect, a.1 + g.predicted));
         let lamps = || {
             self.correct
                 .gaps
                 .iter()
-                .any(|g| self.regions[g.region].name == regions::LAMPS && g.adjusted < self.case.alpha)
+                .any(|g| self.ready.regions[g.region].name == regions::LAMPS && g.adjusted < self.case.alpha)
         };
-        let slight = !self.has_terms() && !self.any_gain && (seen / right - 1.0).abs() < SLIGHT && !lamps();
+        let slight = !self.has_terms() && !self.ready.display.fitted && (seen / right - 1.0).abs() < SLIGHT && !lamps();
         self.fits(t.p, t.misfit) && t.fitted.chi2 <= CHI2 * t.cells as f64 && !slight
     }
 
@@ -171,7 +175,7 @@ impl Compared<'_> {
         let level = self.ready.counts.plateau? as f32;
         let suspect = self.ready.pictures.only(|s| s != Slot::Tail);
         let predicted = self.brightened(plateau::clamped(&self.ready.reference, level));
-        let fit = compare(&suspect, &predicted, self.regions);
+        let fit = compare(&suspect, &predicted, &self.ready.regions);
         let found = finding(
             "clamped",
             format!("finished pixels are clamped at {level:.4}"),
@@ -194,10 +198,10 @@ impl Compared<'_> {
     /// Simulates the known mistakes.
     pub(super) fn simulate(&self, progress: Progress<'_>) -> Vec<Tried> {
         let Some(candidates) = self.case.candidates else { return vec![] };
-        let effort = Effort { any_gain: self.any_gain, ..self.case.effort };
+        let effort = Effort { any_gain: self.ready.display.fitted, ..self.case.effort };
         let sum = self.relation == Relation::Sum;
         let suspect = self.ready.pictures.only(|s| !(sum && s == Slot::Whole));
-        elimination::eliminate(&suspect, candidates, self.regions, self.case.alpha, effort, progress)
+        elimination::eliminate(&suspect, candidates, &self.ready.regions, self.case.alpha, effort, progress)
     }
 
     /// The simulations that explain the suspect although the correct picture does not, with the same errors.
@@ -224,7 +228,16 @@ impl Compared<'_> {
     pub(super) fn scaled(&self) -> Option<(f64, Evidence)> {
         let (s, pictures) = self.case.scaled?;
         let small = pictures.shrunk(self.case.factor).times(1.0 / self.case.gain.unwrap_or(1.0));
-        Some((s, evidence::collect(&small, &self.ready.reference, self.regions, evidence::Counts::default(), f64::NAN)))
+        Some((
+            s,
+            evidence::collect(
+                &small,
+                &self.ready.reference,
+                &self.ready.regions,
+                evidence::Counts::default(),
+                f64::NAN,
+            ),
+        ))
     }
 }
 

@@ -15,6 +15,7 @@
 //! a pixel, but in different directions; only a displacement that all blocks share is reported.
 
 use super::picture::{Layer, Pictures};
+use super::regions::holds;
 use serde::Serialize;
 
 /// A displacement of the whole picture.
@@ -47,7 +48,7 @@ impl Shift {
     pub fn border(&self, mask: &[bool], [w, h]: [usize; 2]) -> Vec<bool> {
         let [x, y] = self.by.map(|d| d.abs().ceil() as usize);
         let outside = |p: usize| p % w < x || p % w + x >= w || p / w < y || p / w + y >= h;
-        (0..w * h).map(|p| outside(p) || mask.get(p).copied().unwrap_or(false)).collect()
+        (0..w * h).map(|p| outside(p) || holds(mask, p)).collect()
     }
 }
 
@@ -182,7 +183,7 @@ impl Field<'_> {
             .flat_map(move |y| (edge..w - edge).map(move |x| (x, y, y * SIDE / h * SIDE + x * SIDE / w)))
             .filter(move |(x, y, _)| {
                 let p = y * w + x;
-                !self.mask.get(p).copied().unwrap_or(false) && self.seen[p].is_finite()
+                !holds(&self.mask, p) && self.seen[p].is_finite()
             })
     }
 

@@ -152,14 +152,13 @@ fn try_curve(
     let small = full.shrunk(factor);
     let size = small.size;
     let beside = mask_of(&clipped, stored.size[0], factor, size);
-    let given = |p: usize| against.mask.get(p).copied().unwrap_or(false);
+    let given = |p: usize| regions::holds(against.mask, p);
     let mut mask: Vec<bool> = (0..beside.len()).map(|p| beside[p] || given(p)).collect();
     let pair = small.layers.iter().rev().find_map(|l| Some((l, reference.layer(l.slot)?)));
     let top = if stored.code.for_display() { curve.decode([1.0; 3])[0] } else { f64::INFINITY };
     let (mut exposure, mut half_width) = (gain.unwrap_or(1.0), 0.0);
     // lamps and edges do not decide the exposure: curves compress them most
-    let inner: Vec<usize> =
-        against.regions.iter().filter(|r| r.name.starts_with("region")).flat_map(|r| r.pixels.clone()).collect();
+    let inner: Vec<usize> = against.regions.iter().filter(|r| r.in_grid()).flat_map(|r| r.pixels.clone()).collect();
     if let Some((layer, right)) = pair {
         for _ in 0..3 {
             let mut seen: Vec<usize> = inner.iter().copied().filter(|&p| !mask[p]).collect();
@@ -183,7 +182,7 @@ fn try_curve(
     if mask.iter().all(|m| !m) {
         mask.clear();
     }
-    let dim: Vec<usize> = inner.iter().copied().filter(|&p| !mask.get(p).copied().unwrap_or(false)).collect();
+    let dim: Vec<usize> = inner.iter().copied().filter(|&p| !regions::holds(&mask, p)).collect();
     let sum = |v: &[[f32; 3]]| dim.iter().flat_map(|&p| v[p]).map(f64::from).sum::<f64>();
     let faint = !small.step.is_empty() && pair.is_some_and(|(l, _)| sum(&l.mean) < FAINT * sum(&small.step));
     let pictures = small.times(1.0 / exposure);

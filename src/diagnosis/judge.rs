@@ -14,7 +14,6 @@ use super::family::joined;
 use super::gap::{Fit, compare_within};
 use super::hints::{hints, with_scale};
 use super::limits::{few_pixels, undecided};
-use super::picture::Slot;
 use super::prepare::{blurred, prepare};
 use super::regions::{self, Region, SIDE};
 use super::{Candidate, Case, Conclusion, Diagnosis, MOST, series};
@@ -33,7 +32,7 @@ pub fn diagnose(case: &Case, progress: Progress<'_>) -> Diagnosis {
     let slack =
         if any_gain { (2.0 * ready.display.half_width / ready.display.exposure + SLACK).min(0.02) } else { 0.0 };
     let correct = compare_within(&suspect, &ready.reference, &ready.regions, slack);
-    let c = Compared { case, ready: &ready, suspect, relation, regions: &ready.regions, cells, any_gain, correct };
+    let c = Compared { case, ready: &ready, suspect, relation, cells, correct };
     let fit = &c.correct;
     let evidence =
         evidence::collect(&ready.pictures, &ready.reference, &ready.regions, ready.counts, case.reference_spp);
@@ -103,8 +102,7 @@ fn row(t: &Tried) -> Candidate {
 /// Description of the most significant comparison.
 fn worst(fit: &Fit, regions: &[Region]) -> String {
     let Some(g) = fit.worst() else { return String::new() };
-    let (slot, channel) =
-        (if g.slot == Slot::Whole { "the image".into() } else { g.slot.to_string() }, CHANNELS[g.channel]);
+    let (slot, channel) = (g.slot.in_words(), CHANNELS[g.channel]);
     let place = place(&regions[g.region].name);
     let errors = ((g.suspect - g.predicted) / g.std_error).abs();
     let errors = if errors.is_finite() { format!(", {errors:.0} standard errors") } else { String::new() };

@@ -48,10 +48,10 @@ impl Compared<'_> {
             add(format!("its noise would hide a bias of {share}"), "render it with more samples per pixel");
         }
         if !rejected && ready.display.fitted && ready.display.half_width > UNKNOWN * ready.display.exposure {
-            add("its noise is too large even for its exposure".into(), "render it with more samples per pixel");
+            add("its noise is too large to find its exposure".into(), "render it with more samples per pixel");
         }
         if let Some(o) = ready.outliers.first() {
-            let image = if o.slot == Slot::Whole { "the image".into() } else { o.slot.to_string() };
+            let image = o.slot.in_words();
             let why = format!(
                 "the pixel in column {}, row {} is {:.0} times as bright as it should be and holds {} of the light of {image}",
                 o.pixel[0],
@@ -111,7 +111,7 @@ pub(super) fn undecided(fit: &Fit, evidence: &Evidence, visible: f64) -> Vec<Slo
 pub(super) fn few_pixels(undecided: &[Slot], evidence: &Evidence) -> Option<Limit> {
     let of = |slot: &Slot| {
         let ratio = evidence.ratio(*slot).map_or(f64::NAN, |r| r.value);
-        let name = if *slot == Slot::Whole { "the image".into() } else { slot.to_string() };
+        let name = slot.in_words();
         format!("{name} is {ratio:.3} times the correct one")
     };
     let all: Vec<String> = undecided.iter().map(of).collect();

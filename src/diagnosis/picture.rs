@@ -21,6 +21,13 @@ pub enum Slot {
     Whole,
 }
 
+impl Slot {
+    /// Its name in a sentence: `T2`, or `the image` for the whole one.
+    pub fn in_words(self) -> String {
+        if self == Self::Whole { "the image".into() } else { self.to_string() }
+    }
+}
+
 impl std::fmt::Display for Slot {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {

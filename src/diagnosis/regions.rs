@@ -35,6 +35,11 @@ impl Region {
     fn new(name: &str, pixels: Vec<usize>) -> Self {
         Self { name: name.into(), pixels, lamps: vec![], emission: vec![] }
     }
+
+    /// True for a region of the grid, and for a cell.
+    pub fn in_grid(&self) -> bool {
+        self.name.starts_with("region")
+    }
 }
 
 /// Smallest number of pixels of a region. Smaller regions are not tested, because their noise cannot be estimated well
@@ -82,10 +87,7 @@ pub fn inside(mut regions: Vec<Region>, edges: &[bool]) -> Vec<Region> {
 
 /// Removes the pixels of a mask (empty: no mask). Regions that become too small are left out, except the first.
 pub fn without(regions: Vec<Region>, mask: &[bool]) -> Vec<Region> {
-    let left = |r: Region| Region {
-        pixels: r.pixels.into_iter().filter(|&p| !mask.get(p).copied().unwrap_or(false)).collect(),
-        ..r
-    };
+    let left = |r: Region| Region { pixels: r.pixels.into_iter().filter(|&p| !holds(mask, p)).collect(), ..r };
     let mut all: Vec<Region> = regions.into_iter().map(left).collect();
     let mut at = 0;
     all.retain(|r| {
@@ -112,10 +114,15 @@ pub fn lit(regions: Vec<Region>, reference: &Pictures) -> Vec<Region> {
     regions.into_iter().map(with).collect()
 }
 
+/// True if the mask holds pixel `p`; an empty mask holds nothing.
+pub fn holds(mask: &[bool], p: usize) -> bool {
+    mask.get(p).copied().unwrap_or(false)
+}
+
 /// True where one of two masks is; an empty mask holds nothing.
 pub fn either(a: &[bool], b: &[bool]) -> Vec<bool> {
     let n = a.len().max(b.len());
-    (0..n).map(|p| a.get(p).copied().unwrap_or(false) || b.get(p).copied().unwrap_or(false)).collect()
+    (0..n).map(|p| holds(a, p) || holds(b, p)).collect()
 }
 
 /// A mask with all pixels within `reach` of it.
@@ -168,7 +175,7 @@ pub fn seen(scene: &Scene) -> Seen {
     if (edges.iter().filter(|e| !**e).count() as f64) < LEAST * (w * h) as f64 {
         edges.clear();
     }
-    let is_edge = |p: usize| edges.get(p).copied().unwrap_or(false);
+    let is_edge = |p: usize| holds(&edges, p);
     let set =
         |name: &str, inside: &dyn Fn(usize) -> bool| Region::new(name, (0..w * h).filter(|&p| inside(p)).collect());
     let beside = (w / 8).max(1) as isize;

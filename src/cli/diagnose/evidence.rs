@@ -5,7 +5,7 @@ use fredholm::diagnosis::curve::Curve;
 use fredholm::diagnosis::explain::in_words;
 use fredholm::diagnosis::family::Relation;
 use fredholm::diagnosis::fit::Constant;
-use fredholm::diagnosis::{Code, Conclusion, Diagnosis, Slot};
+use fredholm::diagnosis::{Code, Conclusion, Diagnosis};
 use fredholm::report::text::prose::wrapped;
 use fredholm::report::text::table::significant;
 
@@ -143,7 +143,7 @@ pub fn facts(f: &Diagnosed) -> Vec<String> {
     }
     for o in d.outliers.iter().take(3) {
         let [x, y] = o.pixel;
-        let image = if o.slot == Slot::Whole { "the image".into() } else { o.slot.to_string() };
+        let image = o.slot.in_words();
         facts.push(format!(
             "Left out: the pixel in column {x}, row {y} of {image}, {} times as bright as it should be.",
             significant(o.times, 3)
