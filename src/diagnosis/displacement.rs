@@ -183,7 +183,7 @@ impl Field<'_> {
             .flat_map(move |y| (edge..w - edge).map(move |x| (x, y, y * SIDE / h * SIDE + x * SIDE / w)))
             .filter(move |(x, y, _)| {
                 let p = y * w + x;
-                !holds(&self.mask, p) && self.seen[p].is_finite()
+                !holds(self.mask, p) && self.seen[p].is_finite()
             })
     }
 
