@@ -16,7 +16,7 @@ use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 /// Refuses a film that needs more memory than is free: the sums of all terms, pixels and replicates are held at the same time.
 pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
-    let replicates = u64::from(settings.spp.min(16));
+    let replicates = u64::from(settings.spp.min(settings.replicates));
     let bytes = u64::from(w) * u64::from(h) * (settings.max_bounces as u64 + 2) * (replicates + 2) * 24;
     let what = format!("{w}×{h} pixels with terms up to k = {}", settings.max_bounces);
     fits(bytes, &what, "choose a smaller --size or --max-bounces")

@@ -184,13 +184,10 @@ pub(crate) fn film<T: Adjoint>(
     }
 }
 
-/// Number of replicates of a render with many samples.
-const REPLICATES: u32 = 16;
-
-/// The usual amount of samples, with the random stream of that name.
+/// The samples of a run, with the random stream of that name.
 pub(crate) fn amount(settings: &Settings, stream: &str) -> Amount {
-    let amount = Amount::new(settings.spp, settings.key(stream, 1));
-    Amount { key: settings.key(stream, amount.replicates), ..amount }
+    let replicates = settings.spp.min(settings.replicates).max(1) as usize;
+    Amount { spp: settings.spp, replicates, key: settings.key(stream, replicates) }
 }
 
 /// Words that a label gets for points other than the usual ones.
@@ -230,6 +227,8 @@ pub(crate) struct Passes<'a, 'l> {
     /// The seconds of the render, and the statistics of the film after the last pass.
     last: Option<(f64, Statistics)>,
     clock: Option<&'a Clock>,
+    /// R; a pass by the clock ends at a multiple of it.
+    replicates: u32,
     /// The caller's callback.
     look_on: Option<Look<'l>>,
 }
@@ -238,7 +237,8 @@ impl<'a, 'l> Passes<'a, 'l> {
     /// Passes that double, without a clock and without a callback, for callers that use the film itself.
     pub(crate) fn of(progress: Progress<'a>) -> Self {
         let started = Instant::now();
-        Self { progress, started, read: false, snapshots: vec![], last: None, clock: None, look_on: None }
+        let replicates = Amount::REPLICATES;
+        Self { progress, started, read: false, snapshots: vec![], last: None, clock: None, replicates, look_on: None }
     }
 
     /// The same with a callback after each pass.
@@ -257,7 +257,7 @@ impl<'a, 'l> Passes<'a, 'l> {
         let paths = u64::from(size[0]) * u64::from(size[1]) * u64::from(settings.spp);
         progress.begin(what, clock.map_or(paths, |c| c.time.as_millis() as u64));
         let progress = clock.map_or(progress, |clock| progress.by_clock(clock));
-        Self { read: true, clock, ..Self::of(progress) }
+        Self { read: true, clock, replicates: settings.replicates, ..Self::of(progress) }
     }
 
     /// The result of the render.
@@ -342,6 +342,6 @@ impl Passes<'_, '_> {
         let fits = (time.as_secs_f64() / each) as u32;
         // if a pass would leave less than a quarter of itself for the last one, the last one is included in it
         let until = if f64::from(fits) < 1.25 * f64::from(planned) { fits } else { planned };
-        until / REPLICATES * REPLICATES
+        until / self.replicates * self.replicates
     }
 }

@@ -1,6 +1,7 @@
 //! Settings of a run.
 
 use super::discretisation::Factors;
+use crate::estimator::render::Amount;
 use crate::estimator::{Plan, Roulette, Technique};
 use crate::guide::ByExpectation;
 use crate::math::{Key, Points};
@@ -19,6 +20,8 @@ pub struct Settings {
     pub seed: u64,
     /// Point set of the samples of a pixel: independent, or a Sobol sequence.
     pub points: Points,
+    /// R, the most replicates into which the samples of a pixel are divided: one for each sample if there are fewer.
+    pub replicates: u32,
     /// K: the terms k = 0..=K are estimated separately.
     pub max_bounces: usize,
     /// Technique that finds light.
@@ -52,6 +55,7 @@ impl Default for Settings {
             time: None,
             seed: 0,
             points: Points::Independent,
+            replicates: Amount::REPLICATES,
             max_bounces,
             technique: Technique::Mis,
             sampling: Sampling::Bsdf,

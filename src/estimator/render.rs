@@ -19,16 +19,19 @@ use rayon::prelude::*;
 pub struct Amount {
     /// Samples per pixel.
     pub spp: u32,
-    /// Independent replicates; `min(16, spp)` is usual.
+    /// Independent replicates; the smaller of [`Amount::REPLICATES`] and `spp` is usual.
     pub replicates: usize,
     /// Key of the random stream.
     pub key: Key,
 }
 
 impl Amount {
+    /// The usual number of replicates of a pixel with many samples.
+    pub const REPLICATES: u32 = 16;
+
     /// An amount with the usual number of replicates.
     pub fn new(spp: u32, key: Key) -> Self {
-        Self { spp, replicates: spp.clamp(1, 16) as usize, key }
+        Self { spp, replicates: spp.clamp(1, Self::REPLICATES) as usize, key }
     }
 }
 

@@ -15,7 +15,7 @@
 //! The hash is pcg4d of Jarzynski and Olano, *Hash Functions for GPU Rendering* (JCGT 9(3), 2020).
 
 use super::pcg::pcg4d;
-use super::sobol;
+use super::sobol::{self, Deal};
 
 /// The decision that a random number is used for; part of its address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,7 +136,7 @@ impl Rng {
         self.place = place.wrapping_add(DRAW);
         match key.points() {
             Points::Independent => independent(key, pixel, sample, place),
-            Points::Sobol => sobol::four(key.bits, pixel, sample, place, key.scrambles),
+            Points::Sobol => sobol::four(key.bits, pixel, place, Deal::to(key.scrambles).at(sample)),
         }
     }
 
@@ -190,6 +190,24 @@ impl Streams<'_> {
     #[inline(always)]
     pub(crate) fn first_draw(&self, i: usize) -> [f32; 4] {
         independent(self.key, self.pixel[i], self.sample[i], place(self.bounce, self.purpose))
+    }
+
+    /// The first draw of all paths as columns, for Sobol points only.
+    #[inline(always)]
+    pub(crate) fn sobol_draws(&self, [a, b, c, d]: [&mut [f32]; 4]) {
+        let (n, bits, place) = (self.len(), self.key.bits, place(self.bounce, self.purpose));
+        let (pixel, sample) = (&self.pixel[..n], &self.sample[..n]);
+        let (a, b, c, d) = (&mut a[..n], &mut b[..n], &mut c[..n], &mut d[..n]);
+        // two loops, so that the first has no branch
+        if let Deal::Bits(shift) = Deal::to(self.key.scrambles) {
+            for i in 0..n {
+                [a[i], b[i], c[i], d[i]] = sobol::four(bits, pixel[i], place, Deal::Bits(shift).at(sample[i]));
+            }
+            return;
+        }
+        for i in 0..n {
+            [a[i], b[i], c[i], d[i]] = self.rng(i).four();
+        }
     }
 
     /// Number of paths.

@@ -202,11 +202,7 @@ pub(crate) fn numbers_with_simd<'a, S: Simd>(_simd: S, streams: Streams<'a>, u: 
     let [a, b, c, d] = u.each_mut().map(|u| &mut u[..n]);
     let streams = Streams { pixel, sample, ..streams };
     if streams.key.points() == Points::Sobol {
-        // Sobol points are table look-ups, which do not vectorise
-        for i in 0..n {
-            [a[i], b[i], c[i], d[i]] = streams.rng(i).four();
-        }
-        return;
+        return streams.sobol_draws([a, b, c, d]);
     }
     for i in 0..n {
         [a[i], b[i], c[i], d[i]] = streams.first_draw(i);

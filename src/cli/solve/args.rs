@@ -17,10 +17,12 @@ use fredholm::engine::Settings;
 use fredholm::engine::by_rays::Estimator;
 use fredholm::engine::discretisation::{Factors, Form};
 use fredholm::engine::guided::Guiding;
+use fredholm::estimator::render::Amount;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::math::Points;
 use fredholm::report::image::exposure::Exposure;
 use fredholm::scene::{Selection, bsdf::Sampling};
+use fredholm::stats::evidence::PIXEL_REPLICATES;
 use fredholm::study::roulette::Schedule;
 use fredholm::terms::World;
 use std::time::Duration;
@@ -189,6 +191,13 @@ pub struct Pixels {
     /// How the samples of a pixel are spread.
     #[arg(long, default_value_t = Points::Independent, value_name = "NAME", value_parser = one_of::<Points>(POINTS))]
     pub points: Points,
+    /// Less noise in the same time: Sobol points, 8 replicates
+    ///
+    /// Chooses --points sobol, and 8 replicates in place of 16, so that each replicate holds twice as many points of its own
+    /// sequence. The result stays unbiased. Not the default, because the samples of a pixel are then no longer independent: the
+    /// variance need not fall with slope −1, and the moments of the samples do not predict it. Standard errors rest on 8 numbers.
+    #[arg(long, conflicts_with = "points")]
+    pub fast: bool,
     /// Time per way to solve, in place of --spp: 30s, 5m
     ///
     /// Passes are added while they are expected to end in time; the preparation of a guide counts. The first pass of 16 samples
@@ -248,6 +257,9 @@ pub struct Pictures {
     #[arg(long, default_value_t = Exposure::Auto, value_name = "GAIN|Tk", hide_short_help = true)]
     pub exposure: Exposure,
 }
+
+/// Replicates of `--fast`: the fewest with which the standard error of a pixel is trusted.
+const FAST_REPLICATES: u32 = PIXEL_REPLICATES as u32;
 
 /// Long help for `--roulette`: the schedules.
 const ROULETTE: &str = "Russian roulette: when paths end
@@ -323,7 +335,8 @@ impl Request {
             spp: frame.spp.unwrap_or(if pixels.time.is_some() { 1 << 24 } else { 256 }),
             time: pixels.time,
             seed: frame.seed,
-            points: pixels.points,
+            points: if pixels.fast { Points::Sobol } else { pixels.points },
+            replicates: if pixels.fast { FAST_REPLICATES } else { Amount::REPLICATES },
             max_bounces,
             technique: light.technique,
             sampling: pixels.sampling,
