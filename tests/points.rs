@@ -222,9 +222,10 @@ fn errors_from_replicates_cover_the_truth() {
     assert!(shared < honest / 4, "{shared} {honest}");
 }
 
-/// Variance of the mean of n points of a smooth function of four numbers, n = 4, …, 1024, from R replicates.
+/// Variance of the mean of n points, n = 4, …, 1024, from R replicates. The integrand is smooth in each pair of numbers and adds up
+/// over the pairs: points of different pairs are independent, so that products of pairs would keep slope −1.
 fn curve(key: Key, replicates: u32) -> Vec<(f64, f64)> {
-    let f = |u: [f32; 4]| u.iter().map(|&x| 0.5 + f64::from(x)).product::<f64>();
+    let f = |u: [f32; 4]| u.chunks(2).map(|u| u.iter().map(|&x| 0.5 + f64::from(x)).product::<f64>()).sum::<f64>();
     let mean = |r: u32, n: u32| {
         let all = (0..n).map(|j| f(Rng::at(key, 0, r + replicates * j, 0, Purpose::Scatter).four()));
         all.sum::<f64>() / f64::from(n)
