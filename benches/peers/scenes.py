@@ -61,13 +61,13 @@ def separable(case):
     for name in rough:
         case.sets += ["--set", f"materials.{name}.masking=separable"]
     if rough:
-        case.remarks.append("separable masking here too")
+        case.remarks.append("separable masking in both")
 
 
 def cases():
     all = [Case(name, name) for name in ["cornell", "cornell-spheres", "env-ggx", "veach-mis", "many-lights"]]
     plain = Case("env-ggx without plastic", "env-ggx", ["--set", "shapes.5.material=copper50"], timed=False)
-    plain.remarks.append("copper instead of plastic")
+    plain.remarks.append("copper instead of plastic in both")
     all.insert(3, plain)
     for case in all:
         separable(case)

@@ -1,78 +1,109 @@
-"""The two tables, in Markdown."""
+"""The tables, in Markdown."""
 
 from estimates import POWER
 from programs import K
 
+BOTH = ("mitsuba", "fredholm")
+
+
 def table(head, rows):
-    """A table in Markdown."""
+    """A table whose first column is text."""
     lines = [head, ["---"] + ["---:"] * (len(head) - 1), *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
+def digits(x):
+    """Two or three digits, as 0.0123 or 1.23·10⁻⁴."""
+    if x == 0 or 1e-3 <= abs(x) < 1000:
+        return f"{x:.3g}"
+    mantissa, power = f"{x:.2e}".split("e")
+    return f"{mantissa}·10" + str(int(power)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def percent(x):
+    return f"{100 * x:.2g} %" if x < 1 else f"{100 * x:.0f} %"
+
+
+def name(case):
+    return f"`{case.name}`"
+
+
 def cost_table(cases):
-    head = ["scene", "ns per path: Mitsuba", "fredholm", "ratio (range)", "relMSE: Mitsuba", "fredholm", "ratio"]
-    head += ["relMSE × s: Mitsuba", "fredholm", "ratio ± se", "command, s: Mitsuba", "fredholm"]
+    head = ["scene", "ns per path: Mitsuba", "fredholm", "ratio", "of all rounds", "command, s: Mitsuba", "fredholm"]
     rows = []
-    for case in (case for case in cases if case.timed):
-        if case.error:
-            rows.append([f"`{case.name}`", case.error] + [""] * (len(head) - 2))
-            continue
-        c, e, w = case.result["cost"], case.result["rel_mse"], case.result["work"]
-        (m, dm), (f, df) = e["mitsuba"], e["fredholm"]
-        rows.append([f"`{case.name}`", f"{c['ns']['mitsuba']:.0f}", f"{c['ns']['fredholm']:.0f}"])
-        rows[-1] += ["{:.2f} ({:.2f}–{:.2f})".format(c["ratio"], *c["ratio_range"])]
-        rows[-1] += [f"{m:.2e} ± {dm / m:.0%}", f"{f:.2e} ± {df / f:.0%}", f"{m / f:.2f}"]
-        rows[-1] += [f"{w['mitsuba']:.2e}", f"{w['fredholm']:.2e}", "{:.2f} ± {:.2f}".format(*w["ratio"])]
-        rows[-1] += [f"{c['command_seconds'][who]:.2f}" for who in ("mitsuba", "fredholm")]
+    for case in cases:
+        c = case.result["cost"]
+        ns, command = ([f(c[what][who]) for who in BOTH] for what, f in [("ns", round), ("command_seconds", digits)])
+        span = "{:.2f} to {:.2f}".format(*c["ratio_range"])
+        rows.append([name(case), *map(str, ns), f"{c['ratio']:.2f}", span, *command])
     return table(head, rows)
 
 
+def error_table(cases):
+    head = ["scene", "relMSE: Mitsuba", "fredholm", "relMSE × s: Mitsuba", "fredholm", "ratio"]
+    rows = []
+    for case in cases:
+        e, w = case.result["rel_mse"], case.result["work"]
+        errors = [f"{digits(e[who][0])} ± {percent(e[who][1] / abs(e[who][0]))}" for who in BOTH]
+        rows.append([name(case), *errors, *(digits(w[who]) for who in BOTH), "{:.2f} ± {:.2f}".format(*w["ratio"])])
+    return table(head, rows)
+
+
+def agreement_table(cases):
+    def cell(channels):
+        if not any(c["fredholm"] or c["mitsuba"] for c in channels):
+            return "no light"
+        worst, found = max(abs(c["z"]) for c in channels), max(c["found"] for c in channels)
+        text = f"{worst:.1f} ({percent(found)})"
+        return f"**{text}**" if any(c["differs"] for c in channels) else text
+
+    rows = [[str(k), *(cell(case.result["terms"][k]) for case in cases)] for k in range(K + 1)]
+    return table(["k", *map(name, cases)], rows)
+
+
 def verdict(case):
-    """Whether the terms agree, in words."""
-    by_k = case.result["terms"]
+    """Whether the terms agree, and what was changed or is modelled differently."""
+    if case.error:
+        return case.error
     wrong = case.differing()
-    if not wrong:
-        said = "agrees"
+    if wrong:
+        most = max(abs(c["relative"]) for k in wrong for c in case.result["terms"][k] if c["differs"])
+        said = f"**differs** at k = {', '.join(map(str, wrong))}, by at most {percent(most)}"
     else:
-        most = max(abs(c["relative"]) for k in wrong for c in by_k[k] if c["differs"])
-        said = f"**differs** at k = {', '.join(map(str, wrong))}, by up to {most:.2%}"
+        said = "no term differs"
     notes = [f"modelled differently: {note}" for note in case.notes]
     return "; ".join([said, *case.remarks, *notes])
 
 
-def agreement_table(cases):
-    head = ["scene", *(f"k = {k}" for k in range(K + 1)), "result"]
-    rows = []
-    for case in cases:
-        if case.error:
-            rows.append([f"`{case.name}`", *[""] * (K + 1), case.error])
-            continue
-        cell = lambda channels: (
-            f"{max(abs(c['z']) for c in channels):.1f} ({max(c['found'] for c in channels):.2%})"
-            if any(c["fredholm"] or c["mitsuba"] for c in channels)
-            else "no light"
-        )
-        rows.append([f"`{case.name}`", *map(cell, case.result["terms"]), verdict(case)])
-    return table(head, rows)
-
-
 def report(cases, amounts, machine, comparisons, alarms):
+    """All tables, with the way in which they were measured."""
     a = amounts
-    per_path = f"{a.rounds} interleaved rounds, slope from {a.time_spp[0]} to {a.time_spp[1]} samples at {a.time_side}²"
-    limit = min(c["limit"] for case in cases if not case.error for k in case.result["terms"] for c in k)
-    return f"""{machine['date']}, {machine['processor']}, one of them; load {machine['load']} (1 = one busy core). \
-fredholm {machine['fredholm']}, Mitsuba {machine['mitsuba']} (`llvm_ad_rgb`, LLVM {machine['llvm']}, one thread).
+    good = [case for case in cases if not case.error]
+    timed = [case for case in good if case.timed]
+    limit = max((c["limit"] for case in good for k in case.result["terms"] for c in k), default=0)
+    verdicts = "\n".join(f"- {name(case)}: {verdict(case)}" for case in cases)
+    return f"""\
+Measured on {machine['date']}, {machine['processor']}, one of them, load {machine['load']}. fredholm {machine['fredholm']}, \
+Mitsuba {machine['mitsuba']} (`llvm_ad_rgb`, LLVM {machine['llvm']}), one thread each. Ratios are Mitsuba / fredholm: above 1, \
+fredholm needs less.
 
-**Cost and error.** Ratios are Mitsuba / fredholm: above 1, fredholm needs less. ns per path: CPU time, {per_path}. \
-relMSE: {a.side}², {a.spp} samples, mean of {a.seeds} seeds. s: ns per path × {a.side}² × {a.spp} paths. command: the whole \
-command at {a.side}² and {a.spp} samples, with start-up, pictures and files.
+**Cost of a path.** CPU time: slope of whole commands from {a.time_spp[0]} to {a.time_spp[1]} samples at {a.time_side}², \
+medians of {a.rounds} interleaved rounds. The last two columns are the CPU time of the whole command at {a.side}² and {a.spp} \
+samples, with start-up and files.
 
-{cost_table(cases)}
+{cost_table(timed)}
 
-**Agreement of the terms.** Largest difference of the image means over three channels, in standard errors; in brackets the \
-smallest relative difference that would have been found with probability {POWER:.0%}, in the channel where it is largest. \
-A difference counts from {limit:.2f} standard errors on: the probability of a false alarm in all {comparisons} comparisons \
-together is {alarms:g}.
+**Error and work.** relMSE at {a.side}² and {a.spp} samples, mean ± standard error of {a.seeds} seeds. The seconds are those \
+of {a.side}² × {a.spp} paths at the cost above.
 
-{agreement_table(cases)}
+{error_table(timed)}
+
+**Agreement of the terms.** The largest difference of the image means over three channels, in standard errors. In brackets: \
+the smallest relative difference that would have been found with probability {percent(POWER)}, in the channel where it is \
+largest. A difference counts above {limit:.2f} standard errors; the probability of a false alarm in all {comparisons} \
+comparisons together is {alarms:g}.
+
+{agreement_table(good)}
+
+{verdicts}
 """
