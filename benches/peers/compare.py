@@ -21,7 +21,7 @@ import numpy as np
 from estimates import compared, mean_error, ns_per_path, rel_mse
 from programs import HERE, OUT, K, Stop, export, llvm, mitsuba, processor, run, series, sum_of_terms
 from scenes import cases, mesh
-from tables import report
+from tables import report, verdict
 
 ALARMS = 1e-3  # probability of a false alarm in a whole run
 
@@ -142,6 +142,7 @@ def measure(all, amounts, comparisons):
         ours, theirs = terms(case, amounts, files[case.name][amounts.side, amounts.spp])
         case.result["terms"] = agreement(ours[0], theirs[0], ALARMS / comparisons)
         case.result["rel_mse"] = {"fredholm": errors(ours[1], theirs[1]), "mitsuba": errors(theirs[1], ours[1])}
+        say(f"  {verdict(case)}")
         if case.timed:  # Mitsuba keeps compiled kernels on disk: this compiles them
             mitsuba("image", files[case.name][amounts.time_side, amounts.time_spp[0]], case.folder / "theirs.exr")
     timed = [case for case in all if case.timed and not case.error]
