@@ -146,10 +146,18 @@ def measure(all, amounts, comparisons):
         if case.timed:  # Mitsuba keeps compiled kernels on disk: this compiles them
             mitsuba("image", files[case.name][amounts.time_side, amounts.time_spp[0]], case.folder / "theirs.exr")
     timed = [case for case in all if case.timed and not case.error]
-    for r in range(amounts.rounds):
+    try:
+        for r in range(amounts.rounds):
+            for case in timed:
+                say(f"round {r + 1}/{amounts.rounds}: {case.name}")
+                time(case, amounts, files[case.name])
+    except KeyboardInterrupt:
+        amounts.rounds = min(len(case.rounds) for case in timed)
+        if amounts.rounds == 0:
+            raise
+        say(f"interrupted: the tables hold the {amounts.rounds} complete rounds")
         for case in timed:
-            say(f"round {r + 1}/{amounts.rounds}: {case.name}")
-            time(case, amounts, files[case.name])
+            del case.rounds[amounts.rounds :]
     for case in timed:
         case.result["cost"] = cost = costs(case, amounts)
         e, paths = case.result["rel_mse"], amounts.side**2 * amounts.spp
@@ -200,3 +208,5 @@ if __name__ == "__main__":
     except Stop as e:
         print(f"error: {e}", file=sys.stderr)
         sys.exit(3)
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -94,7 +94,7 @@ samples, with start-up and files.
 {cost_table(timed)}
 
 **Error and work.** relMSE at {a.side}² and {a.spp} samples, mean ± standard error of {a.seeds} seeds. The seconds are those \
-of {a.side}² × {a.spp} paths at the cost above.
+of {a.side}² × {a.spp} paths at the cost above. The error of the ratio is that of the two relMSE.
 
 {error_table(timed)}
 
