@@ -108,11 +108,18 @@ def costs(case, amounts):
     }
 
 
+def positive(text):
+    """A whole number from 1 on."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"`{text}` is not a whole number from 1 on")
+    return int(text)
+
+
 def arguments():
     text = "fredholm beside Mitsuba 3, on one core. README.md in this folder explains the tables."
     p = argparse.ArgumentParser(prog="benches/peers/run", description=text)
     p.add_argument("--scenes", metavar="A,B", help="only these: " + ", ".join(case.name for case in cases()))
-    p.add_argument("--rounds", type=int, metavar="N", help=f"interleaved rounds of timing [default: {FULL.rounds}]")
+    p.add_argument("--rounds", type=positive, metavar="N", help=f"interleaved rounds of timing [default: {FULL.rounds}]")
     p.add_argument("--core", type=int, metavar="N", help="the core to use [default: the last one]")
     p.add_argument("--quick", action="store_true", help="tiny images: checks that everything works, measures nothing")
     return p.parse_args()
@@ -172,6 +179,7 @@ def main():
     amounts = QUICK if a.quick else FULL
     amounts.rounds = a.rounds or amounts.rounds
     all = chosen(a.scenes)
+    run([os.environ["FREDHOLM"], "--version"])  # does it start?
     library, version = llvm()
     os.environ["DRJIT_LIBLLVM_PATH"] = library
     core = max(os.sched_getaffinity(0)) if a.core is None else a.core

@@ -63,6 +63,8 @@ def run(command):
         done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=PATIENCE)
     except subprocess.TimeoutExpired:
         raise Stop(f"`{' '.join(words)}` did not end within {PATIENCE} s") from None
+    except OSError as e:
+        raise Stop(f"`{words[0]}` does not start: {e.strerror}\nhelp: FREDHOLM names the program") from None
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode != 0:
         last = "\n".join((done.stderr or done.stdout).strip().splitlines()[-6:])
