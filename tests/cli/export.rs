@@ -88,6 +88,20 @@ fn rectangles_lie_where_their_quads_do() {
     }
 }
 
+/// What Mitsuba models differently is noted where the scene shows it, and nowhere else.
+#[test]
+fn only_materials_of_the_scene_are_noted() {
+    let of = |set: &[&str]| {
+        let masked = ["plastic", "gold02", "gold08", "copper20", "copper50"]
+            .map(|m| format!("materials.{m}.masking=\"separable\""));
+        let set = masked.into_iter().chain(set.iter().map(|s| String::from(*s))).collect();
+        let d = load::scene("env-ggx", &Options { set, ..Options::default() }).unwrap().description;
+        export(&d, Renderer::Mitsuba, &settings()).unwrap().notes
+    };
+    assert!(matches!(&of(&[])[..], [note] if note.contains("`plastic`")));
+    assert_eq!(of(&["shapes[5].material=\"copper50\""]), Vec::<String>::new());
+}
+
 #[test]
 fn files_are_written_once_and_what_is_missing_is_named() {
     let desk = Desk::new();

@@ -25,10 +25,9 @@ use std::fmt::Write;
 /// If a part of the scene has no counterpart.
 pub fn export(d: &Description, settings: &Settings) -> Result<Exported, Unsupported> {
     let (mut text, mut beside) = (head(d, settings), vec![]);
-    for material in &d.materials {
-        if d.shapes.iter().any(|s| d.materials[s.material].name == material.name) {
-            writeln!(text, "\n{}", surface(material)?).ok();
-        }
+    let used = |m: &&Material| d.shapes.iter().any(|s| d.materials[s.material].name == m.name);
+    for material in d.materials.iter().filter(used) {
+        writeln!(text, "\n{}", surface(material)?).ok();
     }
     for (i, shape) in d.shapes.iter().enumerate() {
         writeln!(text, "\n{}", self::shape(i, shape, d, settings, &mut beside)?).ok();
@@ -41,7 +40,7 @@ pub fn export(d: &Description, settings: &Settings) -> Result<Exported, Unsuppor
     let note = |m: &Material| {
         format!("the rough plastic of Mitsuba, material `{}`, differs by about 1 %: its coat is tabulated", m.name)
     };
-    Ok(Exported { text, beside, notes: d.materials.iter().filter(rough_plastic).map(note).collect() })
+    Ok(Exported { text, beside, notes: d.materials.iter().filter(used).filter(rough_plastic).map(note).collect() })
 }
 
 fn head(d: &Description, settings: &Settings) -> String {
