@@ -42,6 +42,8 @@ FULL = Amounts(rounds=5, time_side=128, time_spp=(32, 288), side=64, spp=64, see
 QUICK = Amounts(rounds=1, time_side=32, time_spp=(4, 64), side=32, spp=4, seeds=32)
 
 
+OURS = {"fredholm": "", "fast": "--fast"}  # what our two columns add to the command
+
 # the measurements
 
 
@@ -60,16 +62,19 @@ def prepare(case, amounts):
 
 
 def terms(case, amounts, file):
-    """Term means [seeds, K + 1, 3] and sums [seeds, pixels] of both programs."""
+    """Term means [seeds, K + 1, 3] of both programs, and sums [seeds, pixels] of both and of `--fast`."""
     mitsuba("terms", file, case.folder / "terms.npz", amounts.seeds)
     theirs = np.load(case.folder / "terms.npz")
-    means, sums = [], []
+    means, sums = [], {who: [] for who in OURS}
     for seed in range(amounts.seeds):
-        series(case, amounts.side, amounts.spp, seed)
-        summary = json.loads((case.folder / "ours/summary.json").read_text())
-        means.append([term["mean"] for term in summary["terms"]])
-        sums.append(sum_of_terms(case.folder / "ours").ravel())
-    return (np.array(means), np.array(sums)), (theirs["means"], theirs["sums"].reshape(amounts.seeds, -1))
+        for who, how in OURS.items():
+            series(case, amounts.side, amounts.spp, seed, how)
+            sums[who].append(sum_of_terms(case.folder / "ours").ravel())
+            if who == "fredholm":
+                summary = json.loads((case.folder / "ours/summary.json").read_text())
+                means.append([term["mean"] for term in summary["terms"]])
+    sums = {who: np.array(images) for who, images in sums.items()}
+    return (np.array(means), theirs["means"]), {**sums, "mitsuba": theirs["sums"].reshape(amounts.seeds, -1)}
 
 
 def agreement(ours, theirs, alpha):
@@ -86,25 +91,27 @@ def errors(sums, other):
 
 
 def time(case, amounts, files):
-    """CPU seconds of the three commands of both programs, one after the other."""
+    """CPU seconds of the three commands of each program, one after the other."""
     sizes = [(amounts.side, amounts.spp)] + [(amounts.time_side, spp) for spp in amounts.time_spp]
-    ours, theirs = [], []
+    seconds = {who: [] for who in (*OURS, "mitsuba")}
     for size in sizes:
-        ours.append(series(case, *size))
-        theirs.append(mitsuba("image", files[size], case.folder / "theirs.exr"))
-    case.rounds.append({"fredholm": ours, "mitsuba": theirs})
+        for who, how in OURS.items():
+            seconds[who].append(series(case, *size, how=how))
+        seconds["mitsuba"].append(mitsuba("image", files[size], case.folder / "theirs.exr"))
+    case.rounds.append(seconds)
 
 
 def costs(case, amounts):
     """Cost per path, cost of the command and their ratios, from the rounds."""
     paths = [amounts.time_side**2 * spp for spp in amounts.time_spp]
     of = lambda rounds, who: ns_per_path([r[who][1:] for r in rounds], paths)
-    each = [of([r], "mitsuba") / of([r], "fredholm") for r in case.rounds]
+    each = {who: [of([r], "mitsuba") / of([r], who) for r in case.rounds] for who in OURS}
+    all = (*OURS, "mitsuba")
     return {
-        "ns": {who: of(case.rounds, who) for who in ("fredholm", "mitsuba")},
-        "ratio": median(each),
-        "ratio_range": [min(each), max(each)],
-        "command_seconds": {who: median(r[who][0] for r in case.rounds) for who in ("fredholm", "mitsuba")},
+        "ns": {who: of(case.rounds, who) for who in all},
+        "ratio": {who: median(ratios) for who, ratios in each.items()},
+        "ratio_range": {who: [min(ratios), max(ratios)] for who, ratios in each.items()},
+        "command_seconds": {who: median(r[who][0] for r in case.rounds) for who in all},
     }
 
 
@@ -146,9 +153,10 @@ def measure(all, amounts, comparisons):
         if case.error:
             say(case.error)
             continue
-        ours, theirs = terms(case, amounts, files[case.name][amounts.side, amounts.spp])
-        case.result["terms"] = agreement(ours[0], theirs[0], ALARMS / comparisons)
-        case.result["rel_mse"] = {"fredholm": errors(ours[1], theirs[1]), "mitsuba": errors(theirs[1], ours[1])}
+        means, sums = terms(case, amounts, files[case.name][amounts.side, amounts.spp])
+        case.result["terms"] = agreement(*means, ALARMS / comparisons)
+        other = lambda who: sums["fredholm" if who == "mitsuba" else "mitsuba"]
+        case.result["rel_mse"] = {who: errors(images, other(who)) for who, images in sums.items()}
         say(f"  {verdict(case)}")
         if case.timed:  # Mitsuba keeps compiled kernels on disk: this compiles them
             mitsuba("image", files[case.name][amounts.time_side, amounts.time_spp[0]], case.folder / "theirs.exr")
@@ -169,9 +177,13 @@ def measure(all, amounts, comparisons):
         case.result["cost"] = cost = costs(case, amounts)
         e, paths = case.result["rel_mse"], amounts.side**2 * amounts.spp
         work = {who: e[who][0] * cost["ns"][who] * 1e-9 * paths for who in e}
-        ratio = cost["ratio"] * e["mitsuba"][0] / e["fredholm"][0]
-        error = ratio * math.hypot(*(e[who][1] / e[who][0] for who in e))
-        case.result["work"] = {**work, "ratio": (ratio, error)}
+        case.result["work"] = {**work, "ratio": {who: work_ratio(cost, e, who) for who in OURS}}
+
+
+def work_ratio(cost, e, who):
+    """Mitsuba's relMSE × s over ours, with the error that comes from the two relMSE."""
+    ratio = cost["ratio"][who] * e["mitsuba"][0] / e[who][0]
+    return ratio, ratio * math.hypot(*(e[w][1] / e[w][0] for w in ("mitsuba", who)))
 
 
 def main():

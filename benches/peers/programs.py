@@ -73,9 +73,9 @@ def run(command):
     return seconds, done.stdout, done.stderr
 
 
-def series(case, side, spp, seed=0):
+def series(case, side, spp, seed=0, how=""):
     """CPU seconds of our command. Its results are in the folder `ours` of the case."""
-    how = f"--worlds terms --estimator prefix --roulette none -t 1 --quiet --force --max-bounces {K}".split()
+    how = f"{how} --worlds terms --estimator prefix --roulette none -t 1 --quiet --force --max-bounces {K}".split()
     size = ["--size", f"{side}x{side}", "--spp", spp, "--seed", seed]
     return run([os.environ["FREDHOLM"], "series", case.scene, *how, *size, *case.sets, "-o", case.folder / "ours"])[0]
 
