@@ -166,7 +166,7 @@ fn promised() -> Growth {
     for p in &mut growth.points {
         let n = p.size as f64;
         let seconds: Vec<f64> = p.subject.parts().iter().map(|part| 1e-3 * n.powf(part.expected)).collect();
-        p.runs = vec![Run { seconds, peak: Some(1_000_000 + 100 * p.size) }; 3];
+        p.runs = vec![Run { seconds, peak: Some(1000 + 100 * p.size) }; 3];
     }
     growth
 }
@@ -209,7 +209,7 @@ fn the_files_hold_every_number() {
     }
     assert!(report::too_fast(&growth).is_empty());
     // 100 bytes per unit on top of what does not grow
-    assert!(report::memory_table(&growth).rows.iter().all(|r| r[4] == "100B"), "{}", report::memory_table(&growth));
+    assert!(report::memory_table(&growth).rows.iter().all(|r| r[4] == "100 B"), "{}", report::memory_table(&growth));
 
     // lights that are all looked at would cost as much as there are
     for p in growth.points.iter_mut().filter(|p| p.subject == Subject::Lights) {
@@ -227,7 +227,7 @@ fn the_figure_prints_its_exponents() {
     let (shown, curves) = (figure.svg.matches("b = ").count(), Varied::ALL.map(|v| promised().times(v).len()));
     assert_eq!(shown, curves.iter().sum::<usize>());
     assert!(Varied::ALL.iter().all(|v| figure.svg.contains(v.name())) && figure.svg.contains("fredholm figure growth"));
-    assert!(report::draw_memory(&promised(), &caption).unwrap().svg.contains("100B each"));
+    assert!(report::draw_memory(&promised(), &caption).unwrap().svg.contains("100\u{a0}B\u{a0}each"));
     // an interrupted study is drawn as far as it came
     let mut begun = promised();
     begun.points.iter_mut().skip(3).for_each(|p| p.runs.clear());

@@ -36,10 +36,11 @@ fn exponent(fit: &PowerLaw) -> String {
     plus_minus(fit.exponent, half_width_95(fit.std_error, fit.dof + 1).max(0.001), 1)
 }
 
-/// The curves whose exponent is proved to exceed the promised one by more than [`SLACK`].
+/// The curves whose exponent is proved to exceed the promised one by more than [`SLACK`]. Two sizes prove nothing, because a step
+/// between them is no growth.
 pub fn too_fast(growth: &Growth) -> Vec<String> {
     let proved = |c: &Curve| {
-        let (fit, promised) = (c.fit()?, c.expected?);
+        let (fit, promised) = (c.fit().filter(|_| c.sizes.len() > 2)?, c.expected?);
         let least = fit.exponent - half_width_95(fit.std_error, fit.dof + 1);
         (least > promised + SLACK).then(|| format!("{} (exponent {}, promised {})", label(c), exponent(&fit), promised))
     };
@@ -64,7 +65,7 @@ pub fn answer(growth: &Growth) -> String {
     };
     for (subject, what) in [(Subject::Triangles, "triangles"), (Subject::Lights, "lights")] {
         if let Some((n, seconds, peak)) = largest(growth, subject, 0) {
-            let memory = peak.map_or(String::new(), |bytes| format!("; peak memory {}B", count(bytes as u64)));
+            let memory = peak.map_or(String::new(), |peak| format!("; peak memory {}", bytes(peak)));
             words += &format!(" A scene of {n} {what} loads in {} CPU seconds{memory}.", significant(seconds, 2));
         }
     }
@@ -101,7 +102,6 @@ pub fn memory_table(growth: &Growth) -> Grid {
         Grid::new("Peak memory of the whole process.", ["memory", "n", "least", "most", "per unit at the end"]);
     for c in Varied::ALL.into_iter().flat_map(|v| growth.memory(v)) {
         let [Some(first), Some(last)] = [c.sizes.first(), c.sizes.last()] else { continue };
-        let bytes = |x: f64| format!("{}B", count(x.round() as u64));
         grid.push([
             label(&c),
             format!("{} … {}", count(first.size as u64), count(last.size as u64)),
@@ -113,10 +113,18 @@ pub fn memory_table(growth: &Growth) -> Grid {
     grid
 }
 
-/// Bytes by which a memory curve grows per unit between its last two sizes.
+/// Bytes with their unit: `470 B`, `1.2 MB`.
+fn bytes(x: f64) -> String {
+    let text = count(x.round() as u64);
+    if text.contains(' ') { text + "B" } else { text + " B" }
+}
+
+/// Bytes by which a memory curve grows per unit between its last two sizes; 0 if it grows by less than a hundredth, which may be
+/// chance.
 fn per_unit(c: &Curve) -> Option<f64> {
     let [.., a, b] = c.sizes.as_slice() else { return None };
-    Some((b.median() - a.median()) / (b.size - a.size))
+    let (before, after) = (a.median(), b.median());
+    Some(if after < 1.01 * before { 0.0 } else { (after - before) / (b.size - a.size) })
 }
 
 /// Every run: a line per part that was timed.
@@ -152,7 +160,7 @@ pub fn fits_csv(growth: &Growth) -> String {
 const PROMISED: Stroke = Stroke { color: GREY, width: 1.2, dash: Some((5.0, 4.0)) };
 /// Place and size of the panels.
 const COLUMNS: usize = 4;
-const PITCH: [f64; 2] = [306.0, 372.0];
+const PITCH: [f64; 2] = [306.0, 384.0];
 const FRAME: [f64; 4] = [84.0, 84.0, 206.0, 190.0];
 
 /// Draws the times against the sizes.
@@ -162,19 +170,19 @@ const FRAME: [f64; 4] = [84.0, 84.0, 206.0, 190.0];
 pub fn draw(growth: &Growth, caption: &Caption) -> Result<Figure, ReportError> {
     let legend = |c: &Curve| {
         let b = c.fit().map_or(String::new(), |f| format!(": b = {}", exponent(&f)));
-        format!("{}{b}", c.name)
+        format!("{}{}", c.name, b.replacen(' ', "\n", 1).replace(' ', "\u{a0}").replace('\n', " "))
     };
     let panels: Vec<(Varied, Vec<Curve>)> = Varied::ALL.map(|v| (v, growth.times(v))).into();
     let notes = [
         Entry::new(Sample::Heading, "time ≈ c nᵇ"),
         Entry::new(
             Sample::Plain,
-            "Medians of processes; bars and ± are 95 %. CPU time of one thread, except for threads.",
+            "Medians of processes; bars and ± are 95\u{a0}%. CPU time of one thread, except for threads.",
         ),
         Entry::new(Sample::Line(PROMISED), "the exponent that the algorithm promises, through the last point"),
     ];
     let title = "How time grows";
-    figure("growth", 1240, 830, caption, |page| draw_panels(page, title, "seconds", &panels, 1.0, &notes, &legend))
+    figure("growth", 1240, 842, caption, |page| draw_panels(page, title, "seconds", &panels, 1.0, &notes, &legend))
 }
 
 /// Draws the peak memory against the sizes.
@@ -184,9 +192,8 @@ pub fn draw(growth: &Growth, caption: &Caption) -> Result<Figure, ReportError> {
 pub fn draw_memory(growth: &Growth, caption: &Caption) -> Result<Figure, ReportError> {
     let legend = |c: &Curve| {
         let unit = per_unit(c).filter(|x| *x >= 0.5);
-        let words =
-            unit.map_or("constant at the end".into(), |x| format!("{}B each at the end", count(x.round() as u64)));
-        format!("{}: {words}", c.name)
+        let words = unit.map_or("constant".into(), |x| format!("{} each", bytes(x)));
+        format!("{}: {}", c.name, words.replace(' ', "\u{a0}"))
     };
     let panels: Vec<(Varied, Vec<Curve>)> = Varied::ALL.map(|v| (v, growth.memory(v))).into();
     let notes = [
@@ -195,10 +202,10 @@ pub fn draw_memory(growth: &Growth, caption: &Caption) -> Result<Figure, ReportE
             Sample::Plain,
             "It includes the program itself, its scene and its film; the smallest sizes show little else.",
         ),
-        Entry::new(Sample::Plain, "“Each” is growth per sample, pixel, …, between the last two sizes."),
+        Entry::new(Sample::Plain, "Below each panel: growth per sample, pixel, …, between the last two sizes."),
     ];
     let (title, mib) = ("How peak memory grows", f64::from(1 << 20));
-    figure("growth-memory", 1240, 830, caption, |page| draw_panels(page, title, "MiB", &panels, mib, &notes, &legend))
+    figure("growth-memory", 1240, 842, caption, |page| draw_panels(page, title, "MiB", &panels, mib, &notes, &legend))
 }
 
 /// All panels, each with its legend below; the notes are where another panel would be.

@@ -125,9 +125,8 @@ impl Collapse<'_> {
 
     fn collapse(mut self) -> Wide {
         self.costs();
-        // a block of a mesh holds six triangles or so; if it grew by doubling, the old blocks and the new ones would need three
-        // times as much for a while
-        let blocks = Vec::with_capacity(self.parts[0].places as usize / 5);
+        // a block of a mesh holds about five triangles: room for all blocks, so that they are never copied
+        let blocks = Vec::with_capacity(self.parts[0].places as usize / 4);
         let mut wide = Wide { nodes: vec![], blocks, waiting: 0 };
         // subtrees that become nodes, and their places in their parents
         let (mut todo, mut parts) = (vec![(0, None)], vec![]);
