@@ -224,11 +224,19 @@ fn the_files_hold_every_number() {
 fn the_figure_prints_its_exponents() {
     let caption = Caption { command: "fredholm figure growth".into(), seed: 0, scene: "several".into() };
     let figure = report::draw(&promised(), &caption).unwrap();
-    let (shown, curves) = (figure.svg.matches("b = ").count(), Varied::ALL.map(|v| promised().times(v).len()));
+    let (shown, curves) =
+        (figure.svg.matches("b\u{a0}=\u{a0}").count(), Varied::ALL.map(|v| promised().times(v).len()));
     assert_eq!(shown, curves.iter().sum::<usize>());
     assert!(Varied::ALL.iter().all(|v| figure.svg.contains(v.name())) && figure.svg.contains("fredholm figure growth"));
     assert!(report::draw_memory(&promised(), &caption).unwrap().svg.contains("100\u{a0}B\u{a0}each"));
     // an interrupted study is drawn as far as it came
+    // two sizes, each measured once: an exponent, and no error of it
+    let mut once = promised();
+    once.points.iter_mut().for_each(|p| p.runs.truncate(usize::from(p.size <= 64)));
+    let rows = report::table(&once).rows;
+    let exponent = |name: &str| rows.iter().find(|r| r[0] == name).map(|r| r[3].clone());
+    assert_eq!(exponent("samples per pixel: render").as_deref(), Some("1.000"));
+    assert_eq!(exponent("triangles: load").as_deref(), Some("–"));
     let mut begun = promised();
     begun.points.iter_mut().skip(3).for_each(|p| p.runs.clear());
     assert!(report::draw(&begun, &caption).is_ok() && report::table(&begun).rows.len() == 1);

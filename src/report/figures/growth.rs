@@ -17,6 +17,7 @@ use crate::report::{
         csv::Csv,
         grid::Grid,
         number::{count, plus_minus, significant},
+        prose::counted,
     },
 };
 use crate::stats::power_law::{PowerLaw, Sized, error_of_median, spread};
@@ -32,8 +33,9 @@ fn label(c: &Curve) -> String {
 
 /// b ± half its 95 % interval.
 fn exponent(fit: &PowerLaw) -> String {
-    // an error that would not show in two digits is left out of a short label
-    plus_minus(fit.exponent, half_width_95(fit.std_error, fit.dof + 1).max(0.001), 1)
+    let half = half_width_95(fit.std_error, fit.dof + 1);
+    // smaller errors would only make the number long; one that is not known stays unknown
+    plus_minus(fit.exponent, if half < 0.001 { 0.001 } else { half }, 1)
 }
 
 /// The curves whose exponent is proved to exceed the promised one by more than [`SLACK`]. Two sizes prove nothing, because a step
@@ -63,10 +65,11 @@ pub fn answer(growth: &Growth) -> String {
         0 => "No cost is proved to grow faster than promised.".to_string(),
         _ => format!("Faster than promised: {}.", fast.join("; ")),
     };
-    for (subject, what) in [(Subject::Triangles, "triangles"), (Subject::Lights, "lights")] {
+    for (subject, what) in [(Subject::Triangles, "triangle"), (Subject::Lights, "light")] {
         if let Some((n, seconds, peak)) = largest(growth, subject, 0) {
             let memory = peak.map_or(String::new(), |peak| format!("; peak memory {}", bytes(peak)));
-            words += &format!(" A scene of {n} {what} loads in {} CPU seconds{memory}.", significant(seconds, 2));
+            let scene = counted(n as usize, what);
+            words += &format!(" A scene of {scene} loads in {} CPU seconds{memory}.", significant(seconds, 2));
         }
     }
     let wall = growth.times(Varied::Threads).into_iter().next();
