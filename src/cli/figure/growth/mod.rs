@@ -10,7 +10,7 @@ use fredholm::report::figures::growth as report;
 use fredholm::report::text::prose::wrapped;
 use fredholm::report::text::summary::Summary;
 use fredholm::report::write_atomically;
-use fredholm::study::growth::{Growth, Point, Room, Run, Subject, measure};
+use fredholm::study::growth::{Growth, Point, Run, Subject, measure};
 use process::Meshes;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -33,7 +33,7 @@ pub fn run(args: &Figure, id: &str, mut session: Session) -> Result<Ending, Fail
         if session.stopped() {
             break;
         }
-        let Some(run) = child(&growth.points[i], args.seed, meshes.folder(), &session)? else { break };
+        let Some(run) = child(&growth.points[i], args.seed, &meshes, &session)? else { break };
         growth.points[i].runs.push(run);
         session.progress().advance(1);
     }
@@ -56,8 +56,8 @@ pub fn run(args: &Figure, id: &str, mut session: Session) -> Result<Ending, Fail
 }
 
 /// One run, in a process of its own. None if it was ended because this process is to end.
-fn child(point: &Point, seed: u64, meshes: &Path, session: &Session) -> Result<Option<Run>, Failure> {
-    let mesh = meshes.join(file(point.size));
+fn child(point: &Point, seed: u64, meshes: &Meshes, session: &Session) -> Result<Option<Run>, Failure> {
+    let mesh = meshes.file(point.size);
     let ended = Command::new(std::env::current_exe()?)
         .args(["figure", "growth", "--measure"])
         .arg(format!("{}:{}:{}", point.subject.id(), point.size, mesh.display()))
@@ -79,11 +79,6 @@ fn child(point: &Point, seed: u64, meshes: &Path, session: &Session) -> Result<O
     Err(Failure::Input(format!("error: {what}\n{}\nhelp: try it with more free memory", why.trim())))
 }
 
-/// The file of the mesh with so many triangles.
-fn file(triangles: u64) -> String {
-    format!("room-{triangles}.obj")
-}
-
 /// What a child does: measures the point `SUBJECT:SIZE:MESH`, and prints the run as JSON.
 pub fn measured(args: &Figure, point: &str) -> Result<Ending, Failure> {
     let mut words = point.splitn(3, ':');
@@ -100,9 +95,4 @@ pub fn measured(args: &Figure, point: &str) -> Result<Ending, Failure> {
     let seconds = measure(subject, size, args.seed, Path::new(mesh), &process::cpu_seconds)?;
     print_json(&Run { seconds, peak: process::peak_bytes() })?;
     Ok(Ending::Ok)
-}
-
-/// The rooms whose triangles are counted.
-fn rooms(growth: &Growth) -> impl Iterator<Item = Room> {
-    growth.points.iter().filter(|p| p.subject == Subject::Triangles).filter_map(|p| Room::of(p.size))
 }

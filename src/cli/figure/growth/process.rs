@@ -1,9 +1,10 @@
 //! What a process knows about itself, and the files that its children read.
 
-use super::{Failure, Growth, Room, file, rooms};
+use crate::cli::base::Failure;
+use fredholm::study::growth::{Growth, Room, Subject};
 use std::fs::File;
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// CPU seconds of all threads of this process so far.
 #[cfg(unix)]
@@ -41,17 +42,18 @@ impl Meshes {
         std::fs::create_dir_all(&folder)?;
         let all = Self(folder);
         std::fs::write(all.0.join("room.mtl"), Room::materials())?;
-        for room in rooms(growth) {
-            let mut out = BufWriter::new(File::create(all.0.join(file(room.triangles())))?);
+        let counted = growth.points.iter().filter(|p| p.subject == Subject::Triangles);
+        for room in counted.filter_map(|p| Room::of(p.size)) {
+            let mut out = BufWriter::new(File::create(all.file(room.triangles()))?);
             room.write("room.mtl", &mut out)?;
             out.flush()?;
         }
         Ok(all)
     }
 
-    /// Their folder.
-    pub fn folder(&self) -> &Path {
-        &self.0
+    /// The file of the mesh with so many triangles.
+    pub fn file(&self, triangles: u64) -> PathBuf {
+        self.0.join(format!("room-{triangles}.obj"))
     }
 }
 
