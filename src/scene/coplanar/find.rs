@@ -244,7 +244,7 @@ mod tests {
         let pairs = |m: u32| {
             let list = sheet(m);
             let (tree, boxes) = boxes(&list, &Scale::new(&list));
-            let mut seen = 0;
+            let mut seen = 0u32;
             boxes.iter().for_each(|own| near(&tree, *own, |_| seen += 1));
             f64::from(seen) / list.len() as f64
         };
