@@ -36,6 +36,7 @@
 //! | `summary.json` | [`text::summary`] |
 //! | `modes.svg`, `modes-painted.png` | [`figures::modes`] |
 //! | `eigenvalues.svg`, `eigenvalues.csv` of a sweep over patches | [`figures::drift`] |
+//! | `growth.svg`, `growth-memory.svg`, their PNGs, `growth.csv`, `growth-fits.csv` | [`figures::growth`] |
 //! | `mesh.csv`, `norms.csv`, `F.npy` | [`figures::patches`] |
 //! | `solvers.svg`, its PNG, `history.csv` | [`figures::solvers`] |
 //! | the whole image extrapolated from its first terms | [`figures::extrapolation`] |

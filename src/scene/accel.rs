@@ -32,7 +32,7 @@ pub(crate) fn widened([low, high]: [DVec3; 2], farthest: f64, touch: f64) -> [Ve
 
 impl Accel {
     /// Builds the tree; `bounds` are the [`widened`] boxes of the shapes.
-    pub(crate) fn new(shapes: Vec<Shape>, bounds: &[[Vec3; 2]]) -> Self {
+    pub(crate) fn new(shapes: Vec<Shape>, bounds: Vec<[Vec3; 2]>) -> Self {
         let wide = Wide::new(&shapes, bounds);
         Self { shapes, wide, best: InstructionSet::best() }
     }

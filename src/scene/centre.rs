@@ -100,7 +100,7 @@ impl Description {
     }
 
     fn middle(&self) -> DVec3 {
-        middle(self.shapes.iter().flat_map(|s| s.geometry.primitives()).map(|p| p.bounds()))
+        middle(self.shapes.iter().flat_map(|s| s.geometry.each()).map(|p| p.bounds()))
     }
 
     fn shift(&mut self, by: DVec3) {
@@ -142,17 +142,18 @@ fn middle(bounds: impl Iterator<Item = [DVec3; 2]>) -> DVec3 {
 
 impl Geometry {
     /// The points that a file gives for this geometry.
-    fn points(&self) -> Vec<DVec3> {
-        match self {
-            Self::Mesh { vertices, faces, .. } => faces.iter().flatten().map(|i| vertices[*i as usize]).collect(),
-            Self::Quad { origin, .. } => vec![*origin],
-            Self::Box { min, max, .. } => vec![*min, *max],
-            Self::Sphere { center, .. } | Self::Disk { center, .. } => vec![*center],
-        }
+    fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
+        let (vertices, faces, few): (&[DVec3], &[[u32; 3]], Vec<DVec3>) = match self {
+            Self::Mesh { vertices, faces, .. } => (vertices, faces, vec![]),
+            Self::Quad { origin, .. } => (&[], &[], vec![*origin]),
+            Self::Box { min, max, .. } => (&[], &[], vec![*min, *max]),
+            Self::Sphere { center, .. } | Self::Disk { center, .. } => (&[], &[], vec![*center]),
+        };
+        faces.iter().flatten().map(move |i| vertices[*i as usize]).chain(few)
     }
 
     fn middle(&self) -> DVec3 {
-        middle(self.primitives().iter().map(super::Primitive::bounds))
+        middle(self.each().map(|p| p.bounds()))
     }
 
     fn shift(&mut self, by: DVec3) {
@@ -172,23 +173,22 @@ impl Geometry {
     /// needle.
     fn rounding(&self, origin: DVec3) -> (f64, f64) {
         let corner = |p: DVec3| (p - origin - (p - origin).as_vec3().as_dvec3()).length();
-        let corners = |points: &[DVec3]| points.iter().map(|p| corner(*p)).fold(0.0, f64::max);
+        let corners = |points: &mut dyn Iterator<Item = DVec3>| points.map(corner).fold(0.0, f64::max);
         match self {
             Self::Mesh { .. } => {
-                let primitives = self.primitives();
-                let [low, high] = primitives
-                    .iter()
+                let [low, high] = self
+                    .each()
                     .map(|p| p.bounds())
                     .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-                let area: f64 = primitives.iter().map(super::Primitive::area).sum();
-                (corners(&self.points()), area / (high - low).length())
+                let area: f64 = self.each().map(|p| p.area()).sum();
+                (corners(&mut self.points()), area / (high - low).length())
             }
-            &Self::Quad { origin: o, edge_u: u, edge_v: v } => {
-                (corners(&[o, o + u, o + v, o + u + v]), u.cross(v).length() / u.length().max(v.length()))
-            }
+            &Self::Quad { origin: o, edge_u: u, edge_v: v } => (
+                corners(&mut [o, o + u, o + v, o + u + v].into_iter()),
+                u.cross(v).length() / u.length().max(v.length()),
+            ),
             Self::Box { min, max, .. } => {
-                let corners =
-                    self.primitives().iter().flat_map(super::Primitive::bounds).map(corner).fold(0.0, f64::max);
+                let corners = self.each().flat_map(|p| p.bounds()).map(corner).fold(0.0, f64::max);
                 (corners, (*max - *min).min_element())
             }
             // any point of the sphere may be used, so a bound replaces the exact rounding

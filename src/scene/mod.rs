@@ -136,7 +136,7 @@ impl Scene {
         let center = 0.5 * (all[0] + all[1]);
         let shapes: Vec<Shape> = prims.iter().map(|(_, p)| Shape::new(p, touch)).collect();
         let farthest = all[0].abs().max(all[1].abs()).max_element();
-        let widened: Vec<[Vec3; 2]> = bounds.iter().map(|b| accel::widened(*b, farthest, touch)).collect();
+        let widened: Vec<[Vec3; 2]> = bounds.into_iter().map(|b| accel::widened(b, farthest, touch)).collect();
         let textures = Textures::new(description, prims);
         let faces = Faces::new(description, prims, |i| textures.as_ref().and_then(|t| t.brightest(i)));
         let any_delta = faces.iter().any(|face| face.bsdf.has_delta());
@@ -146,12 +146,17 @@ impl Scene {
             _ => None,
         });
         let reach = outside.map(|p| (p - center).length()).fold(radius, f64::max);
+        let lights = Lights::new(description, prims, radius);
+        let area = prims.iter().map(|(_, p)| p.area()).collect();
+        let conflicts = surfaces.conflicts(description);
+        // building the tree needs most of the memory
+        drop(surfaces);
         Self {
             table: packets::suit(&shapes).then(|| Box::new(Table::new(&shapes))),
             waves: true,
             camera: Camera::new(&description.camera, center, radius),
-            lights: Lights::new(description, prims, radius),
-            accel: Accel::new(shapes, &widened),
+            lights,
+            accel: Accel::new(shapes, widened),
             any_delta,
             lit: description.lit().as_vec3(),
             last_resort: None,
@@ -160,9 +165,9 @@ impl Scene {
             beyond: (4.0 * reach) as f32,
             faces,
             textures,
-            area: prims.iter().map(|(_, p)| p.area()).collect(),
+            area,
             origin,
-            conflicts: surfaces.conflicts(description),
+            conflicts,
         }
     }
 

@@ -74,10 +74,23 @@ impl Primitive {
 impl Geometry {
     /// The primitives of the shape in a fixed order: mesh faces in file order, box faces −x, +x, −y, +y, −z, +z.
     pub fn primitives(&self) -> Vec<Primitive> {
+        self.each().collect()
+    }
+
+    /// The same, one after the other: those of a mesh are not kept.
+    pub(crate) fn each(&self) -> impl Iterator<Item = Primitive> + '_ {
+        let (vertices, faces): (&[DVec3], &[[u32; 3]]) = match self {
+            Self::Mesh { vertices, faces, .. } => (vertices, faces),
+            _ => Default::default(),
+        };
+        let triangles = faces.iter().map(move |f| Primitive::Triangle(f.map(|i| vertices[i as usize])));
+        triangles.chain(self.few())
+    }
+
+    /// The primitives of a shape that is no mesh.
+    fn few(&self) -> Vec<Primitive> {
         match self {
-            Self::Mesh { vertices, faces, .. } => {
-                faces.iter().map(|f| Primitive::Triangle(f.map(|i| vertices[i as usize]))).collect()
-            }
+            Self::Mesh { .. } => vec![],
             &Self::Quad { origin, edge_u, edge_v } => vec![Primitive::Parallelogram { origin, edge_u, edge_v }],
             &Self::Box { min, max, rotate_y, inward } => box_faces(min, max, rotate_y, inward),
             &Self::Sphere { center, radius, z, inward } => vec![Primitive::Sphere { center, radius, z, inward }],
@@ -116,9 +129,10 @@ impl Description {
     /// Every primitive with the index of its shape. The position in this list is the number of the primitive in the whole
     /// program.
     pub fn primitives(&self) -> Vec<(usize, Primitive)> {
-        let one =
-            |(i, s): (usize, &super::description::Shape)| s.geometry.primitives().into_iter().map(move |p| (i, p));
-        self.shapes.iter().enumerate().flat_map(one).collect()
+        let shapes = || self.shapes.iter().enumerate();
+        let mut all = Vec::with_capacity(shapes().map(|(_, s)| s.geometry.each().count()).sum());
+        all.extend(shapes().flat_map(|(i, s)| s.geometry.each().map(move |p| (i, p))));
+        all
     }
 }
 

@@ -20,11 +20,15 @@ pub(crate) struct Textures {
 impl Textures {
     /// Collects the images of a scene; `None` if no material has a texture.
     pub(crate) fn new(description: &Description, prims: &[(usize, Primitive)]) -> Option<Self> {
+        let image = |shape: &super::description::Shape| description.materials[shape.material].bsdf.colour();
+        if !description.shapes.iter().any(|s| image(s).is_some_and(Colour::is_texture)) {
+            return None;
+        }
         let mut all = Self { images: vec![], of_prim: vec![None; prims.len()] };
         let mut first = 0;
         for (number, shape) in description.shapes.iter().enumerate() {
             let count = prims[first..].iter().take_while(|(s, _)| *s == number).count();
-            if let Some(Colour::Texture(image)) = description.materials[shape.material].bsdf.colour() {
+            if let Some(Colour::Texture(image)) = image(shape) {
                 let known = all.images.iter().position(|i| Arc::ptr_eq(i, image));
                 let image = known.unwrap_or_else(|| {
                     all.images.push(image.clone());

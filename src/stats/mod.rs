@@ -16,6 +16,7 @@
 //! | | comparison of two results batch by batch, in every quantity | [`detector`] |
 //! | p | order of convergence under refinement | [`order`] |
 //! | b | slope of the variance against samples | [`slope`] |
+//! | b | exponent of a cost against the size of the work | [`power_law`] |
 //! | D | distance of the distribution of p-values from the uniform one | [`uniformity()`] |
 //! | Q_v, A_v, c_v | noise and cost of a roulette schedule, predicted without rendering | [`schedule`] |
 //! | Q* | the most efficient schedule | [`optimal`] |
@@ -34,6 +35,7 @@ pub mod moments;
 pub mod optimal;
 pub mod order;
 pub mod power;
+pub mod power_law;
 mod quantity;
 pub mod schedule;
 pub mod sequential;

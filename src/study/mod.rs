@@ -16,6 +16,7 @@
 //! | refinement | how fast does the matrix approach the truth on finer meshes? | [`refinement::refine`] |
 //! | equilibrium | are the two sides of L = E + T L equal? | [`equilibrium`] |
 //! | stages | how does one image look after more and more paths? | [`stages::render_stages`] |
+//! | growth | how do time and memory grow with the size of the work? | [`growth::measure()`] |
 //! | walk | do the estimators reproduce the powers of a matrix? | [`walk::walk`] |
 //! | zero variance | how much variance does a guide remove? | [`zero_variance::study`] |
 
@@ -23,6 +24,7 @@ pub mod bounces;
 pub mod convergence;
 pub mod enumeration;
 pub mod equilibrium;
+pub mod growth;
 pub mod homework;
 pub mod lit;
 pub mod refinement;

@@ -79,6 +79,8 @@ pub const ENTRIES: &[Entry] = &[
     entry("the_planned_power_is_reached", 2),
     entry("rates_have_the_error_they_claim", 4),
     entry("variance_slopes_have_the_error_they_claim", 2),
+    // tests/growth.rs
+    entry("exponents_have_the_error_they_claim", 12),
     // tests/evidence.rs
     entry("few_samples_never_tell_equal_estimators_apart", 1),
     entry("intervals_cover_where_they_are_shown", 1),

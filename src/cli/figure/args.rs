@@ -13,8 +13,8 @@ pub const HELP: &str = "Examples:
   fredholm figure cs184-part4 -o homework
 
 `lecture` makes one figure for every topic of the lecture, and index.html with all of them. Each figure is a folder with pictures, \
-the numbers as CSV, and summary.json. Every figure carries the command that makes it. Figures at equal time measure how fast this \
-machine is, so that their numbers of samples differ from run to run; all others give the same bits for the same seed.";
+the numbers as CSV, and summary.json. Every figure carries the command that makes it. Figures at equal time and \
+`growth` measure how fast this machine is, so that their numbers differ from run to run; all others give the same bits for the same seed.";
 
 /// Arguments of `figure`.
 #[derive(Clone, Debug, Args)]
@@ -39,6 +39,9 @@ pub struct Figure {
     /// Seed: the same seed gives the same bits
     #[arg(long, value_name = "N", default_value_t = 0, help_heading = WHAT)]
     pub seed: u64,
+    /// Measure one point of `growth` in this process, and print it as JSON
+    #[arg(long, hide = true, value_name = "SUBJECT:SIZE:MESH")]
+    pub measure: Option<String>,
     /// Output folder [default: fredholm-out/NAME]
     ///
     /// With `lecture` and --all, the folder for all figures.

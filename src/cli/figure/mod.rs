@@ -2,6 +2,7 @@
 //! it; `lecture` and `--all` make many.
 
 mod args;
+mod growth;
 mod homework;
 mod named;
 mod set;
@@ -29,6 +30,9 @@ pub fn run(args: &Figure) -> Result<Ending, Failure> {
     if args.list {
         return list(&figures).map(|()| Ending::Ok);
     }
+    if let Some(point) = &args.measure {
+        return growth::measured(args, point);
+    }
     let session = || Session::new(manner(args), args.seed);
     let id = match (args.all, args.id.as_deref()) {
         (true, _) => return set::run(args, "All figures", &figures, session()?, "figures"),
@@ -47,6 +51,7 @@ pub fn run(args: &Figure) -> Result<Ending, Failure> {
         Kind::Slide(slide) => slides::run(args, slide, session()?),
         Kind::Stages(recipe) => stages::run(args, recipe, session()?),
         Kind::Homework => homework::run(args, id, session()?),
+        Kind::Growth => growth::run(args, id, session()?),
         Kind::Command(words, quick) => command(args, id, words, quick),
     }
 }

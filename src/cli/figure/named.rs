@@ -27,6 +27,8 @@ pub enum Kind {
     Command(&'static [&'static str], &'static [&'static str]),
     /// The pictures of a homework.
     Homework,
+    /// Time and memory against the size of the work.
+    Growth,
 }
 
 /// A figure that another command makes.
@@ -167,6 +169,9 @@ const COMMANDS: &[OfCommand] = &[
 /// The homework.
 pub const HOMEWORK: &str = "cs184-part4";
 
+/// The figure of times and memory.
+pub const GROWTH: &str = "growth";
+
 /// The figures of the lecture, in its order.
 pub const LECTURE: &[&str] = &[
     "reflection-equation",
@@ -236,7 +241,15 @@ pub fn all() -> Vec<Named> {
         picture: "bounces-one-exposure.png".into(),
         kind: Kind::Homework,
     };
-    let mut all: Vec<Named> = slides.chain(stages).chain(commands).chain([homework]).collect();
+    let growth = Named {
+        id: GROWTH,
+        topic: "How cost grows: samples, pixels, K, triangles, lights, patches, threads",
+        caption: "CPU time against the size of the work, both on logarithmic axes. The slope is the exponent: 1 means that twice the \
+                  work takes twice the time, 0 that it costs nothing more. Dashed is what the algorithm promises.",
+        picture: "growth.png".into(),
+        kind: Kind::Growth,
+    };
+    let mut all: Vec<Named> = slides.chain(stages).chain(commands).chain([homework, growth]).collect();
     all.sort_by_key(|f| LECTURE.iter().position(|id| *id == f.id).unwrap_or(LECTURE.len()));
     all
 }

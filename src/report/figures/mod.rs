@@ -8,6 +8,7 @@ pub mod equilibrium;
 #[cfg(test)]
 mod example;
 pub mod extrapolation;
+pub mod growth;
 pub mod homework;
 pub mod lit;
 pub mod modes;

@@ -44,16 +44,7 @@ enum Sheet {
 /// All pairs of primitives that coincide, in ascending order.
 pub(super) fn overlaps(list: &[(usize, Primitive)], scale: &Scale) -> Vec<Overlap> {
     let sheets: Vec<Sheet> = list.iter().map(|(_, p)| Sheet::new(p)).collect();
-    let margin = DVec3::splat(2.0 * scale.largest_gap());
-    let boxes: Vec<Aabb> = list
-        .iter()
-        .map(|(_, p)| {
-            let [lo, hi] = p.bounds();
-            Aabb::new((lo - margin).as_vec3().into(), (hi + margin).as_vec3().into())
-        })
-        .collect();
-    let params = BvhBuildParams::fast_build();
-    let tree = obvhs::bvh2::builder::build_bvh2(&boxes, params, &mut std::time::Duration::default());
+    let (tree, boxes) = boxes(list, scale);
     let of = |i: usize| {
         let mut found = vec![];
         near(&tree, boxes[i], |j| {
@@ -63,6 +54,19 @@ pub(super) fn overlaps(list: &[(usize, Primitive)], scale: &Scale) -> Vec<Overla
         found
     };
     (0..list.len()).into_par_iter().with_min_len(256).flat_map_iter(of).collect()
+}
+
+/// The boxes of the primitives, enlarged by the largest tolerance, and a tree of them.
+fn boxes(list: &[(usize, Primitive)], scale: &Scale) -> (Bvh2, Vec<Aabb>) {
+    let margin = DVec3::splat(2.0 * scale.largest_gap());
+    let one = |(_, p): &(usize, Primitive)| {
+        let [lo, hi] = p.bounds();
+        Aabb::new((lo - margin).as_vec3().into(), (hi + margin).as_vec3().into())
+    };
+    let boxes: Vec<Aabb> = list.iter().map(one).collect();
+    let params = BvhBuildParams::fast_build();
+    let tree = obvhs::bvh2::builder::build_bvh2(&boxes, params, &mut std::time::Duration::default());
+    (tree, boxes)
 }
 
 /// Calls `see` with every primitive whose box intersects the box `own`.
@@ -213,5 +217,38 @@ pub(super) fn outline(p: &Primitive) -> Option<(Vec<DVec3>, DVec3)> {
         }
         (_, Sheet::Polygon { n, corners, count }) => Some((corners[..count].to_vec(), n)),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The grid of 2 m² triangles of a wavy sheet.
+    fn sheet(m: u32) -> Vec<(usize, Primitive)> {
+        let at = |i: u32, j: u32| {
+            let [x, z] = [i, j].map(|i| f64::from(i) / f64::from(m));
+            DVec3::new(x, 0.1 * (7.0 * x).sin() * (5.0 * z).cos(), z)
+        };
+        let cells = (0..m * m).map(|c| (c / m, c % m));
+        let two = |(i, j)| {
+            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+            [Primitive::Triangle([a, b, c]), Primitive::Triangle([a, c, d])]
+        };
+        cells.flat_map(two).map(|p| (0, p)).collect()
+    }
+
+    /// The search looks at the neighbours of a triangle, however many triangles there are.
+    #[test]
+    fn pairs_per_triangle_do_not_grow() {
+        let pairs = |m: u32| {
+            let list = sheet(m);
+            let (tree, boxes) = boxes(&list, &Scale::new(&list));
+            let mut seen = 0u32;
+            boxes.iter().for_each(|own| near(&tree, *own, |_| seen += 1));
+            f64::from(seen) / list.len() as f64
+        };
+        let (few, many) = (pairs(20), pairs(160));
+        assert!(few > 5.0 && many < 1.2 * few, "{few} and {many} pairs per triangle");
     }
 }

@@ -126,7 +126,9 @@ impl Lights {
             if shape.emission.max_element() <= 0.0 {
                 continue;
             }
-            let mine: Vec<u32> = (0..prims.len()).filter(|&i| prims[i].0 == s).map(|i| i as u32).collect();
+            // primitives are listed shape by shape
+            let [from, to] = [s, s + 1].map(|s| prims.partition_point(|p| p.0 < s));
+            let mine: Vec<u32> = (from as u32..to as u32).collect();
             mine.iter().for_each(|&i| all.of_prim[i as usize] = all.lights.len() as u32);
             let area: f64 = mine.iter().map(|&i| prims[i as usize].1.area()).sum();
             let mut up_to = 0.0;

@@ -192,9 +192,12 @@ fn read_lossy(path: &Path) -> Result<String, SceneError> {
     let text = match bytes.get(..2) {
         Some([0xff, 0xfe]) => wide(u16::from_le_bytes),
         Some([0xfe, 0xff]) => wide(u16::from_be_bytes),
-        _ => String::from_utf8_lossy(&bytes).trim_start_matches('\u{feff}').to_owned(),
+        // the usual file is not copied
+        _ => String::from_utf8(bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned()),
     };
-    Ok(text.replace("\r\n", "\n").replace('\r', "\n"))
+    let mark = text.len() - text.trim_start_matches('\u{feff}').len();
+    let text = if mark > 0 { text[mark..].to_owned() } else { text };
+    Ok(if text.contains('\r') { text.replace("\r\n", "\n").replace('\r', "\n") } else { text })
 }
 
 fn bytes(path: &Path) -> Result<Vec<u8>, SceneError> {

@@ -6,19 +6,38 @@
 use super::names;
 use crate::scene::SceneError;
 use glam::DVec3;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-/// One statement of an OBJ or MTL file.
-pub(super) struct Statement {
+/// One statement of an OBJ or MTL file. Its text is that of the file, so that a file of a million lines is not copied line by line.
+pub(super) struct Statement<'a> {
     /// 1-based line on which it starts.
     pub(super) line: usize,
     /// The first word.
-    pub(super) key: String,
+    pub(super) key: Cow<'a, str>,
     /// The rest of the line, trimmed.
-    pub(super) rest: String,
+    pub(super) rest: Cow<'a, str>,
 }
 
-impl Statement {
+impl<'a> Statement<'a> {
+    /// The statement of a line; none if the line is empty or a comment.
+    fn of(line: usize, text: &'a str) -> Option<Self> {
+        let text = text.trim();
+        let (key, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+        if key.is_empty() || key.starts_with('#') {
+            return None;
+        }
+        let rest = rest.trim();
+        let rest = if rest.contains('\t') { rest.replace('\t', " ").into() } else { rest.into() };
+        Some(Self { line, key: key.into(), rest })
+    }
+
+    /// The same with a text of its own.
+    fn owned<'b>(self) -> Statement<'b> {
+        let own = |text: Cow<'_, str>| Cow::Owned(text.into_owned());
+        Statement { line: self.line, key: own(self.key), rest: own(self.rest) }
+    }
+
     /// The words before a comment.
     pub(super) fn words(&self) -> impl Iterator<Item = &str> {
         self.rest.split('#').next().unwrap_or("").split_whitespace()
@@ -26,32 +45,23 @@ impl Statement {
 }
 
 /// The statements of a file. A backslash at the end of a line continues the statement on the next line.
-pub(super) fn statements(text: &str) -> Vec<Statement> {
+pub(super) fn statements(text: &str) -> Vec<Statement<'_>> {
     let mut out = Vec::new();
     let mut pending: Option<(usize, String)> = None;
     for (i, line) in text.lines().enumerate() {
-        let (start, mut joined) = pending.take().unwrap_or((i + 1, String::new()));
-        if let Some(head) = line.trim_end().strip_suffix('\\') {
-            joined.push_str(head);
-            joined.push(' ');
-            pending = Some((start, joined));
-            continue;
+        match (line.trim_end().strip_suffix('\\'), pending.take()) {
+            (Some(head), before) => {
+                let (start, joined) = before.unwrap_or((i + 1, String::new()));
+                pending = Some((start, joined + head + " "));
+            }
+            (None, Some((start, joined))) => out.extend(Statement::of(start, &(joined + line)).map(Statement::owned)),
+            (None, None) => out.extend(Statement::of(i + 1, line)),
         }
-        joined.push_str(line);
-        push(&mut out, start, &joined);
     }
     if let Some((start, joined)) = pending {
-        push(&mut out, start, &joined);
+        out.extend(Statement::of(start, &joined).map(Statement::owned));
     }
     out
-}
-
-fn push(out: &mut Vec<Statement>, line: usize, text: &str) {
-    let text = text.trim();
-    let (key, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
-    if !key.is_empty() && !key.starts_with('#') {
-        out.push(Statement { line, key: key.to_owned(), rest: rest.trim().replace('\t', " ") });
-    }
 }
 
 /// The statements of an MTL file about one material.
@@ -110,13 +120,13 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<Vec<Entry>, SceneError> {
                 return Err(at(SceneError::new("newmtl needs a name").help("write newmtl NAME")));
             }
             names::check(&s.rest, "material").map_err(|f| at(SceneError::new(f.what).help(f.help)))?;
-            entries.push(Entry { name: s.rest.clone(), ..Entry::default() });
+            entries.push(Entry { name: s.rest.to_string(), ..Entry::default() });
             continue;
         }
-        if HARMLESS.contains(&s.key.as_str()) {
+        if HARMLESS.contains(&&*s.key) {
             continue;
         }
-        if entries.is_empty() && !READ.contains(&s.key.as_str()) {
+        if entries.is_empty() && !READ.contains(&&*s.key) {
             continue;
         }
         let Some(m) = entries.last_mut() else {
@@ -134,7 +144,7 @@ pub(super) fn parse(text: &str, file: &Path) -> Result<Vec<Entry>, SceneError> {
 
 /// Reads one statement about the material `m`.
 fn state(m: &mut Entry, s: &Statement, file: &Path) -> Result<(), SceneError> {
-    match s.key.as_str() {
+    match &*s.key {
         "Kd" => {
             m.diffuse =
                 Some(rgb(s, "reflectance", 1.0, "a surface cannot reflect more light than it receives: lower Kd")?)

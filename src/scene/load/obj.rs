@@ -52,16 +52,21 @@ pub(super) struct Model {
 
 /// Reads an OBJ file, and its MTL files if `with_mtl` is true.
 pub(super) fn read(path: &Path, with_mtl: bool) -> Result<Model, SceneError> {
-    let list = statements(&read_lossy(path)?);
+    let file = read_lossy(path)?;
+    let list = statements(&file);
     check(&list, path)?;
     let mut warnings = dropped(&list, path);
     let library = if with_mtl { Some(library(&list, path, &mut warnings)?) } else { None };
 
     let (text, names, first_use) = geometry(&list);
+    // a large file is not kept while its geometry is built
+    drop(list);
+    drop(file);
     let map = || names.iter().enumerate().map(|(i, n)| (n.clone(), i)).collect();
     let (models, _) =
         tobj::load_obj_buf(&mut text.as_bytes(), &tobj::LoadOptions::default(), |_| Ok((Vec::new(), map())))
             .map_err(|e| SceneError::new(format!("not a valid OBJ: {e}")).file(path).help("export it again"))?;
+    drop(text);
 
     let mut model = Model { pieces: Vec::new(), materials: Vec::new(), warnings, hints: Vec::new() };
     // a material with an image counts as another material on polygons without texture coordinates
@@ -131,7 +136,7 @@ const HARMLESS: [&str; 22] = [
 /// A warning for each kind of statement that is dropped, with its first line: free-form surfaces, `fo`, and what is not OBJ.
 fn dropped(list: &[Statement], path: &Path) -> Vec<String> {
     let mut kinds: Vec<(&str, usize, usize)> = vec![];
-    for s in list.iter().filter(|s| !HARMLESS.contains(&s.key.as_str())) {
+    for s in list.iter().filter(|s| !HARMLESS.contains(&&*s.key)) {
         match kinds.iter_mut().find(|k| k.0 == s.key) {
             Some(kind) => kind.2 += 1,
             None => kinds.push((&s.key, s.line, 1)),
@@ -155,7 +160,7 @@ fn library(list: &[Statement], path: &Path, warnings: &mut Vec<String>) -> Resul
     for s in list.iter().filter(|s| s.key == "mtllib") {
         let folder = path.parent().unwrap_or(Path::new(""));
         // either one name with spaces, or several names in which a backslash marks a space that belongs to a name
-        let whole = folder.join(&s.rest);
+        let whole = folder.join(&*s.rest);
         let files: Vec<PathBuf> = if whole.is_file() {
             vec![whole]
         } else {
@@ -191,7 +196,7 @@ fn split_names(rest: &str) -> Vec<String> {
 }
 
 /// The geometry statements for `tobj`, the names of the materials in order of first use, and the line of each first use.
-fn geometry(list: &[Statement]) -> (String, Vec<String>, HashMap<String, usize>) {
+fn geometry(list: &[Statement<'_>]) -> (String, Vec<String>, HashMap<String, usize>) {
     let mut names: Vec<String> = Vec::new();
     let mut first_use: HashMap<String, usize> = HashMap::new();
     let mut text = String::from("mtllib names\nvt nan nan\n");
@@ -200,35 +205,38 @@ fn geometry(list: &[Statement]) -> (String, Vec<String>, HashMap<String, usize>)
         text.push_str(&format!("vt {} {}\n", numbers.next().unwrap_or("0"), numbers.next().unwrap_or("0")));
     }
     let mut seen = 0;
-    for s in list.iter().filter(|s| ["v", "vt", "f", "g", "o", "usemtl"].contains(&s.key.as_str())) {
-        let rest = match s.key.as_str() {
+    for s in list {
+        match &*s.key {
             "vt" => {
                 seen += 1;
                 continue;
             }
-            "v" => s.words().take(3).collect::<Vec<_>>().join(" "),
-            "f" => s.words().map(|w| corner(w, seen)).collect::<Vec<_>>().join(" "),
-            _ => s.rest.clone(),
-        };
-        text.push_str(&format!("{} {rest}\n", s.key));
-        if s.key == "usemtl" && !first_use.contains_key(&s.rest) {
-            first_use.insert(s.rest.clone(), s.line);
-            names.push(s.rest.clone());
+            "v" => text.extend(["v"].into_iter().chain(s.words().take(3).flat_map(|w| [" ", w]))),
+            "f" => {
+                text.push('f');
+                s.words().for_each(|w| corner(w, seen, &mut text));
+            }
+            "g" | "o" | "usemtl" => text.extend([&*s.key, " ", &*s.rest]),
+            _ => continue,
+        }
+        text.push('\n');
+        if s.key == "usemtl" && !first_use.contains_key(&*s.rest) {
+            first_use.insert(s.rest.to_string(), s.line);
+            names.push(s.rest.to_string());
         }
     }
     (text, names, first_use)
 }
 
-/// Rewrites `v`, `v/vt/vn`, … as `v/vt` with a positive vt. A missing vt becomes number 1, whose coordinates are NaN.
-fn corner(word: &str, seen: i64) -> String {
+/// Writes `v`, `v/vt/vn`, … as ` v/vt` with a positive vt. A missing vt becomes number 1, whose coordinates are NaN.
+fn corner(word: &str, seen: i64, text: &mut String) {
     let mut parts = word.split('/');
     let v = parts.next().unwrap_or("");
-    let vt = match parts.next().and_then(number_of) {
-        None => 1,
-        Some(i) if i > 0 => i + 1,
-        Some(i) => seen + i + 2,
-    };
-    format!("{v}/{vt}")
+    text.extend([" ", v, "/"]);
+    match parts.next().and_then(number_of) {
+        None => text.push('1'),
+        Some(i) => text.push_str(&(if i > 0 { i + 1 } else { seen + i + 2 }).to_string()),
+    }
 }
 
 /// The surface of a material name. If the MTL files define the name several times, the last definition is used.
@@ -293,27 +301,37 @@ fn triangles(mesh: &tobj::Mesh, vertices: &[DVec3], flaws: &mut Flaws) -> (Vec<[
     let mut rest = mesh.indices.as_slice();
     let mut places = mesh.texcoord_indices.as_slice();
     let uv = |i: u32| DVec2::new(mesh.texcoords[2 * i as usize], mesh.texcoords[2 * i as usize + 1]);
+    // one corner without coordinates, and the mesh has none
+    let mut placed = true;
     // if there are no arities at all, every face is a triangle
     let mut arities = mesh.face_arities.iter().map(|&n| n as usize);
+    let mut corners: Vec<DVec3> = vec![];
     while !rest.is_empty() {
         let (polygon, tail) = rest.split_at(arities.next().unwrap_or(3).min(rest.len()));
         rest = tail;
         let (place, tail) = places.split_at(polygon.len());
         places = tail;
-        let corners: Vec<DVec3> = polygon.iter().map(|&i| vertices[i as usize]).collect();
-        let cut = polygon::cut(&corners);
-        flaws.crossed += usize::from(cut.crossed);
-        for t in cut.triangles {
+        corners.clear();
+        corners.extend(polygon.iter().map(|&i| vertices[i as usize]));
+        let mut add = |t: [usize; 3]| {
             if flat(t.map(|i| corners[i])) {
                 flaws.flat += 1;
-                continue;
+                return;
             }
             out.push(t.map(|i| polygon[i]));
-            uvs.push(t.map(|i| uv(place[i])));
+            if placed {
+                let new = t.map(|i| uv(place[i]));
+                placed = !new.iter().any(|uv| uv.is_nan());
+                uvs.push(new);
+            }
+        };
+        if polygon.len() == 3 {
+            add([0, 1, 2]);
+            continue;
         }
+        let cut = polygon::cut(&corners);
+        cut.triangles.into_iter().for_each(add);
+        flaws.crossed += usize::from(cut.crossed);
     }
-    if uvs.iter().flatten().any(|uv| uv.is_nan()) {
-        uvs.clear();
-    }
-    (out, uvs)
+    (out, if placed { uvs } else { Vec::new() })
 }

@@ -25,11 +25,13 @@ pub(super) fn check(list: &[Statement], path: &Path) -> Result<(), SceneError> {
             names::check(&s.rest, kind.1).map_err(unfit)?;
         }
         let fail = |what: String, help: &str| Err(SceneError::new(what).at(path, s.line).key(s.key.clone()).help(help));
-        match s.key.as_str() {
+        match &*s.key {
             "v" => {
                 seen += 1;
-                let numbers = s.words().take(3).map(str::parse).collect::<Result<Vec<f64>, _>>().unwrap_or_default();
-                if numbers.len() != 3 {
+                let mut numbers = [0.0; 3];
+                let mut words = s.words();
+                if !numbers.iter_mut().all(|x| words.next().and_then(|w| w.parse().ok()).map(|y: f64| *x = y).is_some())
+                {
                     return fail(format!("`{}` is not a position", s.rest), "a vertex is three numbers");
                 }
                 if numbers.iter().any(|x| x.is_nan() || x.abs() > LARGEST_LENGTH) {
@@ -55,17 +57,18 @@ pub(super) fn check(list: &[Statement], path: &Path) -> Result<(), SceneError> {
                     );
                 }
                 for word in s.words() {
-                    let parts: Vec<&str> = word.split('/').collect();
-                    let rest_valid =
-                        parts.len() <= 3 && parts[1..].iter().all(|p| p.is_empty() || number_of(p).is_some());
-                    let Some(i) = number_of(parts[0]).filter(|_| rest_valid) else {
+                    let mut parts = word.split('/');
+                    let first = parts.next().unwrap_or("");
+                    let rest = || parts.clone();
+                    let rest_valid = rest().count() <= 2 && rest().all(|p| p.is_empty() || number_of(p).is_some());
+                    let Some(i) = number_of(first).filter(|_| rest_valid) else {
                         return fail(format!("`{word}` is not a corner"), "write v, v/vt, v//vn or v/vt/vn");
                     };
                     if i == 0 || i > total || (i < 0 && seen < i.saturating_neg()) {
                         let what = format!("vertex index {i} is out of range, the file has {total} vertices");
                         return fail(what, "indices start at 1; negative ones count back from the last vertex");
                     }
-                    let vt = parts.get(1).and_then(|p| number_of(p));
+                    let vt = rest().next().and_then(number_of);
                     if let Some(i) = vt.filter(|&i| i == 0 || i > total_vt || (i < 0 && seen_vt < i.saturating_neg())) {
                         let what = format!("vt index {i} is out of range, the file has {total_vt}");
                         return fail(

@@ -22,6 +22,7 @@ use crate::scene::{
 };
 use glam::DVec3;
 use std::f64::consts::PI;
+use std::mem::take;
 
 /// The kinds of shape, each with the keys of its geometry.
 pub(super) const KINDS: [(&str, &[&str]); 6] = [
@@ -109,7 +110,7 @@ fn placed(at: &Cursor, material: &Material, geometry: &Geometry, kind: &str) -> 
 
 /// Area of the front of a shape, m².
 fn area(geometry: &Geometry) -> f64 {
-    geometry.primitives().iter().map(|p| p.area()).sum()
+    geometry.each().map(|p| p.area()).sum()
 }
 
 /// The radiance L: from `emission`, or Φ/(π A) from `power`; `None` if neither is given.
@@ -229,27 +230,29 @@ fn append_obj(c: &Cursor, material: Option<usize>, out: &mut Read) -> Result<(),
     if let Some(t) = transform(c)? {
         model.pieces.iter_mut().try_for_each(|p| t.apply(&mut p.vertices, &mut p.faces, &mut p.uvs))?;
     }
-    let mesh = |p: &obj::Piece| {
-        let (vertices, faces, uvs) = (p.vertices.clone(), p.faces.clone(), p.uvs.clone());
-        Geometry::Mesh { vertices, faces, uvs }
+    let mesh = |p: &mut obj::Piece| Geometry::Mesh {
+        vertices: take(&mut p.vertices),
+        faces: take(&mut p.faces),
+        uvs: take(&mut p.uvs),
     };
-    let total = model.pieces.iter().map(|p| area(&mesh(p))).sum();
+    let meshes: Vec<Geometry> = model.pieces.iter_mut().map(mesh).collect();
+    let total = meshes.iter().map(area).sum();
     let given = emission(c, total)?;
     if let (Some(_), None) = (given, material) {
         let at = c.get("emission").or(c.get("power")).unwrap_or(c.clone());
         let help = "add a material for the whole file, write Ke in its MTL, or pass --emit MATERIAL=r,g,b";
         return Err(at.error("an OBJ without `material` takes its emission from its MTL").help(help));
     }
-    for p in &model.pieces {
+    for (p, geometry) in model.pieces.iter().zip(meshes) {
         let (material, emission) = match material {
             Some(m) => {
                 let at = c.get("material").unwrap_or(c.clone());
-                placed(&at, &out.materials[m], &mesh(p), "obj")?;
+                placed(&at, &out.materials[m], &geometry, "obj")?;
                 (m, given.unwrap_or(DVec3::ZERO))
             }
             None => (intern(&model.materials[p.material], &mut out.materials), model.materials[p.material].emission),
         };
-        out.shapes.push(Shape { name: p.name.clone(), geometry: mesh(p), material, emission });
+        out.shapes.push(Shape { name: p.name.clone(), geometry, material, emission });
     }
     out.warnings.append(&mut model.warnings);
     out.hints.append(&mut model.hints);

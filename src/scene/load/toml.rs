@@ -115,7 +115,7 @@ fn expect(c: &Cursor) -> Result<Expect, SceneError> {
 }
 
 fn bounds(shapes: &[crate::scene::description::Shape]) -> [DVec3; 2] {
-    let all = shapes.iter().flat_map(|s| s.geometry.primitives()).map(|p| p.bounds());
+    let all = shapes.iter().flat_map(|s| s.geometry.each()).map(|p| p.bounds());
     all.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)])
 }
 

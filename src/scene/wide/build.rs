@@ -42,11 +42,11 @@ struct Collapse<'a> {
 
 impl Wide {
     /// Builds the tree; `bounds` are boxes about the shapes, with margins.
-    pub(crate) fn new(shapes: &[Shape], bounds: &[[Vec3; 2]]) -> Self {
+    pub(crate) fn new(shapes: &[Shape], bounds: Vec<[Vec3; 2]>) -> Self {
         if shapes.is_empty() {
             return Self { nodes: vec![Node::EMPTY], blocks: vec![], waiting: 0 };
         }
-        let boxes: Vec<Aabb> = bounds.iter().map(|b| Aabb::new(b[0].into(), b[1].into())).collect();
+        let boxes: Vec<Aabb> = bounds.into_iter().map(|b| Aabb::new(b[0].into(), b[1].into())).collect();
         let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
         let bvh = obvhs::bvh2::builder::build_bvh2(&boxes, params, &mut std::time::Duration::default());
         drop(boxes);
@@ -125,7 +125,9 @@ impl Collapse<'_> {
 
     fn collapse(mut self) -> Wide {
         self.costs();
-        let mut wide = Wide { nodes: vec![], blocks: vec![], waiting: 0 };
+        // a block of a mesh holds about five triangles: room for all blocks, so that they are never copied
+        let blocks = Vec::with_capacity(self.parts[0].places as usize / 4);
+        let mut wide = Wide { nodes: vec![], blocks, waiting: 0 };
         // subtrees that become nodes, and their places in their parents
         let (mut todo, mut parts) = (vec![(0, None)], vec![]);
         while let Some((n, place)) = todo.pop() {
