@@ -48,17 +48,18 @@ fn work(subject: Subject, n: u64, seed: u64, mesh: &Path, cpu: &dyn Fn() -> f64)
         ..Settings::default()
     };
     let by_albedo = |k: usize| Roulette::Albedo { from: 2 }.after(k);
-    let cornell = |side: u64, estimator, settings: &Settings| {
-        let scene = Scene::new(&built_in("cornell", side)?.description);
+    let shown = |scene: &str, side: u64, estimator, settings: &Settings| {
+        let scene = Scene::new(&built_in(scene, side)?.description);
         Ok(vec![timed(cpu, || by_rays::terms(&scene, estimator, settings, Progress::NONE)).0])
     };
     let k = n as usize;
     match subject {
-        Subject::Samples => cornell(32, Estimator::Prefix, &settings(n as u32, 8, by_albedo(8))),
-        Subject::Pixels => cornell(n.isqrt(), Estimator::Prefix, &settings(16, 8, by_albedo(8))),
-        Subject::Together => cornell(32, Estimator::Prefix, &settings(256, k, Roulette::Never)),
-        Subject::Separate => cornell(32, Estimator::Single, &settings(256, k, Roulette::Never)),
-        Subject::Roulette => cornell(32, Estimator::Prefix, &settings(256, k, Roulette::Albedo { from: 2 })),
+        Subject::Samples => shown("cornell", 32, Estimator::Prefix, &settings(n as u32, 8, by_albedo(8))),
+        Subject::Pixels => shown("cornell", n.isqrt(), Estimator::Prefix, &settings(16, 8, by_albedo(8))),
+        // closed, so that no path leaves: the length of a path is K, or decided by roulette
+        Subject::Together => shown("furnace", 32, Estimator::Prefix, &settings(256, k, Roulette::Never)),
+        Subject::Separate => shown("furnace", 32, Estimator::Single, &settings(256, k, Roulette::Never)),
+        Subject::Roulette => shown("furnace", 32, Estimator::Prefix, &settings(256, k, Roulette::Albedo { from: 2 })),
         Subject::Triangles => {
             let set = ["origin=[0.9,0.3,0.95]", "target=[0,-0.1,0]", "fov=60", "size=[64,64]"];
             let options = Options { set: set.map(|s| format!("camera.{s}")).into(), ..Options::default() };
