@@ -5,6 +5,7 @@ use super::options::{HOW, Manner, OUTPUT, WHAT, fraction, probability};
 use super::session::Session;
 use super::{notes, verdict, write};
 use clap::Args;
+use fredholm::report::ReportError;
 use fredholm::report::image::exr;
 use fredholm::report::image::typeset::Caption;
 use fredholm::report::image::zmap;
@@ -202,7 +203,16 @@ fn z_map(
 ) -> Result<Option<(f64, f64)>, Failure> {
     let open = |r: &Result2| {
         let file = r.0.join("terms.exr");
-        if file.exists() { exr::read(&file).map(Some) } else { Ok(None) }
+        if !file.exists() {
+            return Ok(None);
+        }
+        let image = exr::read(&file)?;
+        let ([w, h], told) = ([image.width, image.height], [r.1.width, r.1.height]);
+        if [w, h] != told {
+            let what = format!("the picture has {w}×{h} pixels, and summary.json says {}×{}", told[0], told[1]);
+            return Err(ReportError::new(&file, what, "repeat the run: its files do not belong together").into());
+        }
+        Ok::<_, Failure>(Some(image))
     };
     let (Some(image_a), Some(image_b)) = (open(a)?, open(b)?) else { return Ok(None) };
     let whole = |image: &exr::Image, world: World| {
