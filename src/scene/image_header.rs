@@ -23,6 +23,9 @@ use std::io::Cursor;
 /// Pixels of an image at most: 16384 × 4096 as linear floats take 800 MB.
 pub const MOST_PIXELS: u64 = 1 << 26;
 
+/// An EXR file that is smaller is decoded by one thread: the crate starts a pool of threads for each file, which takes longer.
+pub const FEW_BYTES: usize = 1 << 18;
+
 /// The reason why an image is not decoded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unfit {
@@ -35,7 +38,7 @@ pub struct Unfit {
 /// Checks the header of an EXR, PNG, JPEG or HDR file.
 ///
 /// # Errors
-/// If it promises more pixels than [`MOST_PIXELS`], or more than the file can hold. A header that cannot be read is no error here: the reader
+/// If it promises no pixels, more than [`MOST_PIXELS`], or more than the file can hold. A header that cannot be read is no error here: the reader
 /// of the format has the words for it.
 ///
 /// ```
@@ -51,23 +54,21 @@ fn layers(bytes: &[u8]) -> Result<(), Unfit> {
     const DENSEST: u64 = 2048;
     let Ok(meta) = MetaData::read_from_buffered(bytes, false) else { return Ok(()) };
     let size = |header: &Header| [header.layer_size.0 as u64, header.layer_size.1 as u64];
-    if let Some(size) = meta.headers.iter().map(size).find(too_large) {
-        return Err(large(size));
-    }
+    meta.headers.iter().map(size).try_for_each(size_fits)?;
     let samples = |h: &Header| size(h)[0] * size(h)[1] * h.channels.list.len() as u64;
     let all = meta.headers.iter().map(samples).sum();
     if all > DENSEST * bytes.len() as u64 { Err(damaged(all, "samples", bytes)) } else { Ok(()) }
 }
 
 fn plain(bytes: &[u8]) -> Result<(), Unfit> {
-    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().ok();
-    let Some((format, Ok(decoder))) = reader.and_then(|r| Some((r.format()?, r.into_decoder()))) else {
+    let Ok(mut reader) = ImageReader::new(Cursor::new(bytes)).with_guessed_format() else { return Ok(()) };
+    // a size beyond the limits of the decoder is no error of the header
+    reader.no_limits();
+    let Some((format, Ok(decoder))) = reader.format().map(|format| (format, reader.into_decoder())) else {
         return Ok(());
     };
     let size = <[u32; 2]>::from(decoder.dimensions()).map(u64::from);
-    if too_large(&size) {
-        return Err(large(size));
-    }
+    size_fits(size)?;
     let pixels = size[0] * size[1];
     let length = bytes.len() as u64;
     let fits = match format {
@@ -78,13 +79,15 @@ fn plain(bytes: &[u8]) -> Result<(), Unfit> {
     if fits { Ok(()) } else { Err(damaged(pixels, "pixels", bytes)) }
 }
 
-fn too_large([w, h]: &[u64; 2]) -> bool {
-    w.saturating_mul(*h) > MOST_PIXELS
-}
-
-fn large([w, h]: [u64; 2]) -> Unfit {
-    let what = format!("it has {w}×{h} pixels; {} million are possible", MOST_PIXELS >> 20);
-    Unfit { what, help: "reduce the image; 4096 pixels across are more than a picture of a scene shows" }
+fn size_fits([w, h]: [u64; 2]) -> Result<(), Unfit> {
+    match w.saturating_mul(h) {
+        0 => Err(Unfit { what: "it has no pixels".into(), help: "write it again" }),
+        1..=MOST_PIXELS => Ok(()),
+        _ => {
+            let what = format!("it has {w}×{h} pixels; {} million are possible", MOST_PIXELS >> 20);
+            Err(Unfit { what, help: "reduce the image; 4096 pixels across are more than a picture of a scene shows" })
+        }
+    }
 }
 
 fn damaged(count: u64, what: &str, bytes: &[u8]) -> Unfit {

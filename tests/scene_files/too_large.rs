@@ -1,6 +1,10 @@
 //! Images that are too large, or no files: refused in words, never a wait. (Damaged files are in `fuzz.rs`.)
 
 use super::*;
+use exr::prelude::{
+    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes, LineOrder,
+    WritableImage, f16,
+};
 use std::time::{Duration, Instant};
 
 /// The header of a PNG file that claims to be that large.
@@ -35,5 +39,40 @@ fn what_is_too_large_or_no_file_is_refused_at_once() {
         let e = toml(&text, &dir.path().join("rich.toml"), &Options::default()).unwrap_err();
         assert!(e.what.contains(what) && e.help.is_some() && e.line.is_some(), "{e}");
         assert!(begin.elapsed() < Duration::from_secs(5), "{name}");
+    }
+}
+
+/// Black images are the smallest for their size. No writer makes them so small that they look damaged.
+#[test]
+fn what_is_well_compressed_is_read() {
+    use fredholm::scene::image_header::suits;
+    use image::codecs::{jpeg::JpegEncoder, png};
+    let side = 1024;
+    let grey = image::GrayImage::new(side, side);
+    let mut files: Vec<(&str, Vec<u8>)> = vec![];
+    let mut bytes = vec![];
+    let best = png::PngEncoder::new_with_quality(&mut bytes, png::CompressionType::Best, png::FilterType::NoFilter);
+    grey.write_with_encoder(best).unwrap();
+    files.push(("PNG", std::mem::take(&mut bytes)));
+    grey.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, 1)).unwrap();
+    files.push(("JPEG", std::mem::take(&mut bytes)));
+    image::Rgb32FImage::new(side, side)
+        .write_to(&mut std::io::Cursor::new(&mut bytes), image::ImageFormat::Hdr)
+        .unwrap();
+    files.push(("HDR", std::mem::take(&mut bytes)));
+    for compression in [Compression::ZIP16, Compression::ZIP1, Compression::RLE, Compression::PIZ] {
+        let samples = || FlatSamples::F16(vec![f16::ZERO; (side * side) as usize]);
+        let channels = ["B", "G", "R"].map(|c| AnyChannel::new(c, samples())).into_iter().collect();
+        let encoding = Encoding { compression, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+        let size = (side as usize, side as usize);
+        let layer = Layer::new(size, LayerAttributes::named("black"), encoding, AnyChannels::sort(channels));
+        let mut out = std::io::Cursor::new(vec![]);
+        Image::from_layer(layer).write().to_buffered(&mut out).unwrap();
+        files.push(("EXR", out.into_inner()));
+    }
+    for (name, bytes) in files {
+        let pixels = u64::from(side) * u64::from(side);
+        assert!(pixels > 10 * bytes.len() as u64, "{name}: {} bytes are not well compressed", bytes.len());
+        assert_eq!(suits(&bytes), Ok(()), "{name}: {} bytes", bytes.len());
     }
 }

@@ -20,7 +20,7 @@ use exr::prelude::{
 };
 
 use crate::report::{ReportError, files, write_atomically};
-use crate::scene::image_header::suits;
+use crate::scene::image_header::{FEW_BYTES, suits};
 
 /// One image to be written.
 #[derive(Clone, Copy, Debug)]
@@ -118,12 +118,10 @@ pub fn read(path: &Path) -> Result<Image, ReportError> {
 pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<Image, ReportError> {
     let wrong = |cause: String, help: &str| ReportError::new(path, cause, help);
     suits(bytes).map_err(|unfit| wrong(unfit.what, unfit.help))?;
-    let found = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
+    let reader =
+        exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+    let reader = if bytes.len() < FEW_BYTES { reader.non_parallel() } else { reader };
+    let found = reader
         .from_buffered(Cursor::new(bytes))
         .map_err(|e| wrong(format!("not a readable OpenEXR file: {e}"), "give a flat (not deep) OpenEXR image"))?;
 

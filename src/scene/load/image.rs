@@ -17,7 +17,11 @@
 
 use crate::{
     math::Rgb,
-    scene::{SceneError, image_header::suits, raster::Raster},
+    scene::{
+        SceneError,
+        image_header::{FEW_BYTES, suits},
+        raster::Raster,
+    },
 };
 use image::{DynamicImage, ImageReader};
 use std::{io::Cursor, path::Path};
@@ -75,7 +79,7 @@ pub(super) fn largest(raster: &Raster) -> Rgb {
 
 fn exr(bytes: &[u8]) -> exr::error::Result<Raster> {
     use exr::prelude::{ReadChannels, ReadLayers, Vec2, read};
-    let image = read()
+    let reader = read()
         .no_deep_data()
         .largest_resolution_level()
         .rgb_channels(
@@ -85,8 +89,9 @@ fn exr(bytes: &[u8]) -> exr::error::Result<Raster> {
             },
         )
         .first_valid_layer()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))?;
+        .all_attributes();
+    let reader = if bytes.len() < FEW_BYTES { reader.non_parallel() } else { reader };
+    let image = reader.from_buffered(Cursor::new(bytes))?;
     let (size, texels) = image.layer_data.channel_data.pixels;
     Ok(Raster::new([size.x() as u32, size.y() as u32], texels))
 }
@@ -100,9 +105,6 @@ fn other(bytes: &[u8], fail: &dyn Fn(&dyn std::fmt::Display) -> SceneError) -> R
     reader.no_limits();
     let image = reader.decode().map_err(|e| fail(&e))?;
     let size = [image.width(), image.height()];
-    if size.contains(&0) {
-        return Err(fail(&"it has no pixels"));
-    }
     if let DynamicImage::ImageRgb32F(linear) = &image {
         return Ok(Raster::new(size, linear.pixels().map(|p| Rgb::from_array(p.0)).collect()));
     }
