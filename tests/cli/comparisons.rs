@@ -75,7 +75,7 @@ fn sizes_must_match() {
     let said = desk.run("compare a a");
     assert_eq!(said.code, 3);
     insta::assert_snapshot!(said.err, @r"
-    error: the images have 8×9 pixels, and summary.json says 8×8
+    error: the images have 8×9 pixels, and summary.json says 8×8 pixels
       --> a/terms.exr
     help: repeat the run: its files do not belong together
     ");

@@ -41,7 +41,8 @@ const NUMBERS: [u64; 12] = [0, 1, 2, 0x7f, 0x80, 0xff, 0x7fff, 0x8000, 0xffff, 0
 /// A copy of one of the files with one to five changes.
 pub fn mutated(corpus: &[Vec<u8>], words: &[Vec<u8>], r: &mut Random) -> Vec<u8> {
     let mut out = corpus[r.below(corpus.len())].clone();
-    for _ in 0..=r.below(5) {
+    let more = r.below(2) * r.below(5);
+    for _ in 0..=more {
         let at = r.below(out.len() + 1);
         let end = (at + r.below(16)).min(out.len());
         match r.below(9) {
