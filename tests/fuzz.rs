@@ -1,7 +1,7 @@
 //! No reader panics, hangs or asks for much memory, whatever a file holds: all files of the corpus, and mutated copies of them.
 //!
 //! `fuzz/README.md` says how the corpus was found, and how to fuzz longer.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 #[path = "fuzz/mutate.rs"]
 #[allow(unreachable_pub)]
@@ -10,7 +10,7 @@ mod mutate;
 #[allow(unreachable_pub)]
 mod targets;
 
-use mutate::{Random, crc, dictionary, mutated};
+use mutate::{Random, dictionary, mutated};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use targets::{Desk, TARGETS, Target};

@@ -116,7 +116,7 @@ fn repair(bytes: &mut [u8]) {
 }
 
 /// The CRC of a PNG chunk.
-pub fn crc(bytes: &[u8]) -> u32 {
+fn crc(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |c, _| if c & 1 == 1 { (c >> 1) ^ 0xedb8_8320 } else { c >> 1 })
     })
