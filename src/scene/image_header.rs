@@ -69,6 +69,10 @@ fn plain(bytes: &[u8]) -> Result<(), Unfit> {
     };
     let size = <[u32; 2]>::from(decoder.dimensions()).map(u64::from);
     size_fits(size)?;
+    if let Some(n) = palette(bytes).filter(|n| format == ImageFormat::Png && n % 3 != 0) {
+        let what = format!("its palette has {n} bytes, which are not three for each colour");
+        return Err(Unfit { what, help: "the file is damaged: write it again" });
+    }
     let pixels = size[0] * size[1];
     let length = bytes.len() as u64;
     let fits = match format {
@@ -77,6 +81,18 @@ fn plain(bytes: &[u8]) -> Result<(), Unfit> {
         _ => pixels <= 4096 * length,
     };
     if fits { Ok(()) } else { Err(damaged(pixels, "pixels", bytes)) }
+}
+
+/// The bytes of the first palette of a PNG file. Its decoder panics if they are not whole colours (png 0.18.1).
+fn palette(bytes: &[u8]) -> Option<usize> {
+    let mut rest = bytes.get(8..)?;
+    loop {
+        let length = u32::from_be_bytes(*rest.first_chunk()?) as usize;
+        if rest.get(4..8)? == b"PLTE" {
+            return Some(length);
+        }
+        rest = rest.get(length.checked_add(12)?..)?;
+    }
 }
 
 fn size_fits([w, h]: [u64; 2]) -> Result<(), Unfit> {
