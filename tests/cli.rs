@@ -16,13 +16,15 @@ mod process;
 mod program;
 #[path = "cli/results.rs"]
 mod results;
+#[path = "cli/schema.rs"]
+mod schema;
 
 use fredholm::report::image::exr;
 use fredholm::report::image::picture::{auto_gain, develop};
 use fredholm::report::text::summary;
 use fredholm::terms::World;
 use program::{Said, run_tidily};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};

@@ -1,10 +1,6 @@
 //! Scene files: what is wrong is refused at its line and key, what is right is what the file says.
 #![allow(clippy::unwrap_used)]
 
-#[path = "scene_files/garbage.rs"]
-mod garbage;
-#[path = "scene_files/garbage_images.rs"]
-mod garbage_images;
 #[path = "scene_files/materials_and_lights.rs"]
 mod materials_and_lights;
 #[path = "scene_files/meaning.rs"]
@@ -18,6 +14,8 @@ mod overrides;
 
 #[path = "scene_files/refused.rs"]
 mod refused;
+#[path = "scene_files/too_large.rs"]
+mod too_large;
 
 use fredholm::{
     math::Rgb,
@@ -30,12 +28,7 @@ use fredholm::{
     },
 };
 use glam::{DVec2, DVec3};
-use proptest::{
-    prelude::*,
-    test_runner::{Config, RngAlgorithm, TestRng, TestRunner},
-};
 use std::{
-    cell::Cell,
     f64::consts::PI,
     path::{Path, PathBuf},
 };

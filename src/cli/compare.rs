@@ -5,6 +5,7 @@ use super::options::{HOW, Manner, OUTPUT, WHAT, fraction, probability};
 use super::session::Session;
 use super::{notes, verdict, write};
 use clap::Args;
+use fredholm::report::ReportError;
 use fredholm::report::image::exr;
 use fredholm::report::image::typeset::Caption;
 use fredholm::report::image::zmap;
@@ -79,13 +80,14 @@ pub fn run(args: &Compare) -> Result<Ending, Failure> {
     let comparison = compare(&whole, y, &criterion, &allowance((&a.1, &whole), (&b.1, y)));
     let verdicts = summary::verdicts("", &comparison);
 
+    let pictures = (images(&a)?, images(&b)?);
     let manner = Manner { out: args.out.clone(), force: args.force, json: args.json, ..Manner::default() };
     let mut session = Session::new(manner, 0)?;
     session.about(&format!("{} | {}", a.1.scene, b.1.scene), &a.1.scene_hash);
     session.sized([a.1.width, a.1.height].map(|side| side as u32));
     [&args.a, &args.b].into_iter().for_each(|input| session.reads(input));
     session.make_folder("compare")?;
-    let map = z_map((&a, x.world), (&b, y.world), &session)?;
+    let map = z_map(&pictures, (x.world, y.world), (&a.1, &session))?;
     let files = map.iter().map(|_| "z.png".to_string()).chain(["summary.json".to_string()]).collect();
     let record = Summary { verdicts: verdicts.clone(), files, ..session.record() };
     session.sign(&record)?;
@@ -194,17 +196,29 @@ fn coarse(s: &Summary) -> Option<&Series> {
     s.series.iter().filter(|s| s.world == World::Radiosity).nth(1)
 }
 
+/// The images of a run, if it left them.
+fn images((folder, record): &Result2) -> Result<Option<exr::Image>, Failure> {
+    let file = folder.join("terms.exr");
+    if !file.exists() {
+        return Ok(None);
+    }
+    let image = exr::read(&file)?;
+    if (image.width, image.height) == (record.width, record.height) {
+        return Ok(Some(image));
+    }
+    let size = |w: usize, h: usize| format!("{w}×{h} pixels");
+    let (found, told) = (size(image.width, image.height), size(record.width, record.height));
+    let what = format!("the images have {found}, and summary.json says {told}");
+    Err(ReportError::new(&file, what, "repeat the run: its files do not belong together").into())
+}
+
 /// Writes the z map of the whole images, if both runs left `terms.exr`; returns the fractions of pixels beyond 2 and 3.
 fn z_map(
-    (a, x): (&Result2, World),
-    (b, y): (&Result2, World),
-    session: &Session,
+    images: &(Option<exr::Image>, Option<exr::Image>),
+    (x, y): (World, World),
+    (record, session): (&Summary, &Session),
 ) -> Result<Option<(f64, f64)>, Failure> {
-    let open = |r: &Result2| {
-        let file = r.0.join("terms.exr");
-        if file.exists() { exr::read(&file).map(Some) } else { Ok(None) }
-    };
-    let (Some(image_a), Some(image_b)) = (open(a)?, open(b)?) else { return Ok(None) };
+    let (Some(image_a), Some(image_b)) = images else { return Ok(None) };
     let whole = |image: &exr::Image, world: World| {
         let names: &[&str] = match world {
             World::Terms => &["Tall", "Tsum"],
@@ -214,9 +228,9 @@ fn z_map(
         let name = names.iter().find(|name| image.layer(name).is_some())?;
         Some((image.layer(name)?.to_vec(), image.layer(&format!("{name}_se"))?.to_vec()))
     };
-    let (Some((m, s)), Some((n, t))) = (whole(&image_a, x), whole(&image_b, y)) else { return Ok(None) };
+    let (Some((m, s)), Some((n, t))) = (whole(image_a, x), whole(image_b, y)) else { return Ok(None) };
     let z = write::z_values((&m, &s), (&n, &t));
-    let caption = Caption { command: session.command().into(), seed: a.1.seed, scene: a.1.scene.clone() };
+    let caption = Caption { command: session.command().into(), seed: record.seed, scene: record.scene.clone() };
     let map = zmap::draw("z of the whole image: A − B", image_a.width, image_a.height, &z, &caption)?;
     map.picture.write(&session.folder.join("z.png"))?;
     Ok(Some((map.beyond_2, map.beyond_3)))

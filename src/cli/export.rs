@@ -4,6 +4,7 @@ use super::base::{Ending, Failure, note, print};
 use super::open;
 use super::options::{Changes, HOW, OUTPUT, WHAT};
 use clap::{Args, ValueEnum};
+use fredholm::engine::MOST_BOUNCES;
 use fredholm::report::text::prose::wrapped;
 use fredholm::report::write_atomically;
 use fredholm::scene::export::{Renderer, Settings, Unsupported, export};
@@ -46,7 +47,7 @@ pub struct Export {
     /// Largest number of reflections
     ///
     /// [default: all light]
-    #[arg(long, value_name = "K", help_heading = HOW, value_parser = clap::value_parser!(u16).range(0..=1000))]
+    #[arg(long, value_name = "K", help_heading = HOW, value_parser = clap::value_parser!(u16).range(0..=i64::from(MOST_BOUNCES)))]
     pub max_bounces: Option<u16>,
     /// The file
     ///

@@ -3,6 +3,7 @@
 use super::choices::Choices;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
+use fredholm::engine::MOST_BOUNCES;
 use fredholm::scene::load::Options;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -79,7 +80,7 @@ pub struct Frame {
     ///
     /// k is the number of applications of T: 0 is emission seen directly, 1 direct light, 2 one bounce of indirect light.
     /// Everything longer than K is estimated as one sum, the tail.
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=1000))]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(0..=i64::from(MOST_BOUNCES)))]
     pub max_bounces: Option<u16>,
     /// Seed: the same seed gives the same bits
     ///

@@ -7,9 +7,9 @@ use super::options::{HOW, Shared, WHAT, one_of};
 use super::session::Session;
 use super::{preflight, verdict};
 use clap::Args;
-use fredholm::engine::Settings;
 use fredholm::engine::by_matrix::{self, Matrix, MatrixError};
 use fredholm::engine::discretisation::Factors;
+use fredholm::engine::{MOST_BOUNCES, Settings};
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::progress::Progress;
 use fredholm::report::figures::walk as report;
@@ -50,7 +50,7 @@ pub struct Walk {
     #[arg(long, value_name = "N", default_value_t = 4096, help_heading = WHAT, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     pub spp: u32,
     /// K: keep the terms k = 0..=K
-    #[arg(long, value_name = "K", default_value_t = 8, help_heading = WHAT, value_parser = clap::value_parser!(u16).range(0..=1000))]
+    #[arg(long, value_name = "K", default_value_t = 8, help_heading = WHAT, value_parser = clap::value_parser!(u16).range(0..=i64::from(MOST_BOUNCES)))]
     pub max_bounces: u16,
     /// Seed: the same seed gives the same bits
     #[arg(long, value_name = "N", default_value_t = 0, help_heading = WHAT)]

@@ -25,4 +25,4 @@ mod settings;
 pub mod timing;
 mod unlit;
 
-pub use settings::Settings;
+pub use settings::{MOST_BOUNCES, Settings};

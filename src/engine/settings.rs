@@ -8,6 +8,9 @@ use crate::math::{Key, Points};
 use crate::scene::bsdf::Sampling;
 use std::time::Duration;
 
+/// The largest K of a command, and the last term that a file may hold.
+pub const MOST_BOUNCES: u16 = 1000;
+
 /// Settings of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {

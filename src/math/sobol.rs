@@ -81,7 +81,7 @@ impl Deal {
     pub(super) fn at(self, sample: u32) -> (u32, u32) {
         match self {
             Self::Bits(n) => ((sample & ((1 << n) - 1)) + (sample >> n >> LONGEST << n), sample >> n),
-            Self::Any(n) => (sample % n + (sample / n >> LONGEST) * n, sample / n),
+            Self::Any(n) => (sample % n + ((sample / n) >> LONGEST) * n, sample / n),
         }
     }
 }

@@ -28,6 +28,7 @@ pub mod export;
 mod faces;
 mod flat;
 mod groups;
+pub mod image_header;
 mod light_lanes;
 mod lighting;
 pub mod load;

@@ -67,6 +67,18 @@ fn sizes_must_match() {
     error: the images have different sizes, 8×8 and 8×9
     help: render both with the same --size
     ");
+    // pictures of another run beside the summary
+    std::fs::copy(desk.path("b/terms.exr"), desk.path("a/terms.exr")).unwrap();
+    let said = desk.run("compare b a");
+    assert_eq!(said.code, 3);
+    assert!(said.err.contains("sizes, 8×9 and 8×8"), "{}", said.err);
+    let said = desk.run("compare a a");
+    assert_eq!(said.code, 3);
+    insta::assert_snapshot!(said.err, @r"
+    error: the images have 8×9 pixels, and summary.json says 8×8 pixels
+      --> a/terms.exr
+    help: repeat the run: its files do not belong together
+    ");
     assert!(!desk.path("fredholm-out").exists(), "nothing was written");
 }
 

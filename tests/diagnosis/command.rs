@@ -214,7 +214,7 @@ fn bad_input_is_refused_in_words() {
         ("diagnose small.exr --against cornell --gain=-1", 2, "`-1` is not a number of at least 0"),
         ("diagnose small.exr --against cornell --scale 10", 2, "`10` is not SCALE=FILE"),
         ("diagnose small.exr wide.exr --as bounces --against cornell", 2, "do not end in numbers"),
-        ("diagnose nowhere.exr --against cornell", 3, "check the name, or render it first"),
+        ("diagnose nowhere.exr --against cornell", 3, "check the name, or render the scene first"),
         ("diagnose text.png --against cornell", 3, "not a readable image"),
         ("diagnose cut.exr --against cornell", 3, "not a readable OpenEXR file"),
         ("diagnose albedo.exr --against cornell", 3, "no layer is a term or a whole image: albedo, normal"),

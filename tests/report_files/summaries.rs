@@ -62,6 +62,7 @@ fn summaries_of_others_are_refused() {
         (good.replace("\"version\":1", "\"version\":2"), "version 2"),
         (good.replace("\"spp\"", "\"ssp\""), "missing field `spp`"),
         (good.replace("inconclusive", "perhaps"), "perhaps"),
+        (good.replace("\"functionals\":[{", "\"functionals\":[],\"others\":[{"), "the image mean is missing"),
         ("{}".into(), "no key `schema`"),
         ("[1,".into(), "not valid JSON"),
         // A null is NaN only where a floating-point number belongs.

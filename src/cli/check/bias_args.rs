@@ -4,6 +4,7 @@ use super::common::Common;
 use crate::cli::choices::{CHECKED, SAMPLINGS, TECHNIQUES};
 use crate::cli::options::{HOW, WHAT, duration, name_of, one_of, probability};
 use clap::Args;
+use fredholm::engine::MOST_BOUNCES;
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::scene::bsdf::Sampling;
 use std::time::Duration;
@@ -40,7 +41,7 @@ pub struct Bias {
     #[arg(long, value_name = "NAME|DIR", default_value = "path", help_heading = WHAT)]
     pub(super) against: String,
     /// K: check k = 0..=K and the tail
-    #[arg(long, value_name = "K", default_value_t = 8, help_heading = WHAT, value_parser = clap::value_parser!(u16).range(0..=1000))]
+    #[arg(long, value_name = "K", default_value_t = 8, help_heading = WHAT, value_parser = clap::value_parser!(u16).range(0..=i64::from(MOST_BOUNCES)))]
     pub(super) max_bounces: u16,
     /// Time limit: 20s, 5m [default: 60s]
     ///

@@ -9,9 +9,9 @@ use clap::{Parser, Subcommand};
 use fredholm::diagnosis::candidates::own_seed;
 use fredholm::diagnosis::picture::{Code, Layer, Pictures, Slot, shrink_factor};
 use fredholm::diagnosis::{Seen, WIDEST, regions};
-use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Estimator};
 use fredholm::engine::known::resort::with_last_resort;
+use fredholm::engine::{MOST_BOUNCES, Settings};
 use fredholm::progress::Progress;
 use fredholm::report::image::exr;
 use fredholm::report::text::summary;
@@ -74,7 +74,7 @@ fn finished(path: &Path) -> Result<Source, Failure> {
             layers.push(Layer { slot, mean: mean.to_vec(), std_error: Some(error.to_vec()) });
         }
     };
-    for k in 0..=record.max_bounces {
+    for k in 0..=record.max_bounces.min(usize::from(MOST_BOUNCES)) {
         add(Slot::Term(k), &format!("T{k:02}"));
     }
     add(Slot::Tail, "tail");

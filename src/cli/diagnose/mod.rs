@@ -4,7 +4,7 @@ mod against;
 mod args;
 mod evidence;
 mod found;
-mod read;
+mod grouping;
 mod suspects;
 mod text;
 
@@ -15,12 +15,13 @@ pub use args::{Diagnose, HELP};
 use found::Diagnosed;
 use fredholm::diagnosis::candidates::Members;
 use fredholm::diagnosis::{self, Case, Conclusion, Effort};
+use fredholm::engine::MOST_BOUNCES;
 use fredholm::engine::known::coplanar;
 use fredholm::progress::Progress;
 use fredholm::report::figures::diagnosis as figure;
+use fredholm::report::image::foreign::{self, File};
 use fredholm::report::text::summary::Summary;
 use fredholm::report::write_atomically;
-use read::File;
 use std::collections::BTreeMap;
 use std::path::Path;
 use suspects::{Suspect, size_mismatch, suspects};
@@ -33,7 +34,7 @@ pub fn run(args: &Diagnose) -> Result<Ending, Failure> {
     };
     let mut session = Session::new(&args.shared, args.seed)?;
     let (suspects, how) = suspects(args)?;
-    let scaled = args.scale.as_ref().map(|(s, file)| Ok::<_, Failure>((*s, read::file(file)?))).transpose()?;
+    let scaled = args.scale.as_ref().map(|(s, file)| Ok::<_, Failure>((*s, foreign::read(file)?))).transpose()?;
     let source = against::source(args, against)?;
     for s in &suspects {
         source.suits(&s.name, s.file.pictures.size)?;
@@ -121,7 +122,8 @@ const SIMULATED: usize = 8;
 
 /// K of the reference: the last term of the picture, else `--max-bounces`, else the file's attribute, else [`DEEP`].
 fn last_term(args: &Diagnose, file: &File) -> usize {
-    let told = || file.attribute("max_bounces").and_then(|k| k.parse().ok());
+    let told =
+        || file.attribute("max_bounces").and_then(|k| k.parse().ok()).filter(|&k| k <= usize::from(MOST_BOUNCES));
     let asked = args.max_bounces.map(usize::from);
     file.pictures.last_term().or(asked).or_else(told).unwrap_or(DEEP)
 }

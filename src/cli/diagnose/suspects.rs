@@ -1,9 +1,10 @@
 //! The pictures to diagnose: each is a file, or several files that belong together.
 
 use super::args::{Diagnose, Grouping};
-use super::read::{self, File};
+use super::grouping::grouping;
 use crate::cli::base::{Failure, usage};
 use fredholm::diagnosis::picture::{Pictures, Slot};
+use fredholm::report::image::foreign::{self, File};
 use std::path::{Path, PathBuf};
 
 /// A picture to diagnose.
@@ -25,8 +26,8 @@ pub fn size_mismatch(name: &str, [a, b]: [usize; 2], [w, h]: [usize; 2]) -> Fail
 
 /// Reads the files of the command line and puts those together that belong together.
 pub fn suspects(args: &Diagnose) -> Result<(Vec<Suspect>, Grouping), Failure> {
-    let (how, numbers) = read::grouping(args.grouping, &args.renders)?;
-    let files = args.renders.iter().map(|p| read::file(p)).collect::<Result<Vec<File>, Failure>>()?;
+    let (how, numbers) = grouping(args.grouping, &args.renders)?;
+    let files = args.renders.iter().map(|p| foreign::read(p)).collect::<Result<Vec<File>, _>>()?;
     let shown = |p: &Path| p.display().to_string();
     if how != Grouping::Separate
         && let Some((i, file)) = files.iter().enumerate().find(|(_, f)| f.pictures.size != files[0].pictures.size)

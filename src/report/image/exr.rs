@@ -19,9 +19,8 @@ use exr::prelude::{
     Layer as Part, LayerAttributes, LineOrder, ReadChannels, ReadLayers, Text, WritableImage, f16,
 };
 
-use exr::meta::{MetaData, header::Header};
-
 use crate::report::{ReportError, files, write_atomically};
+use crate::scene::image_header::{FEW_BYTES, suits};
 
 /// One image to be written.
 #[derive(Clone, Copy, Debug)]
@@ -112,15 +111,17 @@ pub fn write(
 /// If the file cannot be read, its parts differ in size, two layers share a name, no colour is found, or the file holds only a part of
 /// the picture (crop) or more than it (overscan).
 pub fn read(path: &Path) -> Result<Image, ReportError> {
+    decode(path, &files::read(path)?)
+}
+
+/// The layers of a file that was read into memory; errors name `path`.
+pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<Image, ReportError> {
     let wrong = |cause: String, help: &str| ReportError::new(path, cause, help);
-    let bytes = files::read(path)?;
-    plausible(&bytes).map_err(|cause| wrong(cause, "the file is damaged: write it again"))?;
-    let found = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
+    suits(bytes).map_err(|unfit| wrong(unfit.what, unfit.help))?;
+    let reader =
+        exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+    let reader = if bytes.len() < FEW_BYTES { reader.non_parallel() } else { reader };
+    let found = reader
         .from_buffered(Cursor::new(bytes))
         .map_err(|e| wrong(format!("not a readable OpenEXR file: {e}"), "give a flat (not deep) OpenEXR image"))?;
 
@@ -186,23 +187,6 @@ pub fn read(path: &Path) -> Result<Image, ReportError> {
     attributes.sort();
     attributes.dedup();
     Ok(Image { width, height, layers, grey, incomplete, attributes })
-}
-
-/// Returns an error if the header promises more samples than the file can hold: a damaged size would ask for all memory. No
-/// compression of the format makes a file this many times smaller.
-fn plausible(bytes: &[u8]) -> Result<(), String> {
-    const SMALLER: u64 = 2048;
-    // a header that cannot be read is reported by the reader itself
-    let Ok(meta) = MetaData::read_from_buffered(bytes, false) else { return Ok(()) };
-    let samples = |header: &Header| {
-        let pixels = (header.layer_size.0 as u64).saturating_mul(header.layer_size.1 as u64);
-        pixels.saturating_mul(header.channels.list.len() as u64)
-    };
-    let all = meta.headers.iter().map(samples).fold(0u64, u64::saturating_add);
-    if all <= SMALLER * bytes.len() as u64 {
-        return Ok(());
-    }
-    Err(format!("the header promises {all} samples, more than {} bytes can hold", bytes.len()))
 }
 
 /// Returns an error if the pixels of a part are not those of the picture: its data window is not its display window.

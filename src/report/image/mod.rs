@@ -4,6 +4,7 @@ mod codes;
 pub mod contact_sheet;
 pub mod exposure;
 pub mod exr;
+pub mod foreign;
 pub mod picture;
 pub mod sheet;
 pub mod side_by_side;

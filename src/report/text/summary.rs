@@ -344,7 +344,7 @@ pub fn write(path: &Path, summary: &Summary) -> Result<(), ReportError> {
 /// Reads a summary back.
 ///
 /// # Errors
-/// If the file cannot be read, is not JSON, has another schema or version, or lacks a key.
+/// If the file cannot be read, is not JSON, has another schema or version, lacks a key, or has a series without its image mean.
 pub fn read(path: &Path) -> Result<Summary, ReportError> {
     let wrong = |cause: String, help: &str| ReportError::new(path, cause, help);
     let value: serde_json::Value = serde_json::from_slice(&files::read(path)?)
@@ -367,6 +367,13 @@ pub fn read(path: &Path) -> Result<Summary, ReportError> {
         }
         None => return Err(wrong("no key `version`".into(), "give a summary.json written by fredholm")),
     }
-    Summary::deserialize(NullAsNan(value))
-        .map_err(|e| wrong(format!("not a complete summary: {e}"), "repeat the run that wrote it"))
+    let summary = Summary::deserialize(NullAsNan(value))
+        .map_err(|e| wrong(format!("not a complete summary: {e}"), "repeat the run that wrote it"))?;
+    match summary.series.iter().find(|s| s.functionals.is_empty()) {
+        Some(s) => {
+            let cause = format!("the result `{}` of `series` has no functional: the image mean is missing", s.world);
+            Err(wrong(cause, "repeat the run that wrote it"))
+        }
+        None => Ok(summary),
+    }
 }

@@ -17,10 +17,14 @@
 
 use crate::{
     math::Rgb,
-    scene::{SceneError, raster::Raster},
+    scene::{
+        SceneError,
+        image_header::{FEW_BYTES, suits},
+        raster::Raster,
+    },
 };
 use image::{DynamicImage, ImageReader};
-use std::path::Path;
+use std::{io::Cursor, path::Path};
 
 const FORMATS: &str = "images are .exr, .hdr, .png or .jpg";
 
@@ -48,8 +52,10 @@ pub(super) fn read(path: &Path) -> Result<Raster, SceneError> {
         let help = if path.is_file() { FORMATS } else { "paths are relative to the file that names them" };
         SceneError::new(format!("cannot read `{shown}`: {reason}")).help(help)
     };
-    suits(path, &shown, &fail)?;
-    let raster = if extension(path) == "exr" { exr(path).map_err(|e| fail(&e)) } else { other(path, &fail) }?;
+    let bytes = std::fs::read(path).map_err(|e| fail(&e))?;
+    suits(&bytes)
+        .map_err(|unfit| SceneError::new(format!("cannot read `{shown}`: {}", unfit.what)).help(unfit.help))?;
+    let raster = if extension(path) == "exr" { exr(&bytes).map_err(|e| fail(&e)) } else { other(&bytes, &fail) }?;
     let wrong = raster.texels.iter().position(|t| t.to_array().iter().any(|x| !(x.is_finite() && *x >= 0.0)));
     match wrong {
         Some(i) => {
@@ -58,31 +64,6 @@ pub(super) fn read(path: &Path) -> Result<Raster, SceneError> {
         }
         None => Ok(raster),
     }
-}
-
-/// Texels at most: 16384 × 4096 of them take 800 MB, and a picture shows a small part of them.
-const MOST: u64 = 1 << 26;
-
-/// Returns an error if the image is too large, before any of it is decoded.
-fn suits(
-    path: &Path,
-    shown: &dyn std::fmt::Display,
-    fail: &dyn Fn(&dyn std::fmt::Display) -> SceneError,
-) -> Result<(), SceneError> {
-    let [w, h] = if extension(path) == "exr" {
-        let meta = exr::meta::MetaData::read_from_file(path, false).map_err(|e| fail(&e))?;
-        let sizes = meta.headers.iter().map(|header| [header.layer_size.0 as u64, header.layer_size.1 as u64]);
-        sizes.max_by_key(|[w, h]| w * h).unwrap_or([0, 0])
-    } else {
-        let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(|e| fail(&e))?;
-        let (w, h) = reader.into_dimensions().map_err(|e| fail(&e))?;
-        [u64::from(w), u64::from(h)]
-    };
-    if w * h <= MOST {
-        return Ok(());
-    }
-    let what = format!("`{shown}` has {w}×{h} texels; {} million are possible", MOST >> 20);
-    Err(SceneError::new(what).help("reduce the image; 4096 texels across are more than a picture of this scene shows"))
 }
 
 /// The position of the `i`-th texel, for messages.
@@ -96,9 +77,9 @@ pub(super) fn largest(raster: &Raster) -> Rgb {
     raster.texels.iter().fold(Rgb::ZERO, |a, &t| a.max(t))
 }
 
-fn exr(path: &Path) -> exr::error::Result<Raster> {
+fn exr(bytes: &[u8]) -> exr::error::Result<Raster> {
     use exr::prelude::{ReadChannels, ReadLayers, Vec2, read};
-    let image = read()
+    let reader = read()
         .no_deep_data()
         .largest_resolution_level()
         .rgb_channels(
@@ -108,21 +89,22 @@ fn exr(path: &Path) -> exr::error::Result<Raster> {
             },
         )
         .first_valid_layer()
-        .all_attributes()
-        .from_file(path)?;
+        .all_attributes();
+    let reader = if bytes.len() < FEW_BYTES { reader.non_parallel() } else { reader };
+    let image = reader.from_buffered(Cursor::new(bytes))?;
     let (size, texels) = image.layer_data.channel_data.pixels;
     Ok(Raster::new([size.x() as u32, size.y() as u32], texels))
 }
 
-fn other(path: &Path, fail: &dyn Fn(&dyn std::fmt::Display) -> SceneError) -> Result<Raster, SceneError> {
-    let mut reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(|e| fail(&e))?;
+fn other(bytes: &[u8], fail: &dyn Fn(&dyn std::fmt::Display) -> SceneError) -> Result<Raster, SceneError> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| fail(&e))?;
+    if reader.format().is_none() {
+        return Err(fail(&"it is no image of a known format"));
+    }
     // the size was checked
     reader.no_limits();
     let image = reader.decode().map_err(|e| fail(&e))?;
     let size = [image.width(), image.height()];
-    if size.contains(&0) {
-        return Err(fail(&"it has no pixels"));
-    }
     if let DynamicImage::ImageRgb32F(linear) = &image {
         return Ok(Raster::new(size, linear.pixels().map(|p| Rgb::from_array(p.0)).collect()));
     }

@@ -7,12 +7,13 @@
 //! | `tail` | everything longer |
 //! | the same with `_se`, `_stderr`, `_err` or `_var` | its error |
 
-use super::args::Grouping;
-use crate::cli::base::Failure;
-use fredholm::diagnosis::picture::{Code, Layer, Pictures, Slot, is_half};
-use fredholm::report::image::exr;
+use super::exr;
+use crate::diagnosis::picture::{Code, Layer, Pictures, Slot, is_half};
+use crate::engine::MOST_BOUNCES;
+use crate::report::{ReportError, files};
+use crate::scene::image_header::suits;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The content of a file.
 pub struct File {
@@ -33,28 +34,28 @@ impl File {
 }
 
 /// Reads an EXR, PNG, JPEG or HDR file.
-pub fn file(path: &Path) -> Result<File, Failure> {
-    if path.exists() && !path.is_file() {
-        return Err(wrong(path, "this is not a file", "give the picture itself, not a folder, a pipe or a device"));
-    }
-    let bytes = std::fs::read(path).map_err(|e| wrong(path, &e.to_string(), "check the name, or render it first"))?;
-    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) { layered(path) } else { plain(path, &bytes) }
+///
+/// # Errors
+/// If the file cannot be read, is damaged or too large, has no colours, or holds neither a term nor a whole image.
+pub fn read(path: &Path) -> Result<File, ReportError> {
+    let bytes = files::read(path)?;
+    if bytes.starts_with(&::exr::meta::magic_number::BYTES) { layered(path, &bytes) } else { plain(path, &bytes) }
 }
 
-fn wrong(path: &Path, what: &str, help: &str) -> Failure {
-    Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", path.display()))
+fn wrong(path: &Path, what: &str, help: &str) -> ReportError {
+    ReportError::new(path, what, help)
 }
 
 /// A diagnosis needs three channels: mistakes differ between them.
-fn one_channel_only(path: &Path, channel: String) -> Failure {
+fn one_channel_only(path: &Path, channel: String) -> ReportError {
     let what = format!("the picture has one channel, {channel}, and a diagnosis compares red, green and blue");
     wrong(path, &what, "write R, G and B")
 }
 
 type Pixels = Vec<[f32; 3]>;
 
-fn layered(path: &Path) -> Result<File, Failure> {
-    let image = exr::read(path)?;
+fn layered(path: &Path, bytes: &[u8]) -> Result<File, ReportError> {
+    let image = exr::decode(path, bytes)?;
     let (mut means, mut errors, mut ignored) = (BTreeMap::<Slot, Pixels>::new(), BTreeMap::new(), vec![]);
     // the first layer of a kind is taken, and the unnamed one comes first, because it is the one that a viewer shows
     let rank = |name: &str| usize::from(!name.is_empty());
@@ -117,7 +118,8 @@ fn layered(path: &Path) -> Result<File, Failure> {
 }
 
 /// Reads an image without layers. Values are kept as they are stored; the diagnosis finds their curve.
-fn plain(path: &Path, bytes: &[u8]) -> Result<File, Failure> {
+fn plain(path: &Path, bytes: &[u8]) -> Result<File, ReportError> {
+    suits(bytes).map_err(|unfit| wrong(path, &unfit.what, unfit.help))?;
     let help = "give an .exr, .png, .jpg or .hdr file";
     let image = image::load_from_memory(bytes).map_err(|e| wrong(path, &format!("not a readable image: {e}"), help))?;
     if !image.color().has_color() {
@@ -166,50 +168,11 @@ fn meaning(name: &str) -> Option<(Slot, Part)> {
             let (word, number) = stem.split_at(stem.len() - digits);
             let word = word.trim_end_matches(['_', '-', ' ']);
             let known = ["t", "term", "bounce", "bounces", "depth", "k", "b", "order", "vertex", "length", "indirect"];
-            Slot::Term(number.parse().ok().filter(|_| known.contains(&word))?)
+            let term = number.parse().ok().filter(|&k| k <= usize::from(MOST_BOUNCES));
+            Slot::Term(term.filter(|_| known.contains(&word))?)
         }
     };
     Some((slot, part))
-}
-
-/// The common beginning of the file names, and the number at the end of each; `None` if they have neither.
-fn numbered(paths: &[PathBuf]) -> Option<(String, Vec<u32>)> {
-    let split = |p: &PathBuf| {
-        let stem = p.file_stem()?.to_string_lossy().into_owned();
-        let stem = stem.trim_end_matches("spp").trim_end_matches(['_', '-']).to_owned();
-        let word = stem.trim_end_matches(|c: char| c.is_ascii_digit());
-        Some((word.to_owned(), stem[word.len()..].parse::<u32>().ok()?))
-    };
-    let all: Option<Vec<(String, u32)>> = paths.iter().map(split).collect();
-    let all = all?;
-    let word = all.first()?.0.clone();
-    all.iter().all(|a| a.0 == word).then(|| (word, all.iter().map(|a| a.1).collect()))
-}
-
-/// How the files belong together, with the number of each file.
-pub fn grouping(asked: Grouping, paths: &[PathBuf]) -> Result<(Grouping, Vec<u32>), Failure> {
-    let found = numbered(paths);
-    let need = || {
-        let help = "name them like T00.exr, T01.exr, … or render_16.exr, render_64.exr, …";
-        Failure::Usage(format!("error: these files do not end in numbers after one common name\nhelp: {help}"))
-    };
-    match asked {
-        Grouping::Separate => Ok((Grouping::Separate, vec![])),
-        Grouping::Bounces | Grouping::Spp => Ok((asked, found.ok_or_else(need)?.1)),
-        Grouping::Auto => {
-            let Some((_, numbers)) = found.filter(|_| paths.len() > 1) else { return Ok((Grouping::Separate, vec![])) };
-            let mut sorted = numbers.clone();
-            sorted.sort_unstable();
-            let steps = |ok: &dyn Fn(u32, u32) -> bool| sorted.windows(2).all(|w| ok(w[0], w[1]));
-            if sorted[0] <= 1 && steps(&|a, b| b == a + 1) && (sorted[0] == 0 || sorted.len() > 2) {
-                Ok((Grouping::Bounces, numbers))
-            } else if sorted[0] > 0 && steps(&|a, b| 2 * b >= 3 * a) {
-                Ok((Grouping::Spp, numbers))
-            } else {
-                Ok((Grouping::Separate, vec![]))
-            }
-        }
-    }
 }
 
 #[cfg(test)]
@@ -231,21 +194,8 @@ mod tests {
         ] {
             assert_eq!(meaning(name), Some((slot, part)), "{name}");
         }
-        for name in ["R03", "Tsum", "albedo", "normal", "depth", "T03x"] {
+        for name in ["R03", "Tsum", "albedo", "normal", "depth", "T03x", "T1001", "T99999999999999999999"] {
             assert_eq!(meaning(name), None, "{name}");
         }
-    }
-
-    #[test]
-    fn files_are_grouped_by_their_names() {
-        let of = |names: &[&str]| {
-            grouping(Grouping::Auto, &names.iter().map(PathBuf::from).collect::<Vec<_>>()).ok().unwrap().0
-        };
-        assert_eq!(of(&["a/T00.exr", "a/T01.exr"]), Grouping::Bounces);
-        assert_eq!(of(&["r_1.exr", "r_2.exr", "r_3.exr"]), Grouping::Bounces);
-        assert_eq!(of(&["r_16spp.png", "r_4spp.png", "r_64spp.png"]), Grouping::Spp);
-        assert_eq!(of(&["double-emission.exr", "clamped.exr"]), Grouping::Separate);
-        assert_eq!(of(&["T00.exr"]), Grouping::Separate);
-        assert_eq!(of(&["scene7.exr", "scene8.exr"]), Grouping::Separate);
     }
 }
