@@ -76,7 +76,7 @@ pub fn watched(
     look: Option<Look<'_>>,
 ) -> Sampled {
     let t = SceneTransport { scene, sampling: settings.sampling };
-    let (camera, points) = (&scene.camera, spread(settings.points));
+    let (camera, points) = (&scene.camera, spread(settings));
     let stream = estimator.map_or("path".into(), |e| e.to_string());
     let (amount, clock) = (amount(settings, &stream), settings.time.map(Clock::start));
     let what = estimator.map_or("path".into(), |e| format!("terms, {e}"));
@@ -190,9 +190,16 @@ pub(crate) fn amount(settings: &Settings, stream: &str) -> Amount {
     Amount { spp: settings.spp, replicates, key: settings.key(stream, replicates) }
 }
 
-/// Words that a label gets for points other than the usual ones.
-pub(crate) fn spread(points: Points) -> &'static str {
-    if points == Points::Sobol { ", Sobol points" } else { "" }
+/// Words that a label gets for points and replicates other than the usual ones.
+pub(crate) fn spread(settings: &Settings) -> String {
+    let mut words = String::new();
+    if settings.points == Points::Sobol {
+        words += ", Sobol points";
+    }
+    if settings.replicates != Amount::REPLICATES {
+        words += &format!(", {} replicates", settings.replicates);
+    }
+    words
 }
 
 /// Marks a result whose paths are cut at K because no roulette ends them: its label says so, and its tail is not estimated.

@@ -92,7 +92,7 @@ impl Prepared {
 
     fn label(&self, name: &str, settings: &Settings) -> String {
         let patches = self.guide.len();
-        format!("{name}, {}{}, guided by {patches} patches", settings.technique, spread(settings.points))
+        format!("{name}, {}{}, guided by {patches} patches", settings.technique, spread(settings))
     }
 
     /// Renders every term with the given estimator; None for an estimator that walks from the light.

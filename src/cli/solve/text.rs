@@ -68,7 +68,7 @@ fn settings(run: &Run, summary: &Summary) -> String {
         head += &format!("; technique {}", s.technique);
         head += if s.points == Points::Sobol { "; Sobol points" } else { "" };
         if s.replicates != Amount::REPLICATES {
-            head += &format!(" in {} replicates", s.replicates);
+            head += &format!("; {} replicates", s.replicates);
         }
     }
     let used = [(!run.terms.is_empty(), "terms", &s.roulette), (run.path.is_some(), "path tracer", &s.path_roulette)];
