@@ -273,8 +273,8 @@ fn every_broken_emission_rule_is_found() {
     assert!(missed.is_empty(), "{missed:#?}");
 }
 
-/// A strategy that counts too much is found, whichever end it walks from: by 10 %, and by more where it is one of
-/// many.
+/// A strategy that counts too much is found, whichever end it walks from: by 10 %, and by more where that would be found only in
+/// some runs: the path tracer, which measures the whole only, shows 1.1 with 8 of 12 seeds, and 1.2 with 12.
 #[test]
 fn a_strategy_that_counts_too_much_is_found() {
     let name = "a_strategy_that_counts_too_much_is_found";
@@ -283,7 +283,7 @@ fn a_strategy_that_counts_too_much_is_found() {
     let room = scenes::all().into_iter().find(|c| c.name == "(point room)").map(|case| known(case, 16, seed)).unwrap();
     for (estimator, scale) in [
         (Some(Estimator::Prefix), [1.1, 1.0]),
-        (None, [1.1, 1.0]),
+        (None, [1.2, 1.0]),
         (Some(Estimator::Light), [1.0, 1.1]),
         // one of k + 2 ways has a small share, so it must err more to be seen
         (Some(Estimator::Bidirectional), [2.0, 1.0]),
