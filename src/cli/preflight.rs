@@ -16,7 +16,7 @@ use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 /// Refuses a film that needs more memory than is free: the sums of all terms, pixels and replicates are held at the same time.
 pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
-    let replicates = u64::from(settings.spp.min(settings.replicates));
+    let replicates = u64::from(settings.replicates_of(settings.spp));
     let bytes = u64::from(w) * u64::from(h) * (settings.max_bounces as u64 + 2) * (replicates + 2) * 24;
     let what = format!("{w}×{h} pixels with terms up to k = {}", settings.max_bounces);
     fits(bytes, &what, "choose a smaller --size or --max-bounces")
@@ -58,7 +58,7 @@ pub fn tree_can_be_walked(estimator: Estimator, settings: &Settings, [w, h]: [u3
     const MOST: f64 = 1e11;
     let Estimator::Branching { children } = estimator else { return Ok(()) };
     // with --time, only the first pass must be possible
-    let spp = if settings.time.is_some() { settings.spp.min(16) } else { settings.spp };
+    let spp = if settings.time.is_some() { settings.replicates_of(settings.spp) } else { settings.spp };
     let paths = f64::from(w) * f64::from(h) * f64::from(spp);
     let deepest = f64::from(children).powi(settings.max_bounces as i32) * paths;
     if deepest <= MOST {

@@ -10,7 +10,6 @@ use crate::estimator::render::{Amount, render_in_passes};
 use crate::estimator::{
     Bidirectional, Branching, LightTracer, PathTracer, Plan, Prefix, Roulette, SingleTerm, TermEstimator,
 };
-use crate::math::Points;
 use crate::operator::{Adjoint, SceneTransport, Sensor, Transport};
 use crate::progress::{Clock, Progress};
 use crate::scene::Scene;
@@ -186,20 +185,13 @@ pub(crate) fn film<T: Adjoint>(
 
 /// The samples of a run, with the random stream of that name.
 pub(crate) fn amount(settings: &Settings, stream: &str) -> Amount {
-    let replicates = settings.spp.min(settings.replicates).max(1) as usize;
+    let replicates = settings.replicates_of(settings.spp) as usize;
     Amount { spp: settings.spp, replicates, key: settings.key(stream, replicates) }
 }
 
 /// Words that a label gets for points and replicates other than the usual ones.
 pub(crate) fn spread(settings: &Settings) -> String {
-    let mut words = String::new();
-    if settings.points == Points::Sobol {
-        words += ", Sobol points";
-    }
-    if settings.replicates != Amount::REPLICATES {
-        words += &format!(", {} replicates", settings.replicates);
-    }
-    words
+    settings.spread().iter().map(|words| format!(", {words}")).collect()
 }
 
 /// Marks a result whose paths are cut at K because no roulette ends them: its label says so, and its tail is not estimated.
@@ -234,8 +226,6 @@ pub(crate) struct Passes<'a, 'l> {
     /// The seconds of the render, and the statistics of the film after the last pass.
     last: Option<(f64, Statistics)>,
     clock: Option<&'a Clock>,
-    /// R; a pass by the clock ends at a multiple of it.
-    replicates: u32,
     /// The caller's callback.
     look_on: Option<Look<'l>>,
 }
@@ -244,8 +234,7 @@ impl<'a, 'l> Passes<'a, 'l> {
     /// Passes that double, without a clock and without a callback, for callers that use the film itself.
     pub(crate) fn of(progress: Progress<'a>) -> Self {
         let started = Instant::now();
-        let replicates = Amount::REPLICATES;
-        Self { progress, started, read: false, snapshots: vec![], last: None, clock: None, replicates, look_on: None }
+        Self { progress, started, read: false, snapshots: vec![], last: None, clock: None, look_on: None }
     }
 
     /// The same with a callback after each pass.
@@ -264,7 +253,7 @@ impl<'a, 'l> Passes<'a, 'l> {
         let paths = u64::from(size[0]) * u64::from(size[1]) * u64::from(settings.spp);
         progress.begin(what, clock.map_or(paths, |c| c.time.as_millis() as u64));
         let progress = clock.map_or(progress, |clock| progress.by_clock(clock));
-        Self { read: true, clock, replicates: settings.replicates, ..Self::of(progress) }
+        Self { read: true, clock, ..Self::of(progress) }
     }
 
     /// The result of the render.
@@ -329,7 +318,7 @@ impl Passes<'_, '_> {
         let done = film.least_samples();
         let asked = self.look_on.as_mut().and_then(|look| look(film));
         let planned = asked.map_or(planned, |n| planned.min(n));
-        let until = self.clock.map_or(planned, |clock| self.in_time(clock.time, done, planned));
+        let until = self.clock.map_or(planned, |clock| self.in_time(clock.time, film, planned));
         if !self.read {
             return until;
         }
@@ -344,11 +333,12 @@ impl Passes<'_, '_> {
 
     /// The number of samples that fits into the time at the speed so far, as a multiple of the number of replicates. The
     /// decision looks at no value, so means stay unbiased, and every pixel gets the same number.
-    fn in_time(&self, time: Duration, done: u32, planned: u32) -> u32 {
-        let each = self.started.elapsed().as_secs_f64() / f64::from(done);
+    fn in_time(&self, time: Duration, film: &TermFilm, planned: u32) -> u32 {
+        let each = self.started.elapsed().as_secs_f64() / f64::from(film.least_samples());
         let fits = (time.as_secs_f64() / each) as u32;
         // if a pass would leave less than a quarter of itself for the last one, the last one is included in it
         let until = if f64::from(fits) < 1.25 * f64::from(planned) { fits } else { planned };
-        until / self.replicates * self.replicates
+        let replicates = film.shape.replicates as u32;
+        until / replicates * replicates
     }
 }

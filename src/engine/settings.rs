@@ -79,6 +79,18 @@ impl Settings {
         Key::new(self.seed, stream).with_points(self.points, replicates)
     }
 
+    /// Number of replicates of `spp` samples of a pixel.
+    pub fn replicates_of(&self, spp: u32) -> u32 {
+        spp.min(self.replicates).max(1)
+    }
+
+    /// Points and replicates in words, where they are not the usual ones.
+    pub fn spread(&self) -> Vec<String> {
+        let points = (self.points == Points::Sobol).then(|| "Sobol points".into());
+        let replicates = (self.replicates != Amount::REPLICATES).then(|| format!("{} replicates", self.replicates));
+        points.into_iter().chain(replicates).collect()
+    }
+
     /// The plan of the term estimators.
     pub fn plan(&self) -> Plan {
         Plan { max_bounces: self.max_bounces, technique: self.technique, roulette: self.roulette.clone() }

@@ -194,14 +194,14 @@ pub struct Pixels {
     /// Less noise in the same time: Sobol points, 8 replicates
     ///
     /// Chooses --points sobol, and 8 replicates in place of 16, so that each replicate holds twice as many points of its own
-    /// sequence. The result stays unbiased. Not the default, because the samples of a pixel are then no longer independent: the
-    /// variance need not fall with slope −1, and the moments of the samples do not predict it. Standard errors rest on 8 numbers.
+    /// sequence. The result stays unbiased. It is not the default, because the samples of a pixel are then no longer independent: their
+    /// variance may fall faster than 1/N, and the moments of single samples do not predict it. Standard errors come from 8 numbers.
     #[arg(long, conflicts_with = "points")]
     pub fast: bool,
     /// Time per way to solve, in place of --spp: 30s, 5m
     ///
-    /// Passes are added while they are expected to end in time; the preparation of a guide counts. The first pass of 16 samples
-    /// per pixel is always finished. The result has the same bits as --spp with the number of samples that was reached.
+    /// Passes are added while they are expected to end in time; the preparation of a guide counts. The first pass of 16 samples per pixel
+    /// (8 with --fast) is always finished. The result has the same bits as --spp with the number of samples that was reached.
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with = "spp")]
     pub time: Option<Duration>,
 }

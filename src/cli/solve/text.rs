@@ -4,8 +4,6 @@ use crate::cli::answer;
 use crate::cli::notes;
 use crate::cli::session::Session;
 use fredholm::engine::by_rays::Sampled;
-use fredholm::estimator::render::Amount;
-use fredholm::math::Points;
 use fredholm::report::figures::pyramid;
 use fredholm::report::text::grid::Grid;
 use fredholm::report::text::prose::wrapped;
@@ -66,10 +64,7 @@ fn settings(run: &Run, summary: &Summary) -> String {
         format!("{}\nseed {}, {spp} spp, {}×{} pixels", summary.command, s.seed, summary.width, summary.height);
     if !run.terms.is_empty() || run.path.is_some() {
         head += &format!("; technique {}", s.technique);
-        head += if s.points == Points::Sobol { "; Sobol points" } else { "" };
-        if s.replicates != Amount::REPLICATES {
-            head += &format!("; {} replicates", s.replicates);
-        }
+        head.extend(s.spread().iter().map(|words| format!("; {words}")));
     }
     let used = [(!run.terms.is_empty(), "terms", &s.roulette), (run.path.is_some(), "path tracer", &s.path_roulette)];
     let roulette: Vec<_> = used.iter().filter(|r| r.0).map(|(_, who, r)| format!("{who} {r}")).collect();

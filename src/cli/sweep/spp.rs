@@ -12,6 +12,7 @@ use crate::cli::{notes, preflight};
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Begins, Estimator};
 use fredholm::estimator::Technique;
+use fredholm::estimator::render::Amount;
 use fredholm::math::Points;
 use fredholm::report::figures::sweep::fall::{self, Fall};
 use fredholm::report::figures::sweep::fall_answer;
@@ -25,7 +26,7 @@ use fredholm::terms::Series;
 use std::str::FromStr;
 
 /// Replicates of a film. They are also the first number of samples at which a variance is known.
-const REPLICATES: u32 = 16;
+const REPLICATES: u32 = Amount::REPLICATES;
 
 /// One render.
 struct Case {

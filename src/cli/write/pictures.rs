@@ -34,7 +34,7 @@ pub(super) fn layers<'a>(run: &'a Run) -> Vec<Layer<'a>> {
         let share = s.series.cost.paths as f64 / s.total.mean.len() as f64;
         let concerned = s.series.doubts.iter().filter(|d| part >= s.terms.len() || d.from <= part);
         let events = concerned.map(|d| d.per_path * share).fold(s.pixel_events[part], f64::min);
-        let errors = pixel_errors::of(&name, mean, events, u64::from(s.spp.min(16)));
+        let errors = pixel_errors::of(&name, mean, events, u64::from(run.settings.replicates_of(s.spp)));
         layers.push(Layer { name, image, errors, of: s, slot });
     };
     let series = |s: &'_ Sampled| s.series.image().clone();

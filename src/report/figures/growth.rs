@@ -75,7 +75,11 @@ pub fn answer(growth: &Growth) -> String {
     let wall = growth.times(Varied::Threads).into_iter().next();
     if let Some([one, .., many]) = wall.as_ref().map(|w| w.sizes.as_slice()) {
         let speed_up = one.median() / many.median();
-        words += &format!(" {} threads are {} times as fast as one.", many.size, significant(speed_up, 3));
+        words += &format!(
+            " By the clock on the wall, {} threads are {} times as fast as one.",
+            many.size,
+            significant(speed_up, 3)
+        );
     }
     words
 }

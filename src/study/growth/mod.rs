@@ -264,7 +264,7 @@ impl Growth {
     /// The order in which the `repeat`-th round visits the points: indices into `points`, shuffled.
     pub fn order(&self, seed: u64, repeat: u32) -> Vec<usize> {
         let key = Key::new(seed, "order of growth");
-        let number = |i: usize| Rng::at(key, i as u32, repeat, 0, Purpose::Start).four()[0];
+        let number = |i: usize| Rng::at(key, i as u32, repeat, 0, Purpose::Start).one();
         let mut order: Vec<usize> = (0..self.points.len()).collect();
         order.sort_by(|&a, &b| number(a).total_cmp(&number(b)));
         order
