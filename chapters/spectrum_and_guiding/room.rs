@@ -17,6 +17,7 @@
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Estimator, Sampled};
 use fredholm::engine::guided::Prepared;
+use fredholm::engine::passes::Watch;
 use fredholm::estimator::Roulette;
 use fredholm::guide::{Guide, Recipe, incident::Fineness};
 use fredholm::math::Key;
@@ -78,7 +79,7 @@ pub(super) fn seen(folder: &Folder<'_>) -> book::Result<[Seen; 3]> {
     let scene = Scene::new(&up);
     let plain = by_rays::terms(&scene, Estimator::Prefix, &settings, folder.progress);
     let follow = |other: &Description| -> book::Result<Sampled> {
-        let guided = map(folder, other)?.terms(&scene, Estimator::Prefix, &settings, folder.progress);
+        let guided = map(folder, other)?.terms(&scene, Estimator::Prefix, &settings, folder.progress, Watch::NONE);
         Ok(guided.ok_or("this estimator follows no map")?)
     };
     Ok([plain, follow(&up)?, follow(&aside)?].map(|sampled| Seen::of(&sampled)))

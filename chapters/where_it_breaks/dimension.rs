@@ -15,6 +15,7 @@
 //! Reference: Owen, *Scrambled net variance for integrals of smooth functions* (1997).
 
 use super::claims::UNKNOWN;
+use fredholm::engine::passes::Watch;
 use fredholm::engine::{Settings, by_rays, by_rays::Estimator};
 use fredholm::estimator::{Roulette, Technique};
 use fredholm::math::Points;
@@ -44,7 +45,8 @@ pub fn noise(folder: &Folder<'_>, points: Points) -> book::Result<Vec<NoiseCurve
     let settings =
         Settings { points, technique, roulette, spp, max_bounces: LAST, seed: folder.seed, ..Settings::default() };
     let mut record = Recorder::new(None, vec![]); // V after every pass, at N = 16, 32, 64, …
-    by_rays::watched(&scene, Some(Estimator::Prefix), &settings, folder.progress, Some(&mut |film| record.look(film)));
+    let watch = Watch { look: Some(&mut |film| record.look(film)), ..Watch::NONE };
+    by_rays::watched(&scene, Some(Estimator::Prefix), &settings, folder.progress, watch);
     let mut curves = NoiseCurve::all(&record.stands(), false, Variance::Finite);
     curves.truncate(LAST + 1); // the last curve is that of the sum
     Ok(curves)

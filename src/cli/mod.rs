@@ -24,7 +24,9 @@ mod export;
 mod figure;
 mod help;
 mod info;
+mod keep;
 mod markdown;
+mod merge;
 mod mistyped;
 mod notes;
 mod open;
@@ -38,6 +40,7 @@ mod radiosity;
 mod roulette;
 mod session;
 mod signals;
+mod slurm;
 mod solve;
 mod suggest;
 mod sweep;
@@ -77,6 +80,12 @@ enum Command {
     /// Solves with the matrix alone: form factors, solvers, modes
     #[command(after_long_help = solve::help::RADIOSITY)]
     Radiosity(radiosity::Radiosity),
+    /// Puts the parts of a run together: the bits of one run
+    #[command(after_long_help = merge::HELP)]
+    Merge(merge::Merge),
+    /// Prints a script that renders on a Slurm cluster
+    #[command(after_long_help = slurm::HELP)]
+    Slurm(slurm::Slurm),
     /// Compares two results: a verdict per term, a map of z
     #[command(after_long_help = compare::HELP)]
     Compare(compare::Compare),
@@ -161,6 +170,8 @@ fn run(command: &Command, all: &clap::Command) -> Result<Ending, Failure> {
         Command::Series(args) => solve::series(args),
         Command::Render(args) => solve::render(args),
         Command::Radiosity(args) => radiosity::run(args),
+        Command::Merge(args) => merge::run(args, all),
+        Command::Slurm(args) => slurm::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Diagnose(args) => diagnose::run(args),
         Command::Sweep(args) => sweep::run(args),

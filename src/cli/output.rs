@@ -7,14 +7,21 @@ use fredholm::report::text::summary;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+/// Who may write into an output folder.
+pub struct Owner<'a> {
+    /// The command of the run.
+    pub command: &'a str,
+    /// Replace another run's output.
+    pub force: bool,
+    /// Files that the command reads, and folders of results.
+    pub inputs: &'a [PathBuf],
+    /// Go on with the run of a folder for which this is true.
+    pub resumes: &'a dyn Fn(&Path) -> bool,
+}
+
 /// The output folder of this command, claimed for this process: it holds nothing of another run and none of the inputs.
-pub fn folder(
-    asked: Option<&Path>,
-    name: &str,
-    command: &str,
-    force: bool,
-    inputs: &[PathBuf],
-) -> Result<(PathBuf, Claim), Failure> {
+pub fn folder(asked: Option<&Path>, name: &str, owner: &Owner<'_>) -> Result<(PathBuf, Claim), Failure> {
+    let Owner { command, force, inputs, resumes } = owner;
     if let Some(dir) = asked {
         if dir.exists() && !dir.is_dir() {
             return Err(refused("the output folder is a file", dir, "choose another with -o"));
@@ -26,7 +33,7 @@ pub fn folder(
         if claim::is_taken(dir) {
             return Err(taken(dir));
         }
-        if !force && !ours(dir, command) {
+        if !force && !ours(dir, command) && !resumes(dir) {
             let help = "choose another with -o, or replace it with --force";
             return Err(refused("the output folder holds another run's output", dir, help));
         }
@@ -36,9 +43,11 @@ pub fn folder(
         };
     }
     let base = PathBuf::from("fredholm-out");
-    let numbered = (2..).map(|i| base.join(format!("{name}-{i}")));
-    let free = |dir: &PathBuf| (force || ours(dir, command)) && !inputs.iter().any(|input| is_in(input, dir));
-    for dir in std::iter::once(base.join(name)).chain(numbered).filter(free) {
+    let folders = || std::iter::once(base.join(name)).chain((2..).map(|i| base.join(format!("{name}-{i}"))));
+    // the first folder of a run that can go on comes before an empty one
+    let going_on = folders().take_while(|dir| dir.exists()).find(|dir| resumes(dir));
+    let free = |dir: &PathBuf| (*force || ours(dir, command)) && !inputs.iter().any(|input| is_in(input, dir));
+    for dir in going_on.into_iter().chain(folders().filter(free)) {
         if let Some(claim) = claimed(&dir, command)? {
             return Ok((dir, claim));
         }
@@ -98,30 +107,48 @@ pub fn remove_stale(folder: &Path, old: &[String], new: &[String]) {
 
 /// The command line without options that do not change the result, such as `--out` and `--threads`.
 pub fn canonical_command() -> String {
-    let words: Vec<String> = std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()).collect();
-    canonical(&words)
+    command_of(&kept_words())
 }
 
-fn canonical(args: &[String]) -> String {
-    const WITH_VALUE: [&str; 2] = ["--out", "--threads"];
-    const ALONE: [&str; 4] = ["--force", "--json", "--quiet", "--verbose"];
-    let mut words = vec!["fredholm".to_string()];
+/// The words of that command line, without the name of the program.
+pub fn kept_words() -> Vec<String> {
+    let words: Vec<String> = std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()).collect();
+    without(&words, &WITH_VALUE, &ALONE)
+}
+
+/// A command line of its words.
+pub fn command_of(words: &[String]) -> String {
+    std::iter::once("fredholm".into()).chain(words.iter().map(|w| quoted(w))).collect::<Vec<_>>().join(" ")
+}
+
+/// A command without the options that a resumed run may change.
+pub fn but_for_samples(words: &[String]) -> Vec<String> {
+    without(words, &["--spp", "--time"], &[])
+}
+
+/// Options that do not change the result, with a value and alone.
+const WITH_VALUE: [&str; 4] = ["--out", "--threads", "--checkpoint", "--shard"];
+const ALONE: [&str; 5] = ["--force", "--json", "--quiet", "--verbose", "--resume"];
+
+/// The words without some long options; and without `-q`, `-v`, `-o` and `-t`, which do not change the result either.
+pub fn without(args: &[String], with_value: &[&str], alone: &[&str]) -> Vec<String> {
+    let mut words = vec![];
     let mut args = args.iter();
     while let Some(arg) = args.next() {
         if arg == "--" {
-            words.extend(std::iter::once(arg).chain(args.by_ref()).map(|a| quoted(a)));
+            words.extend(std::iter::once(arg).chain(args.by_ref()).cloned());
         } else if let Some(cluster) = arg.strip_prefix('-').filter(|a| !a.is_empty() && !a.starts_with('-')) {
             // -q and -v stand alone; -o and -t take the rest of the word, or else the next one
             if cluster.trim_start_matches(['q', 'v']).len() == 1 {
                 args.next();
             }
-        } else if WITH_VALUE.contains(&arg.as_str()) {
+        } else if with_value.contains(&arg.as_str()) {
             args.next();
-        } else if !ALONE.contains(&arg.as_str()) && !WITH_VALUE.iter().any(|n| arg.starts_with(&format!("{n}="))) {
-            words.push(quoted(arg));
+        } else if !alone.contains(&arg.as_str()) && !with_value.iter().any(|n| arg.starts_with(&format!("{n}="))) {
+            words.push(arg.clone());
         }
     }
-    words.join(" ")
+    words
 }
 
 fn quoted(arg: &str) -> String {
@@ -135,11 +162,12 @@ fn quoted(arg: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::canonical;
+    use super::{ALONE, WITH_VALUE, but_for_samples, command_of, without};
 
     #[test]
     fn what_does_not_change_the_result_is_no_part_of_the_command() {
-        let of = |line: &str| canonical(&line.split(' ').map(String::from).collect::<Vec<_>>());
+        let words = |line: &str| -> Vec<String> { line.split(' ').map(String::from).collect() };
+        let of = |line: &str| command_of(&without(&words(line), &WITH_VALUE, &ALONE));
         let same = [
             "series a.toml --spp 4",
             "series -o x a.toml --spp 4",
@@ -147,11 +175,16 @@ mod tests {
             "series -qvo x a.toml --spp 4 -vt 2",
             "series --out=x a.toml --threads 2 --spp 4 --force --json --quiet --verbose",
             "series --out x a.toml -o=x --spp 4 -q",
+            "series --shard 3/8 a.toml --spp 4 --checkpoint=5s --resume",
         ];
         for line in same {
             assert_eq!(of(line), "fredholm series a.toml --spp 4", "{line}");
         }
         assert_eq!(of("series -q -- -o.toml"), "fredholm series -- -o.toml");
         assert_eq!(of("info a[0].toml"), "fredholm info 'a[0].toml'");
+        assert_eq!(
+            but_for_samples(&words("series a.toml --spp 4 --seed 1 --time=3s")),
+            words("series a.toml --seed 1")
+        );
     }
 }

@@ -9,7 +9,7 @@ use super::base::{Ending, Failure, note, paragraphs, print, print_json};
 use super::claim::Claim;
 use super::open::{self, Opened};
 use super::options::{Changes, Manner};
-use super::output;
+use super::output::{self, Owner};
 use super::progress::Bar;
 use fredholm::progress::Progress;
 use fredholm::report::image::typeset::Caption;
@@ -17,7 +17,7 @@ use fredholm::report::text::prose::{WIDTH, wrapped_after};
 use fredholm::report::text::summary::{self, Summary};
 use fredholm::terms::TermFilm;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Tells that there are more numbers; it ends the last line, or follows it.
@@ -41,11 +41,16 @@ pub struct Session {
 impl Session {
     /// Starts a command and sets the number of threads.
     pub fn new(manner: impl Into<Manner>, seed: u64) -> Result<Self, Failure> {
+        Self::of(manner, output::canonical_command(), seed)
+    }
+
+    /// The same, for a result that another command line makes again.
+    pub fn of(manner: impl Into<Manner>, command: String, seed: u64) -> Result<Self, Failure> {
         let (manner, started) = (manner.into(), Instant::now());
         if let Some(n) = manner.threads {
             rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()?;
         }
-        let record = Summary { command: output::canonical_command(), seed, ..Summary::default() };
+        let record = Summary { command, seed, ..Summary::default() };
         Ok(Self {
             folder: PathBuf::new(),
             bar: Bar::plain(manner.quiet),
@@ -79,8 +84,14 @@ impl Session {
 
     /// Makes the output folder: the one of `-o`, or else one of that name in `fredholm-out`.
     pub fn make_folder(&mut self, name: &str) -> Result<(), Failure> {
+        self.make_folder_or(name, &|_| false)
+    }
+
+    /// The same; a folder for which `resumes` is true is taken whatever it holds.
+    pub fn make_folder_or(&mut self, name: &str, resumes: &dyn Fn(&Path) -> bool) -> Result<(), Failure> {
         let Manner { out, force, .. } = &self.manner;
-        let (folder, claim) = output::folder(out.as_deref(), name, self.command(), *force, &self.inputs)?;
+        let owner = Owner { command: self.command(), force: *force, inputs: &self.inputs, resumes };
+        let (folder, claim) = output::folder(out.as_deref(), name, &owner)?;
         (self.folder, self.claim) = (folder, Some(claim));
         Ok(())
     }

@@ -5,10 +5,11 @@
 //! batch has none.
 
 use crate::engine::Settings;
-use crate::engine::by_rays::{Estimator, Passes, film, variance};
+use crate::engine::by_rays::{Estimator, film, variance};
 use crate::engine::known::coplanar::undecided;
 use crate::engine::known::doubts::doubts;
 use crate::engine::known::unsampled::unsampled;
+use crate::engine::passes::Passes;
 use crate::estimator::render::{Amount, render};
 use crate::estimator::{PathTracer, Plan};
 use crate::operator::SceneTransport;

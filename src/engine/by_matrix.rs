@@ -6,11 +6,11 @@
 //! error.
 
 use crate::engine::Settings;
-use crate::engine::by_rays;
-use crate::engine::by_rays::Sampled;
+use crate::engine::by_rays::{self, Sampled, Title};
 use crate::engine::discretisation::{Difference, Discretisation, Factors, SampledRows, Stored};
 use crate::engine::known::coplanar::undecided;
 pub use crate::engine::matrix_error::MatrixError;
+use crate::engine::passes::Watch;
 use crate::engine::radius::{Radius, radii, sampled_noise};
 pub use crate::engine::unlit::Unlit;
 use crate::engine::unlit::unlit;
@@ -293,8 +293,8 @@ impl Matrix {
             self.sampling.map_or(String::new(), |s| format!(" of {} rays", s.per_row)),
             if settings.read_patches { ", read" } else { "" }
         );
-        let world = (World::Radiosity, label);
-        let mut seen = by_rays::sample(&t, &scene.camera, &gather, "radiosity", world, settings, progress);
+        let title = Title { stream: "radiosity", world: World::Radiosity, label };
+        let mut seen = by_rays::sample(&t, &scene.camera, &gather, title, settings, progress, Watch::NONE);
         seen.series.undecided = undecided(scene);
         seen
     }
@@ -318,8 +318,8 @@ impl Matrix<Radiosity> {
         terms.extend(fields.iter().map(|f| f.iter().map(|v| DVec3::splat(*v)).collect()));
         terms.push(nothing.clone());
         let gather = Gather { patches, terms: &terms, tail: nothing, read_patches: false };
-        let world = (World::Radiosity, "modes".to_string());
-        let mut seen = by_rays::sample(&t, &scene.camera, &gather, "modes", world, settings, progress);
+        let title = Title { stream: "modes", world: World::Radiosity, label: "modes".to_string() };
+        let mut seen = by_rays::sample(&t, &scene.camera, &gather, title, settings, progress, Watch::NONE);
         seen.terms.drain(2..2 + fields.len()).collect()
     }
 }

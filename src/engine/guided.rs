@@ -5,8 +5,9 @@
 //! rays hit, so the result stays unbiased.
 
 use crate::engine::Settings;
-use crate::engine::by_rays::{self, Estimator, Sampled, annotated, spread};
+use crate::engine::by_rays::{self, Estimator, Sampled, Title, annotated, spread};
 use crate::engine::known::growth::{self, FromEye, Growth};
+use crate::engine::passes::Watch;
 use crate::estimator::{Branching, Plan, Prefix, Roulette, SingleTerm};
 use crate::guide::tracked::{Track, Tracked, TrackedSensor};
 use crate::guide::{self, ByExpectation, Guide, GuidedTransport, Recipe};
@@ -102,23 +103,25 @@ impl Prepared {
         estimator: Estimator,
         settings: &Settings,
         progress: Progress<'_>,
+        watch: Watch<'_>,
     ) -> Option<Sampled> {
         let (t, settings) = (self.transport(scene, settings), &self.rest(settings));
         let (plan, camera, stream) = (settings.plan(), &scene.camera, format!("guided {estimator}"));
-        let name = (World::Terms, self.label(&estimator.to_string(), settings));
+        let label = self.label(&estimator.to_string(), settings);
+        let title = Title { stream: &stream, world: World::Terms, label };
         let end = settings.by_expectation.filter(|_| estimator == Estimator::Prefix);
         let result = match (estimator, end) {
             (Estimator::Prefix, Some(end)) => {
                 let (t, camera) = (Tracked(&t), TrackedSensor(camera));
                 let Plan { max_bounces, technique, .. } = plan;
                 let prefix = guide::Prefix { max_bounces, technique, end };
-                by_rays::sample(&t, &camera, &prefix, &stream, name, settings, progress)
+                by_rays::sample(&t, &camera, &prefix, title, settings, progress, watch)
             }
-            (Estimator::Prefix, None) => by_rays::sample(&t, camera, &Prefix(plan), &stream, name, settings, progress),
-            (Estimator::Single, _) => by_rays::sample(&t, camera, &SingleTerm(plan), &stream, name, settings, progress),
+            (Estimator::Prefix, None) => by_rays::sample(&t, camera, &Prefix(plan), title, settings, progress, watch),
+            (Estimator::Single, _) => by_rays::sample(&t, camera, &SingleTerm(plan), title, settings, progress, watch),
             (Estimator::Branching { children }, _) => {
                 let tree = Branching { plan, children };
-                by_rays::sample(&t, camera, &tree, &stream, name, settings, progress)
+                by_rays::sample(&t, camera, &tree, title, settings, progress, watch)
             }
             (Estimator::Light | Estimator::Bidirectional, _) => return None,
         };
@@ -127,13 +130,14 @@ impl Prepared {
     }
 
     /// Renders with the full path tracer.
-    pub fn path(&self, scene: &Scene, settings: &Settings, progress: Progress<'_>) -> Sampled {
+    pub fn path(&self, scene: &Scene, settings: &Settings, progress: Progress<'_>, watch: Watch<'_>) -> Sampled {
         let (t, settings) = (self.transport(scene, settings), &self.rest(settings));
         let (roulette, end) = (&settings.path_roulette, settings.by_expectation);
         let how = end.map_or(roulette.to_string(), |end| end.to_string());
-        let name = (World::Path, self.label("path tracer", settings) + &format!(", roulette {how}"));
+        let label = self.label("path tracer", settings) + &format!(", roulette {how}");
+        let title = Title { stream: "guided path", world: World::Path, label };
         let path = guide::PathTracer { plan: Plan { roulette: roulette.clone(), ..settings.plan() }, end };
-        let result = by_rays::sample(&t, &scene.camera, &path, "guided path", name, settings, progress);
+        let result = by_rays::sample(&t, &scene.camera, &path, title, settings, progress, watch);
         let doubt = doubt(&t, end, roulette, settings);
         annotated(result, scene, None, settings).judged(doubt)
     }

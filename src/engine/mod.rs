@@ -4,6 +4,7 @@
 //! | engine | result | place |
 //! |---|---|---|
 //! | by rays | every `T^k E` separately; Σ T^k E by the path tracer | [`by_rays::terms`], [`by_rays::path`] |
+//! | pass by pass | callbacks between the passes; states that are kept, and taken up again | [`passes::Watch`], [`passes::Keep`] |
 //! | guided | both, with a matrix as a guide for the directions of rays | [`guided`] |
 //! | by matrix | `T_h^k E` and the solution of the linear system, through the same camera | [`by_matrix::radiosity`] |
 //! | batches | by rays in batches, for comparisons that are updated with every batch | [`batches::Side`] |
@@ -20,7 +21,9 @@ pub mod guided;
 pub mod known;
 mod matrix_error;
 mod options;
+pub mod passes;
 pub mod radius;
+mod sampled;
 mod settings;
 pub mod timing;
 mod unlit;

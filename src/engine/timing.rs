@@ -15,7 +15,8 @@
 //!
 //! Reference: Glynn and Whitt, *Operations Research* 40 (1992), on efficiency per time.
 
-use super::by_rays::{Passes, film};
+use super::by_rays::film;
+use super::passes::Passes;
 use super::{Settings, by_rays::Estimator};
 use crate::estimator::render::Amount;
 use crate::operator::SceneTransport;

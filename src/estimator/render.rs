@@ -1,15 +1,29 @@
 //! Renders an estimator through a sensor into a film: every pixel and every sample, in passes that double.
 //!
+//! ```text
+//! pass 1: samples 0..R      pass 2: R..2R      pass 3: 2R..4R      …      last pass: …..N
+//! ```
+//!
 //! Passes end at 1, 2, 4, … samples per replicate, and at other numbers if the caller asks for them. At the end of a pass
 //! the film is complete: a preview can be shown, and the variance curve gets a point. Within a pass, blocks of pixels are
 //! independent jobs. The samples of a pixel are added in order by one thread, so the sums have the same bits for any number
 //! of threads.
+//!
+//! A render may be left and taken up again ([`Render`]): within a pass a block has all samples of the pass or none, and the blocks
+//! that have none are done later. What a job adds is therefore always the same, and so are the bits of the film.
+//!
+//! | symbol | meaning | place |
+//! |---|---|---|
+//! | N | samples per pixel | [`Amount::spp`] |
+//! | R | number of replicates | [`Amount::replicates`] |
+//! | | a film and how it goes on | [`Render`] |
 
 use super::totals::Totals;
 use super::{Batch, Job, Paths, TermEstimator, TermSink, splats};
 use crate::math::{Columns, Key};
 use crate::operator::{Sensor, Transport};
 use crate::progress::Progress;
+use crate::terms::Part;
 use crate::terms::film::{BLOCK, FilmBlock, Shape, TermFilm};
 use crate::terms::largest::Largest;
 use rayon::prelude::*;
@@ -75,50 +89,168 @@ pub fn render_in_passes<T: Transport>(
     progress: Progress<'_>,
     look: &mut dyn FnMut(&TermFilm, u32) -> u32,
 ) -> TermFilm {
-    let shape = Shape { size: sensor.size(), slots: estimator.slots(), replicates: amount.replicates };
-    let mut film = TermFilm::new(shape);
-    let (mut done, mut until) = (0, (amount.replicates as u32).min(amount.spp));
-    while done < until && !(done > 0 && progress.stopped()) {
-        pass(t, sensor, estimator, amount.key, done..until, &mut film, progress);
-        done = until;
-        if !progress.stopped() {
-            until = look(&film, done.saturating_mul(2).min(amount.spp)).min(amount.spp);
-        }
+    let film = amount.film(t, sensor, estimator);
+    let render = Render { film, part: Part::WHOLE, due: &|| false };
+    render.go_on(t, sensor, estimator, amount, progress, &mut Looking(look))
+}
+
+/// A render that is looked at, and never kept.
+struct Looking<'a>(&'a mut dyn FnMut(&TermFilm, u32) -> u32);
+
+impl Between for Looking<'_> {
+    fn look(&mut self, film: &TermFilm, planned: u32) -> u32 {
+        (self.0)(film, planned)
     }
-    film
+    fn keep(&mut self, _: &TermFilm) {}
+}
+
+impl Amount {
+    /// An empty film for these samples.
+    pub fn film<T: Transport>(&self, _: &T, sensor: &impl Sensor<T>, estimator: &impl TermEstimator<T>) -> TermFilm {
+        let shape = Shape { size: sensor.size(), slots: estimator.slots(), replicates: self.replicates };
+        TermFilm::empty(shape, estimator.splats())
+    }
+
+    /// The end of the pass that follows after `done` samples.
+    fn next(&self, done: u32) -> u32 {
+        let mut end = (self.replicates as u32).min(self.spp);
+        while end <= done && end < self.spp {
+            end = end.saturating_mul(2);
+        }
+        end.min(self.spp)
+    }
+}
+
+/// True if a render that has ended after `done` samples can go on to the same bits as one that never ended. Paths are computed in
+/// groups, and the order of a group decides in which order numbers are added; so no group may be cut.
+pub fn ends_a_group(done: u32, shape: Shape, shared: bool) -> bool {
+    let first = shape.replicates as u32;
+    let mut start = first;
+    while start <= done / 2 {
+        start *= 2;
+    }
+    let whole = |group: u32| done >= first && (done - start).is_multiple_of(group);
+    if shared {
+        return whole(splats::deep(shape.pixels() as u32));
+    }
+    let last = shape.blocks() - 1;
+    [0, last].into_iter().all(|block| whole(at_once(shape.block(block))))
+}
+
+/// A film, and how its render goes on.
+pub(crate) struct Render<'a> {
+    /// The film so far: empty, or as an earlier render left it.
+    pub film: TermFilm,
+    /// The part of the film that is rendered.
+    pub part: Part,
+    /// Asked by every job: true if the film is to be kept now. It stays true until the film is kept.
+    pub due: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// What is done between and within passes.
+pub(crate) trait Between {
+    /// Called after a complete pass with the planned number of samples after the next one. Returns the number that it shall reach.
+    fn look(&mut self, film: &TermFilm, planned: u32) -> u32;
+    /// Called within a pass if the film is to be kept, and at the end of a render that was stopped there.
+    fn keep(&mut self, film: &TermFilm);
+}
+
+impl Render<'_> {
+    /// Renders until there are all samples, until `look` wants no more, or until it is stopped.
+    pub(crate) fn go_on<T: Transport>(
+        self,
+        t: &T,
+        sensor: &impl Sensor<T>,
+        estimator: &impl TermEstimator<T>,
+        amount: Amount,
+        progress: Progress<'_>,
+        between: &mut impl Between,
+    ) -> TermFilm {
+        let Self { mut film, part, due } = self;
+        let samples = film.samples_of(part);
+        let mut done = samples.start;
+        // a film that was left within a pass finishes this pass first
+        let mut until = if samples.is_empty() { amount.next(done) } else { samples.end };
+        // a film that was left between two passes is looked at first, unless such a pass does not exist in a longer render
+        if done > 0 && samples.is_empty() && (done >= amount.spp || amount.next(done - 1) == done) {
+            until = between.look(&film, until).min(amount.spp);
+        }
+        while done < until && !(done > 0 && progress.stopped()) {
+            pass(t, sensor, estimator, Pass { key: amount.key, until, part, due }, &mut film, progress);
+            if film.samples_of(part).start < until {
+                between.keep(&film);
+                continue;
+            }
+            done = until;
+            if !progress.stopped() {
+                until = between.look(&film, amount.next(done)).min(amount.spp);
+            }
+        }
+        film
+    }
+}
+
+/// One pass.
+#[derive(Clone, Copy)]
+pub(super) struct Pass<'a> {
+    pub(super) key: Key,
+    /// The number of samples that every pixel of the part shall have.
+    pub(super) until: u32,
+    pub(super) part: Part,
+    /// True if the pass shall pause.
+    pub(super) due: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// The part of the film that one job fills: sums, squares, sample counts.
-type Part<'a> = ((&'a mut [f64], &'a mut [f64]), &'a mut [u32]);
+type Block<'a> = ((&'a mut [f64], &'a mut [f64]), &'a mut [u32]);
 
-#[allow(clippy::too_many_arguments)] // one call site; a struct of them would only rename the list
+/// Number of samples of a block of so many pixels that are computed together.
+fn at_once(pixels: usize) -> u32 {
+    WAVE / BLOCK as u32 * (BLOCK / pixels) as u32
+}
+
+/// Brings all blocks of a part to the number of samples of the pass, unless it is stopped or pauses.
 fn pass<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
     estimator: &impl TermEstimator<T>,
-    key: Key,
-    samples: std::ops::Range<u32>,
+    pass: Pass<'_>,
     film: &mut TermFilm,
     progress: Progress<'_>,
 ) {
+    if film.shared {
+        return splats::pass(t, sensor, estimator, pass, film, progress);
+    }
     let shape = film.shape;
     let sums = film.sums.par_chunks_mut(BLOCK * shape.per_pixel());
     let squares = film.squares.par_chunks_mut(BLOCK * shape.slots);
     let counts = film.samples.par_chunks_mut(BLOCK);
-    // the first pass always finishes, so that every pixel holds samples
-    let may_stop = samples.start > 0;
+    let Pass { key, until, part, due } = pass;
     // only contributions above these floors are kept; every finished block raises the floors for the others
     let floors = Largest::floors(&film.largest);
-    let job = |paths: &mut Paths<T::Wave>, (i, ((sums, squares), counts)): (usize, Part)| {
-        if may_stop && progress.stopped() {
+    let job = |paths: &mut Paths<T::Wave>, (i, ((sums, squares), counts)): (usize, Block)| {
+        let samples = counts[0]..until;
+        // the first pass is never stopped, so that every pixel holds samples
+        let stops = || samples.start > 0 && progress.stopped() || due();
+        if samples.is_empty() || !part.has(i) || stops() {
             return Totals::new(shape.slots);
         }
         let first = (i * BLOCK) as u32;
         let pixels = first..first + counts.len() as u32;
         let largest = floors.iter().map(Largest::above).collect();
         let rays = vec![0; shape.slots];
-        let mut block = FilmBlock { shape, first, pixels: pixels.len(), sums, squares, largest, non_finite: 0, rays };
-        let at_once = WAVE / BLOCK as u32 * (BLOCK / pixels.len()) as u32;
+        let mut block = FilmBlock {
+            shape,
+            first,
+            pixels: pixels.len(),
+            shared: false,
+            sums,
+            squares,
+            largest,
+            non_finite: 0,
+            rays,
+        };
+        let at_once = at_once(pixels.len());
         for s in samples.clone().step_by(at_once as usize) {
             let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + at_once).min(samples.end) };
             estimator.sample(&Job { t, sensor, batch: &batch }, paths, &mut block);
@@ -128,10 +260,6 @@ fn pass<T: Transport>(
         block.largest.iter().zip(&floors).for_each(|(l, floor)| l.tell(floor));
         Totals { rays: block.rays, non_finite: block.non_finite, largest: block.largest }
     };
-    if estimator.splats() {
-        film.shared = true;
-        return splats::pass(t, sensor, estimator, key, samples, film, progress);
-    }
     let parts = sums.zip(squares).zip(counts).enumerate().map_init(Paths::default, job);
     let totals = parts.reduce(|| Totals::new(shape.slots), Totals::plus);
     totals.add_to(film);

@@ -8,15 +8,15 @@
 //! sums have the same bits for any number of threads. Sorting also has a reason in the hardware: contributions that come in
 //! the order of the film need few memory accesses.
 
+use super::render::Pass;
 use super::totals::Totals;
 use super::{Batch, Job, Paths, TermEstimator, TermSink};
-use crate::math::{Columns, Key, Rgb};
+use crate::math::{Columns, Rgb};
 use crate::operator::{Sensor, Transport};
 use crate::progress::Progress;
 use crate::terms::film::{BLOCK, FilmBlock, Shape, TermFilm};
 use crate::terms::largest::Largest;
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// Number of paths of a job.
 const JOB: u32 = 1024;
@@ -73,31 +73,39 @@ fn sort(list: &mut Vec<Splat>, keys: usize, key: impl Fn(&Splat) -> usize) -> Ve
     starts
 }
 
-/// Adds the samples `samples` of every pixel to a film. If it is stopped, each sample is done completely or not at all, because
-/// a half-finished sample would darken every pixel.
+/// Number of samples of a film of so many pixels that a job computes together.
+pub(super) fn deep(pixels: u32) -> u32 {
+    (JOB / pixels).max(1)
+}
+
+/// Brings every pixel to the number of samples of the pass. If it is stopped or pauses, each sample is done completely or not at
+/// all, because a half-finished sample would darken every pixel. A part of the film gets the samples of its replicates, and
+/// counts the others as done.
 pub(super) fn pass<T: Transport>(
     t: &T,
     sensor: &impl Sensor<T>,
     estimator: &impl TermEstimator<T>,
-    key: Key,
-    samples: Range<u32>,
+    pass: Pass<'_>,
     film: &mut TermFilm,
     progress: Progress<'_>,
 ) {
-    let pixels = film.shape.pixels() as u32;
-    let (wide, deep) = (JOB.min(pixels), (JOB / pixels).max(1));
+    let (pixels, replicates) = (film.shape.pixels() as u32, film.shape.replicates);
+    let Pass { key, until, part, due } = pass;
+    let (wide, deep) = (JOB.min(pixels), if part.is_whole() { deep(pixels) } else { 1 });
     // samples that are done together; on a large film only one, so that a stop does not take long
     let together = (JOB * AT_ONCE as u32 / pixels).max(1);
-    // the first pass always finishes, because replicates without samples would give errors of 0
+    let samples = film.samples[0]..until;
+    // the first pass is never stopped, because replicates without samples would give errors of 0
     let may_stop = samples.start > 0;
     for first in samples.clone().step_by(together as usize) {
-        if may_stop && progress.stopped() {
+        if may_stop && progress.stopped() || due() {
             return;
         }
         let some = first..(first + together).min(samples.end);
         let batch =
             |s: u32, p: u32| Batch { key, pixels: p..(p + wide).min(pixels), samples: s..(s + deep).min(some.end) };
-        let batches = some.clone().step_by(deep as usize);
+        let own = |s: &u32| part.has(*s as usize % replicates);
+        let batches = some.clone().step_by(deep as usize).filter(own);
         let batches: Vec<Batch> =
             batches.flat_map(|s| (0..pixels).step_by(wide as usize).map(move |p| batch(s, p))).collect();
         for batches in batches.chunks(AT_ONCE) {
@@ -105,7 +113,7 @@ pub(super) fn pass<T: Transport>(
                 let rays = vec![0; film.shape.slots];
                 let mut splats = Splats { list: vec![], starts: vec![], rays };
                 estimator.sample(&Job { t, sensor, batch }, paths, &mut splats);
-                splats.starts = sort(&mut splats.list, PARTS, |s| s.pixel as usize / part(film.shape));
+                splats.starts = sort(&mut splats.list, PARTS, |s| s.pixel as usize / self::part(film.shape));
                 progress.advance(batch.len() as u64);
                 splats
             };
@@ -123,9 +131,9 @@ fn part(shape: Shape) -> usize {
 
 /// Adds the contributions of some jobs to the film.
 fn add(jobs: &[Splats], film: &mut TermFilm) {
-    let (shape, part) = (film.shape, part(film.shape));
+    let (shape, part, each) = (film.shape, part(film.shape), film.squares_per_pixel());
     let floors = Largest::floors(&film.largest);
-    let parts = film.sums.par_chunks_mut(part * shape.per_pixel()).zip(film.squares.par_chunks_mut(part * shape.slots));
+    let parts = film.sums.par_chunks_mut(part * shape.per_pixel()).zip(film.squares.par_chunks_mut(part * each));
     let parts = parts.enumerate().map(|(i, (sums, squares))| {
         let mut list = vec![];
         for job in jobs {
@@ -138,14 +146,15 @@ fn add(jobs: &[Splats], film: &mut TermFilm) {
         let mut totals = Totals::new(shape.slots);
         totals.largest = floors.iter().map(Largest::above).collect();
         let (mut pixel, mut sample, mut value) = (vec![], vec![], Columns::default());
-        let blocks = sums.chunks_mut(BLOCK * shape.per_pixel()).zip(squares.chunks_mut(BLOCK * shape.slots));
+        let blocks = sums.chunks_mut(BLOCK * shape.per_pixel()).zip(squares.chunks_mut(BLOCK * each));
         for ((block, (sums, squares)), starts) in
             blocks.enumerate().zip(starts.windows(shape.slots + 1).step_by(shape.slots))
         {
             let largest = std::mem::take(&mut totals.largest);
             let rays = std::mem::take(&mut totals.rays);
-            let (first, pixels) = ((first + block * BLOCK) as u32, squares.len() / shape.slots);
-            let mut block = FilmBlock { shape, first, pixels, sums, squares, largest, non_finite: 0, rays };
+            let (first, pixels) = ((first + block * BLOCK) as u32, squares.len() / each);
+            let mut block =
+                FilmBlock { shape, first, pixels, shared: true, sums, squares, largest, non_finite: 0, rays };
             for slot in 0..shape.slots {
                 let list = &list[starts[slot] as usize..starts[slot + 1] as usize];
                 pixel.clear();

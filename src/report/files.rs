@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::{fs, io};
+use std::{fs, io, io::Write};
 
 use super::ReportError;
 
@@ -13,12 +13,23 @@ use super::ReportError;
 /// # Errors
 /// If the folder is missing or not writable, or the disk is full. No temporary file stays behind.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
+    write_atomically_by(path, |mut file| file.write_all(bytes))
+}
+
+/// The same for a file that is written in pieces.
+///
+/// # Errors
+/// As of [`write_atomically`], and those of `contents`.
+pub(super) fn write_atomically_by(
+    path: &Path,
+    contents: impl FnOnce(fs::File) -> io::Result<()>,
+) -> Result<(), ReportError> {
     const HELP: &str = "check that the folder exists and can be written, or choose another with -o";
     let Some(name) = path.file_name() else {
         return Err(ReportError::new(path, "this path has no file name", "name a file, not a folder"));
     };
     let temporary = path.with_file_name(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));
-    write(&temporary, bytes, path).map_err(|e| {
+    write(&temporary, contents, path).map_err(|e| {
         // Report the first error. The rest of the temporary file is useless.
         let _ = fs::remove_file(&temporary);
         ReportError::new(path, e, HELP)
@@ -26,11 +37,28 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
 }
 
 /// Writes the temporary file and renames it.
-fn write(temporary: &Path, bytes: &[u8], path: &Path) -> io::Result<()> {
+fn write(temporary: &Path, contents: impl FnOnce(fs::File) -> io::Result<()>, path: &Path) -> io::Result<()> {
     unfinished().insert(temporary.to_path_buf());
-    let written = fs::write(temporary, bytes).and_then(|()| fs::rename(temporary, path));
+    let written = fs::File::create(temporary).and_then(contents).and_then(|()| fs::rename(temporary, path));
     unfinished().remove(temporary);
     written
+}
+
+/// Opens a file to be read.
+pub(super) fn open(path: &Path) -> Result<fs::File, ReportError> {
+    is_file(path)?;
+    fs::File::open(path).map_err(|e| missing(path, e))
+}
+
+fn is_file(path: &Path) -> Result<(), ReportError> {
+    if path.exists() && !path.is_file() {
+        return Err(ReportError::new(path, "this is not a file", "give a file, not a folder, a pipe or a device"));
+    }
+    Ok(())
+}
+
+fn missing(path: &Path, e: io::Error) -> ReportError {
+    ReportError::new(path, e, "check the name, or render the scene first")
 }
 
 /// The temporary files that exist at this moment.
@@ -64,8 +92,6 @@ pub fn is_temporary(name: &str) -> bool {
 
 /// Reads a whole file.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, ReportError> {
-    if path.exists() && !path.is_file() {
-        return Err(ReportError::new(path, "this is not a file", "give a file, not a folder, a pipe or a device"));
-    }
-    fs::read(path).map_err(|e| ReportError::new(path, e, "check the name, or render the scene first"))
+    is_file(path)?;
+    fs::read(path).map_err(|e| missing(path, e))
 }

@@ -15,6 +15,7 @@
 //! | [`plot`] | axes, marks and curves: the parts of a figure |
 //! | [`figures`] | for each study its figure, its table and its CSV |
 //! | [`page`] | `index.html` |
+//! | [`state`] | films in a file, from which a later run goes on |
 //! | [`book`] | chapters and figures of the lecture: their folder, their claims |
 //! | [`exercise`] | exercises that are judged: the student's numbers, the truth, the verdict |
 //!
@@ -41,6 +42,7 @@
 //! | `solvers.svg`, its PNG, `history.csv` | [`figures::solvers`] |
 //! | the whole image extrapolated from its first terms | [`figures::extrapolation`] |
 //! | `index.html` | [`page::html`] |
+//! | `state.fsh`, parts of a run | [`state`] |
 
 pub mod book;
 mod error;
@@ -50,6 +52,7 @@ mod files;
 pub mod image;
 pub mod page;
 pub mod plot;
+pub mod state;
 pub mod text;
 
 pub use crate::stats::half_width_95;

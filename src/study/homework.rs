@@ -19,6 +19,7 @@
 
 use crate::engine::Settings;
 use crate::engine::by_rays::{self, Estimator, Sampled};
+use crate::engine::passes::Watch;
 use crate::estimator::Roulette;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -113,7 +114,8 @@ pub fn homework(scene: &Scene, spp: u32, seed: u64, progress: Progress<'_>) -> O
         Some(2 * n.next_power_of_two())
     };
     let progress = progress.named("roulette");
-    let roulette = by_rays::watched(scene, Some(Estimator::Prefix), &ended, progress, Some(&mut look));
+    let watch = Watch { look: Some(&mut look), ..Watch::NONE };
+    let roulette = by_rays::watched(scene, Some(Estimator::Prefix), &ended, progress, watch);
     (!progress.stopped()).then_some(Homework { terms, roulette, grown })
 }
 

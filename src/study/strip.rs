@@ -3,7 +3,8 @@
 //! Without an image, long series and many surfaces cost little memory. Surface norms, long terms and light by surface use it.
 
 use crate::engine::Settings;
-use crate::engine::by_rays::{self, Estimator, Passes};
+use crate::engine::by_rays::{self, Estimator};
+use crate::engine::passes::Passes;
 use crate::estimator::Roulette;
 use crate::estimator::render::Amount;
 use crate::operator::{SceneTransport, Sensor};

@@ -15,7 +15,8 @@
 
 use crate::engine::Settings;
 use crate::engine::by_matrix::Matrix;
-use crate::engine::by_rays::{self, Estimator, Passes, Sampled};
+use crate::engine::by_rays::{self, Estimator, Sampled};
+use crate::engine::passes::{Passes, Watch};
 use crate::estimator::{Absorption, PathTracer, Plan, Roulette};
 use crate::math::names::list;
 use crate::operator::MatrixWalk;
@@ -119,10 +120,11 @@ pub fn walk(matrix: &Matrix<Radiosity>, walker: Walker, settings: &Settings, pro
     let t = transport(matrix);
     let n = matrix.radiosity.patches.len();
     let rows = Rows(n as u32);
-    let amount = by_rays::amount(settings, &format!("walk {walker}"));
+    let stream = format!("walk {walker}");
+    let amount = by_rays::amount(settings, &stream);
     let clock = settings.time.map(Clock::start);
     let what = format!("walk, {walker}");
-    let mut passes = Passes::begin(&what, [n as u32, 1], settings, progress, clock.as_ref());
+    let mut passes = Passes::begin((&what, &stream), [n as u32, 1], settings, progress, clock.as_ref(), Watch::NONE);
     let plan = settings.plan();
     let (film, ends) = match walker {
         Walker::Terms(estimator) => {

@@ -14,7 +14,8 @@
 //! | N, R | samples of the pixel, number of replicates | |
 //! | m, d_r | mean, deviation of replicate r; Σ_r d_r = 0 | [`Deviations`] |
 
-use super::film::{BLOCK, TermFilm};
+use super::film::{BLOCK, Shape, TermFilm};
+use super::part::Part;
 use glam::DVec3;
 use pulp::{Arch, Simd};
 use std::ops::Range;
@@ -32,13 +33,12 @@ pub(super) struct Piece<'a> {
 impl<'a> Piece<'a> {
     /// The pieces that neighbouring pixels consist of.
     pub(super) fn all(film: &'a TermFilm, pixels: Range<usize>) -> impl Iterator<Item = Self> {
-        let blocks = pixels.start / BLOCK..pixels.end.div_ceil(BLOCK);
-        // a film of few rows has bands without a pixel
-        let blocks = if pixels.is_empty() { 0..0 } else { blocks };
-        blocks.map(move |b| {
-            let pixels = pixels.start.max(b * BLOCK)..pixels.end.min((b + 1) * BLOCK);
-            Self { film, pixels }
-        })
+        pieces(pixels).map(move |pixels| Self { film, pixels })
+    }
+
+    /// True if the piece belongs to a part of the film.
+    pub(super) fn is_in(&self, part: Part) -> bool {
+        part.has(self.pixels.start / BLOCK)
     }
 
     /// Σ (r + g + b)² of the contributions to each pixel.
@@ -52,9 +52,17 @@ impl<'a> Piece<'a> {
     }
 }
 
+/// The pixels of the pieces that neighbouring pixels consist of.
+pub(super) fn pieces(pixels: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    let blocks = pixels.start / BLOCK..pixels.end.div_ceil(BLOCK);
+    // a film of few rows has bands without a pixel
+    let blocks = if pixels.is_empty() { 0..0 } else { blocks };
+    blocks.map(move |b| pixels.start.max(b * BLOCK)..pixels.end.min((b + 1) * BLOCK))
+}
+
 /// The pixels of each band of rows: row y of h belongs to band ⌊16 y/h⌋.
-pub(super) fn bands(film: &TermFilm) -> Vec<Range<usize>> {
-    let [w, h] = film.shape.size.map(|s| s as usize);
+pub(super) fn bands(shape: Shape) -> Vec<Range<usize>> {
+    let [w, h] = shape.size.map(|s| s as usize);
     let first = |band: usize| (band * h).div_ceil(BANDS) * w;
     (0..BANDS).map(|band| first(band)..first(band + 1)).collect()
 }

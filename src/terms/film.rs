@@ -16,8 +16,12 @@
 //!
 //! Memory: `pixels · R · slots · 24` bytes. Sums are `f64`, and nothing is clamped. Non-finite samples are counted and stay
 //! in the sums.
+//!
+//! A film may be rendered in [parts](super::part), and a render may be left within a pass: a block then holds all samples of the
+//! pass or none.
 
 use super::largest::Largest;
+use super::part::Part;
 use crate::math::Columns;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -42,6 +46,16 @@ impl Shape {
     pub(crate) fn per_pixel(&self) -> usize {
         self.replicates * self.slots * 3
     }
+
+    /// Number of blocks of pixels.
+    pub fn blocks(&self) -> usize {
+        self.pixels().div_ceil(BLOCK)
+    }
+
+    /// Number of pixels of a block.
+    pub(crate) fn block(&self, block: usize) -> usize {
+        BLOCK.min(self.pixels() - block * BLOCK)
+    }
 }
 
 /// Sums of all samples so far.
@@ -56,7 +70,8 @@ pub struct TermFilm {
     /// Number of samples that were not finite.
     pub non_finite: u64,
     pub(crate) sums: Vec<f64>,
-    /// Σ (r + g + b)² of all contributions, by block, slot and pixel. It gives the number of events that carry a mean.
+    /// Σ (r + g + b)² of all contributions, by block, slot and pixel; on a shared film also by replicate. It gives the number of
+    /// events that carry a mean.
     pub(crate) squares: Vec<f64>,
     /// The largest contributions to each slot, over all pixels.
     pub(crate) largest: Vec<Largest>,
@@ -79,6 +94,7 @@ pub(crate) struct FilmBlock<'a> {
     pub(crate) shape: Shape,
     pub(crate) first: u32,
     pub(crate) pixels: usize,
+    pub(crate) shared: bool,
     pub(crate) sums: &'a mut [f64],
     pub(crate) squares: &'a mut [f64],
     pub(crate) largest: Vec<Largest>,
@@ -120,7 +136,8 @@ impl FilmBlock<'_> {
         s[2] += f64::from(v.z);
         let sum = v.x + v.y + v.z;
         let all = f64::from(sum);
-        self.squares[slot * self.pixels + pixel] += all * all;
+        let row = if self.shared { slot * replicates as usize + replicate as usize } else { slot };
+        self.squares[row * self.pixels + pixel] += all * all;
         self.non_finite += u64::from(!sum.is_finite());
         self.largest[slot].push(sum);
     }
@@ -141,20 +158,62 @@ fn some_of([x, y, z]: [&[f32]; 3]) -> u32 {
 }
 
 impl TermFilm {
-    /// An empty film.
+    /// An empty film for paths that add to their own pixel.
     pub fn new(shape: Shape) -> Self {
-        let sums = vec![0.0; shape.pixels() * shape.per_pixel()];
-        let squares = vec![0.0; shape.pixels() * shape.slots];
-        Self {
+        Self::empty(shape, false)
+    }
+
+    /// An empty film. On a `shared` one, paths add to pixels other than their own.
+    pub fn empty(shape: Shape, shared: bool) -> Self {
+        let mut film = Self {
             shape,
             samples: vec![0; shape.pixels()],
             rays: vec![0; shape.slots],
             non_finite: 0,
-            sums,
-            squares,
+            sums: vec![0.0; shape.pixels() * shape.per_pixel()],
+            squares: vec![],
             largest: vec![Largest::default(); shape.slots],
-            shared: false,
-        }
+            shared,
+        };
+        film.squares = vec![0.0; shape.pixels() * film.squares_per_pixel()];
+        film
+    }
+
+    /// True if paths add to pixels other than their own.
+    pub fn is_shared(&self) -> bool {
+        self.shared
+    }
+
+    /// The blocks that hold a part of the film; all blocks of a shared film.
+    pub(crate) fn blocks_of(&self, part: Part) -> impl Iterator<Item = usize> + use<> {
+        let all = self.shared;
+        (0..self.shape.blocks()).filter(move |&b| all || part.has(b))
+    }
+
+    /// The sums and squares of one slot of a block.
+    pub(crate) fn slot_of_block(&self, block: usize, slot: usize) -> (&[f64], &[f64]) {
+        let [sums, squares] = self.places(block, slot);
+        (&self.sums[sums], &self.squares[squares])
+    }
+
+    /// The same, to be changed.
+    pub(crate) fn slot_of_block_mut(&mut self, block: usize, slot: usize) -> (&mut [f64], &mut [f64]) {
+        let [sums, squares] = self.places(block, slot);
+        (&mut self.sums[sums], &mut self.squares[squares])
+    }
+
+    fn places(&self, block: usize, slot: usize) -> [Range<usize>; 2] {
+        let (first, pixels) = (block * BLOCK, self.shape.block(block));
+        [self.shape.per_pixel(), self.squares_per_pixel()].map(|all| {
+            let each = all / self.shape.slots * pixels;
+            let start = first * all + slot * each;
+            start..start + each
+        })
+    }
+
+    /// Numbers of [`TermFilm::squares`] for each pixel.
+    pub(crate) fn squares_per_pixel(&self) -> usize {
+        self.shape.slots * if self.shared { self.shape.replicates } else { 1 }
     }
 
     /// A film of exactly known values: one sample of each pixel, `slots[s][pixel]`.
@@ -179,6 +238,7 @@ impl TermFilm {
         let pixel = pixel as usize - first;
         (0..3).for_each(|c| self.sums[at + c] += f64::from(value[c]));
         let all = f64::from(value.x + value.y + value.z);
+        assert!(!self.shared, "of tests");
         self.squares[first * self.shape.slots + slot as usize * pixels + pixel] += all * all;
         self.non_finite += u64::from(!(value.x + value.y + value.z).is_finite());
         self.largest[slot as usize].push(value.x + value.y + value.z);
@@ -210,7 +270,9 @@ impl TermFilm {
     pub fn square(&self, pixel: usize, slot: usize) -> f64 {
         let first = pixel / BLOCK * BLOCK;
         let pixels = BLOCK.min(self.samples.len() - first);
-        self.squares[first * self.shape.slots + slot * pixels + pixel - first]
+        let rows = if self.shared { self.shape.replicates } else { 1 };
+        let at = |row: usize| first * self.squares_per_pixel() + (slot * rows + row) * pixels + pixel - first;
+        (0..rows).map(|row| self.squares[at(row)]).sum()
     }
 
     /// Number of samples of one pixel in one replicate.
@@ -220,8 +282,31 @@ impl TermFilm {
         ((n + r - 1 - replicate) / r) as f64
     }
 
+    /// Takes over another part of the same film, of equal shape. What that part made is zero here, and adding to zero rounds nothing.
+    pub fn take(&mut self, part: Part, other: &Self) {
+        for block in other.blocks_of(part) {
+            for slot in 0..self.shape.slots {
+                let (from, to) = (other.slot_of_block(block, slot), self.slot_of_block_mut(block, slot));
+                to.0.iter_mut().zip(from.0).for_each(|(a, b)| *a += b);
+                to.1.iter_mut().zip(from.1).for_each(|(a, b)| *a += b);
+            }
+        }
+        self.samples.iter_mut().zip(&other.samples).for_each(|(a, b)| *a = (*a).max(*b));
+        self.rays.iter_mut().zip(&other.rays).for_each(|(a, b)| *a += b);
+        self.largest.iter_mut().zip(&other.largest).for_each(|(a, b)| a.merge(b));
+        self.non_finite += other.non_finite;
+    }
+
     /// Smallest number of samples of any pixel.
     pub fn least_samples(&self) -> u32 {
-        self.samples.iter().copied().min().unwrap_or(0)
+        self.samples_of(Part::WHOLE).start
+    }
+
+    /// Smallest and largest number of samples of the pixels of a part. They differ if a render was left within a pass.
+    pub fn samples_of(&self, part: Part) -> Range<u32> {
+        let own = |(b, _): &(usize, &[u32])| self.shared || part.has(*b);
+        let all = self.samples.chunks(BLOCK).enumerate().filter(own).flat_map(|(_, n)| n).copied();
+        let (least, most) = all.fold((u32::MAX, 0), |(least, most), n| (least.min(n), most.max(n)));
+        least.min(most)..most
     }
 }

@@ -26,7 +26,7 @@ const REGIONS: usize = 4;
 const PROJECTIONS: u32 = 8;
 
 /// The slots of one functional, replicate by replicate.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Replicates {
     /// Mean of each slot.
     pub mean: Vec<DVec3>,

@@ -26,7 +26,7 @@ impl TermImage {
             }
             image
         };
-        let all: Vec<Self> = bands(film).into_par_iter().map(band).collect();
+        let all: Vec<Self> = bands(film.shape).into_par_iter().map(band).collect();
         Self::of_bands(all.iter())
     }
 

@@ -80,6 +80,16 @@ impl Largest {
         all
     }
 
+    /// The values that are kept, and the number of all contributions: enough to go on later.
+    pub(crate) fn kept(&self) -> (&[f32], u64) {
+        (&self.values, self.added)
+    }
+
+    /// The largest contributions as they were kept. A lower floor decides only how many smaller values are kept.
+    pub(crate) fn restored(values: Vec<f32>, added: u64) -> Self {
+        Self { values, floor: 0.0, added }
+    }
+
     /// k̂; 0 if there are too few contributions to estimate it.
     ///
     /// ```

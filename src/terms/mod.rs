@@ -3,6 +3,8 @@
 //! | notation | type | place |
 //! |---|---|---|
 //! | sum of the samples, by replicate | [`TermFilm`] | [`film`] |
+//! | parts that are rendered apart | [`Part`] | [`part`] |
+//! | what is remembered of the passes of a render | [`history::History`] | [`history`] |
 //! | image of T^k E with its standard error | [`TermImage`] | [`image`] |
 //! | φ(T^k E), a linear functional of the image | [`Functional`] | [`functional`] |
 //! | sums over 16 × 16 tiles, replicate by replicate | [`TileSums`] | [`tile_sums`] |
@@ -18,9 +20,11 @@ pub mod cross_moments;
 mod deviations;
 pub mod film;
 pub mod functional;
+pub mod history;
 pub mod image;
 pub mod largest;
 pub mod norms;
+pub mod part;
 pub mod scatter;
 pub mod series;
 pub mod statistics;
@@ -31,5 +35,6 @@ pub mod variance;
 pub use cross_moments::{CrossMoments, Recorded};
 pub use film::{Shape, TermFilm};
 pub use image::TermImage;
+pub use part::Part;
 pub use series::{Channel, Cost, Doubt, Estimate, Events, Functional, Series, UnsampledPaths, Variance, World};
 pub use tile_sums::TileSums;

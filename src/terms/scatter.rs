@@ -22,7 +22,7 @@
 
 use super::TermImage;
 use super::deviations::{Deviations, Piece, bands};
-use super::film::TermFilm;
+use super::film::{Shape, TermFilm};
 use super::largest::Largest;
 use glam::DVec3;
 use pulp::{Arch, Simd};
@@ -50,17 +50,49 @@ pub struct Scatter {
 /// Sums over some pixels.
 #[derive(Clone)]
 pub(super) struct Sums {
-    /// Σ d_r² with x_r − m = R d_r, by replicate, in 24 interleaved parts: eight pixels of three channels.
-    squares: Vec<[f64; LANES]>,
+    /// The sum of the [rows](Row) of some pieces.
+    row: Vec<f64>,
     cross: Vec<f64>,
     square: f64,
     noise: f64,
     noise_squared: f64,
-    /// Σ x² of all contributions.
-    added: f64,
+}
+
+/// What a snapshot needs of one piece and one sum of slots, as `R + 4` numbers: Σ d_r² by replicate, where x_r − m = R d_r; the same
+/// over all replicates by channel; Σ x² of all contributions. Rows of pieces are added in the order of the pieces, so that parts of
+/// a film rendered apart give the same bits.
+#[derive(Default)]
+pub(super) struct Row {
+    /// Σ d_r² by replicate, in 24 interleaved parts: eight pixels of three channels.
+    lanes: Vec<[f64; LANES]>,
 }
 
 const LANES: usize = 24;
+
+/// Length of a row.
+pub(super) fn row_length(replicates: usize) -> usize {
+    replicates + 4
+}
+
+impl Row {
+    /// Writes the row of a piece; `added` is Σ x² of its contributions to these slots.
+    pub(super) fn write(&mut self, d: &Deviations, added: f64, row: &mut [f64]) {
+        let replicates = d.replicates;
+        self.lanes.clear();
+        self.lanes.resize(replicates, [0.0; LANES]);
+        squares(&d.of, &mut self.lanes);
+        row.fill(0.0);
+        for (r, lanes) in self.lanes.iter().enumerate() {
+            for rgb in lanes.as_chunks::<3>().0 {
+                row[r] += rgb[0] + rgb[1] + rgb[2];
+                for c in 0..3 {
+                    row[replicates + c] += rgb[c];
+                }
+            }
+        }
+        row[replicates + 3] = added;
+    }
+}
 
 impl Scatter {
     /// Scatter of the sum over some slots. `reference` is an image of the same quantity from an independent stream.
@@ -70,18 +102,20 @@ impl Scatter {
         let replicates = film.shape.replicates;
         let band = |pixels: Range<usize>| {
             let (mut sums, mut d) = (Sums::new(replicates, reference.is_some()), Deviations::default());
+            let (mut row, mut numbers) = (Row::default(), vec![0.0; row_length(replicates)]);
             for piece in Piece::all(film, pixels) {
                 d.begin(&piece);
                 d.slots(&piece, slots.clone());
-                sums.piece(&d, slots.clone().map(|s| piece.squares(s).sum::<f64>()).sum());
+                row.write(&d, slots.clone().map(|s| piece.squares(s).sum::<f64>()).sum(), &mut numbers);
+                sums.add(&numbers);
                 if let Some(x) = reference {
                     sums.compare(&piece, &d, x);
                 }
             }
             sums
         };
-        let parts: Vec<Sums> = bands(film).into_par_iter().map(band).collect();
-        Sums::scatter(parts.iter(), film, slots)
+        let parts: Vec<Sums> = bands(film.shape).into_par_iter().map(band).collect();
+        Sums::scatter(parts.iter(), film.shape, &film.largest[slots])
     }
 
     /// R, the number of replicates.
@@ -146,19 +180,17 @@ impl Sums {
     /// Nothing yet; `compared` with a reference or not.
     pub(super) fn new(replicates: usize, compared: bool) -> Self {
         Self {
-            squares: vec![[0.0; LANES]; replicates],
+            row: vec![0.0; row_length(replicates)],
             cross: vec![0.0; if compared { replicates } else { 0 }],
             square: 0.0,
             noise: 0.0,
             noise_squared: 0.0,
-            added: 0.0,
         }
     }
 
-    /// Adds a piece; `added` is Σ x² of its contributions to these slots.
-    pub(super) fn piece(&mut self, d: &Deviations, added: f64) {
-        squares(&d.of, &mut self.squares);
-        self.added += added;
+    /// Adds the row of a piece.
+    pub(super) fn add(&mut self, row: &[f64]) {
+        self.row.iter_mut().zip(row).for_each(|(a, b)| *a += b);
     }
 
     /// Adds the differences of a piece from a reference.
@@ -177,39 +209,33 @@ impl Sums {
         }
     }
 
-    /// The scatter of a film from the sums over its bands, added in their order.
-    pub(super) fn scatter<'a>(
-        mut bands: impl Iterator<Item = &'a Self>,
-        film: &TermFilm,
-        slots: Range<usize>,
-    ) -> Scatter {
-        let (pixels, n) = (film.shape.pixels() as f64, film.shape.replicates as f64);
-        let first = bands.next().cloned().unwrap_or_else(|| Self::new(film.shape.replicates, false));
+    /// The scatter of a film from the sums over its bands, added in their order, and the largest contributions to its slots.
+    pub(super) fn scatter<'a>(mut bands: impl Iterator<Item = &'a Self>, shape: Shape, slots: &[Largest]) -> Scatter {
+        let (replicates, pixels) = (shape.replicates, shape.pixels() as f64);
+        let n = replicates as f64;
+        let first = bands.next().cloned().unwrap_or_else(|| Self::new(replicates, false));
         let s = bands.fold(first, |a, b| a.plus(b));
         let count = 3.0 * pixels;
         let mut largest = Largest::default();
-        slots.for_each(|slot| largest.merge(&film.largest[slot]));
-        let channel = |c: usize| s.squares.iter().flat_map(|q| q.iter().skip(c).step_by(3)).sum::<f64>();
+        slots.iter().for_each(|slot| largest.merge(slot));
         Scatter {
-            q: s.squares.iter().map(|q| q.iter().sum::<f64>() * n * n / count).collect(),
-            channels: DVec3::from_array([0, 1, 2].map(channel)) * n / (pixels * (n - 1.0)),
+            q: s.row[..replicates].iter().map(|q| q * n * n / count).collect(),
+            channels: DVec3::from_slice(&s.row[replicates..]) * n / (pixels * (n - 1.0)),
             cross: s.cross.iter().map(|x| x * n / count).collect(),
             error: if s.cross.is_empty() { f64::NAN } else { (s.square - s.noise) / count },
             // error of the reference: scatter of |e|² and of se² over the pixels, for normal errors, fully correlated
             // channels and independent pixels
             reference_error: (2.0 * s.noise_squared * (1.0 + 1.0 / (n - 1.0))).sqrt() / count,
-            events: largest.spread(s.added),
+            events: largest.spread(s.row[replicates + 3]),
         }
     }
 
     fn plus(mut self, other: &Self) -> Self {
-        let squares = self.squares.as_flattened_mut().iter_mut().zip(other.squares.as_flattened());
-        squares.for_each(|(a, b)| *a += b);
+        self.add(&other.row);
         self.cross.iter_mut().zip(&other.cross).for_each(|(a, b)| *a += b);
         self.square += other.square;
         self.noise += other.noise;
         self.noise_squared += other.noise_squared;
-        self.added += other.added;
         self
     }
 }
@@ -238,7 +264,6 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::math::Rgb;
-    use crate::terms::Shape;
 
     /// A film of two pixels with `replicates` known replicate means and two samples each; replicate `skip` is left out.
     fn film(replicates: usize, skip: Option<usize>) -> TermFilm {

@@ -26,7 +26,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// All statistics of a film.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Statistics {
     /// The images of the slots, of the sum of all slots but the last, and of the whole; only one if there is one slot.
     pub images: Vec<TermImage>,
@@ -55,7 +55,7 @@ struct Part {
 impl Statistics {
     /// Reads a film.
     pub fn of(film: &TermFilm) -> Self {
-        let (slots, all) = (film.shape.slots, bands(film));
+        let (slots, all) = (film.shape.slots, bands(film.shape));
         let (rows, bands): (Vec<TileRow>, Vec<Vec<Part>>) =
             all.into_par_iter().map(|pixels| band(film, pixels)).unzip();
         let ranges = parts(slots);
@@ -63,7 +63,9 @@ impl Statistics {
         let each = 0..ranges.len();
         let images = each.clone().into_par_iter().map(|i| TermImage::of_bands(part(i).map(|p| &p.image)));
         let events = each.clone().into_par_iter().map(|i| PixelEvents::median(part(i).map(|p| &p.events)));
-        let scatter = |i: usize| scatter::Sums::scatter(part(i).map(|p| &p.scatter), film, ranges[i].clone());
+        let scatter = |i: usize| {
+            scatter::Sums::scatter(part(i).map(|p| &p.scatter), film.shape, &film.largest[ranges[i].clone()])
+        };
         // the sum without the tail has no variance in a snapshot
         let scatters: Vec<Scatter> = (0..slots).chain([ranges.len() - 1]).map(scatter).collect();
         let norm = |i: usize| NormSums::norm(part(i).map(|p| &p.norm), film.shape);
@@ -91,6 +93,7 @@ fn band(film: &TermFilm, pixels: Range<usize>) -> (TileRow, Vec<Part>) {
     };
     let mut all: Vec<Part> = parts(slots).into_iter().map(part).collect();
     let (mut tiles, mut d, mut memory) = (TileRow::new(film, &pixels), Deviations::default(), vec![]);
+    let mut row = (scatter::Row::default(), vec![0.0; scatter::row_length(replicates)]);
     for piece in Piece::all(film, pixels) {
         let places = tiles.places(&piece);
         tiles.pixels(&places);
@@ -103,7 +106,7 @@ fn band(film: &TermFilm, pixels: Range<usize>) -> (TileRow, Vec<Part>) {
             tiles.noise(&places, s, &d);
             let own: Vec<f64> = piece.squares(s).collect();
             let own_added = own.iter().sum();
-            all[s].piece(&d, &own, own_added);
+            all[s].piece(&d, &own, own_added, &mut row);
             if s + 1 < slots {
                 all[s].norm.piece(&d, &mut memory);
             }
@@ -115,7 +118,7 @@ fn band(film: &TermFilm, pixels: Range<usize>) -> (TileRow, Vec<Part>) {
                 let i = s + 2;
                 d.sum();
                 tiles.noise(&places, i, &d);
-                all[i].piece(&d, &squares, added);
+                all[i].piece(&d, &squares, added, &mut row);
             }
         }
     }
@@ -123,10 +126,11 @@ fn band(film: &TermFilm, pixels: Range<usize>) -> (TileRow, Vec<Part>) {
 }
 
 impl Part {
-    /// Adds a piece; `squares` is Σ x² of each pixel, and `added` that of all of them.
-    fn piece(&mut self, d: &Deviations, squares: &[f64], added: f64) {
+    /// Adds a piece; `squares` is Σ x² of each pixel, and `added` that of all of them. `row` is memory for a row of the scatter.
+    fn piece(&mut self, d: &Deviations, squares: &[f64], added: f64, (row, numbers): &mut (scatter::Row, Vec<f64>)) {
         self.image.piece(d);
-        self.scatter.piece(d, added);
+        row.write(d, added, numbers);
+        self.scatter.add(numbers);
         for (sum, square) in d.all.as_chunks::<3>().0.iter().zip(squares) {
             self.events.push(sum.iter().sum(), *square);
         }

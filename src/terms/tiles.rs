@@ -169,7 +169,7 @@ impl Tiles {
             }
             row
         };
-        let rows: Vec<TileRow> = bands(film).into_par_iter().map(of).collect();
+        let rows: Vec<TileRow> = bands(film.shape).into_par_iter().map(of).collect();
         Self::of_rows(film, rows.into_iter())
     }
 

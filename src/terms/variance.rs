@@ -5,9 +5,11 @@
 //! The error of V(n) comes from leaving out replicates, see [`scatter`](super::scatter). So it accounts for the dependence
 //! between the colours of a pixel, and for heavy tails. It needs three replicates.
 
-use super::deviations::{Deviations, Piece, bands};
-use super::film::TermFilm;
-use super::scatter::{Scatter, Sums};
+use super::deviations::{Deviations, Piece, bands, pieces};
+use super::film::{BLOCK, Shape, TermFilm};
+use super::largest::Largest;
+use super::part::Part;
+use super::scatter::{Row, Scatter, Sums, row_length};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -30,7 +32,7 @@ impl From<&Scatter> for Variance {
 }
 
 /// The variances at one number of samples.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshot {
     /// Samples per pixel so far.
     pub spp: u32,
@@ -53,26 +55,83 @@ impl Snapshot {
 
 /// The variances of a film in its present state. The film is read once for all of them.
 pub fn snapshot(film: &TermFilm) -> Snapshot {
-    let (slots, replicates) = (film.shape.slots, film.shape.replicates);
-    let band = |pixels: Range<usize>| {
-        let (mut sums, mut d) = (vec![Sums::new(replicates, false); slots + 1], Deviations::default());
-        for piece in Piece::all(film, pixels) {
-            d.begin(&piece);
-            let mut all = 0.0;
-            for (s, sums) in sums[..slots].iter_mut().enumerate() {
-                d.slot(&piece, s);
-                let added = piece.squares(s).sum();
-                sums.piece(&d, added);
-                d.add(&piece, s);
-                all += added;
+    Stand::of(film, Part::WHOLE).snapshot(film.shape)
+}
+
+/// What a snapshot is made of, for a part of a film: parts that are rendered apart are put together later.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stand {
+    /// Samples per pixel so far.
+    pub spp: u32,
+    /// The rows of every piece of the part, in the order of the film: of each slot, then of the sum.
+    pub(crate) rows: Vec<f64>,
+    /// The largest contributions to each slot.
+    pub(crate) largest: Vec<Largest>,
+}
+
+impl Stand {
+    /// Reads a part of a film.
+    pub fn of(film: &TermFilm, part: Part) -> Self {
+        let (slots, length) = (film.shape.slots, row_length(film.shape.replicates));
+        let band = |pixels: Range<usize>| {
+            let (mut d, mut row, mut rows) = (Deviations::default(), Row::default(), vec![]);
+            for piece in Piece::all(film, pixels).filter(|piece| piece.is_in(part)) {
+                d.begin(&piece);
+                let (mut all, start) = (0.0, rows.len());
+                rows.resize(start + (slots + 1) * length, 0.0);
+                let mut to = rows[start..].chunks_mut(length);
+                for (s, to) in to.by_ref().take(slots).enumerate() {
+                    d.slot(&piece, s);
+                    let added = piece.squares(s).sum();
+                    row.write(&d, added, to);
+                    d.add(&piece, s);
+                    all += added;
+                }
+                d.sum();
+                to.for_each(|to| row.write(&d, all, to));
             }
-            d.sum();
-            sums[slots].piece(&d, all);
+            rows
+        };
+        let rows: Vec<Vec<f64>> = bands(film.shape).into_par_iter().map(band).collect();
+        Self { spp: film.samples_of(part).start, rows: rows.concat(), largest: film.largest.clone() }
+    }
+
+    /// Number of numbers of the rows of a part of a film.
+    pub(crate) fn length(shape: Shape, part: Part) -> usize {
+        let pieces = bands(shape).into_iter().flat_map(pieces).filter(|pixels| part.has(pixels.start / BLOCK));
+        pieces.count() * (shape.slots + 1) * row_length(shape.replicates)
+    }
+
+    /// The variances of a whole film of that shape.
+    pub fn snapshot(&self, shape: Shape) -> Snapshot {
+        let (slots, replicates) = (shape.slots, shape.replicates);
+        let mut rows = self.rows.chunks(row_length(replicates));
+        let band = |pixels: Range<usize>| {
+            let mut sums = vec![Sums::new(replicates, false); slots + 1];
+            for _ in pieces(pixels) {
+                sums.iter_mut().zip(rows.by_ref()).for_each(|(sums, row)| sums.add(row));
+            }
+            sums
+        };
+        let bands: Vec<Vec<Sums>> = bands(shape).into_iter().map(band).collect();
+        let range = |i: usize| if i < slots { i..i + 1 } else { 0..slots };
+        let scatter = |i: usize| Sums::scatter(bands.iter().map(|b| &b[i]), shape, &self.largest[range(i)]);
+        Snapshot::new(self.spp, (0..=slots).map(scatter).collect())
+    }
+
+    /// Puts the parts of a film together; None unless they are as long as they must be.
+    pub fn together(parts: &[(Part, &Self)], shape: Shape) -> Option<Self> {
+        let length = (shape.slots + 1) * row_length(shape.replicates);
+        let mut rows: Vec<_> = parts.iter().map(|(_, s)| s.rows.chunks_exact(length)).collect();
+        let mut all = Self { spp: parts.first()?.1.spp, rows: vec![], largest: vec![Largest::default(); shape.slots] };
+        for pixels in bands(shape).into_iter().flat_map(pieces) {
+            let owner = parts.iter().position(|(part, _)| part.has(pixels.start / BLOCK))?;
+            all.rows.extend_from_slice(rows[owner].next()?);
         }
-        sums
-    };
-    let bands: Vec<Vec<Sums>> = bands(film).into_par_iter().map(band).collect();
-    let range = |i: usize| if i < slots { i..i + 1 } else { 0..slots };
-    let scatter = |i: usize| Sums::scatter(bands.iter().map(|b| &b[i]), film, range(i));
-    Snapshot::new(film.least_samples(), (0..=slots).map(scatter).collect())
+        for (_, stand) in parts {
+            all.largest.iter_mut().zip(&stand.largest).for_each(|(a, b)| a.merge(b));
+        }
+        let complete = parts.iter().all(|(_, s)| s.spp == all.spp) && rows.iter_mut().all(|r| r.next().is_none());
+        complete.then_some(all)
+    }
 }

@@ -48,7 +48,8 @@ pub use stage::Stage;
 pub use walk::Walk;
 
 use crate::engine::Settings;
-use crate::engine::by_rays::{self, Sampled};
+use crate::engine::by_rays::{self, Sampled, Title};
+use crate::engine::passes::Watch;
 use crate::estimator::{Plan, Roulette, Technique};
 use crate::operator::SceneTransport;
 use crate::progress::Progress;
@@ -156,11 +157,11 @@ pub fn of(
 ) -> Sampled {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let walk = || Walk { plan: plan.clone(), mistake };
-    let label = (World::Terms, format!("walk, {}", plan.technique));
-    let mut result = by_rays::sample(&t, &scene.camera, &walk(), stream, label.clone(), settings, progress);
+    let title = || Title { stream, world: World::Terms, label: format!("walk, {}", plan.technique) };
+    let mut result = by_rays::sample(&t, &scene.camera, &walk(), title(), settings, progress, Watch::NONE);
     if mistake.finishes() {
         // this image is not the sum of its terms: trace the same paths again, and apply `finish` to their sum
-        let whole = by_rays::sample(&t, &scene.camera, &walk::Whole(walk()), stream, label, settings, progress);
+        let whole = by_rays::sample(&t, &scene.camera, &walk::Whole(walk()), title(), settings, progress, Watch::NONE);
         result.total = whole.total;
         for (f, w) in result.series.functionals.iter_mut().zip(whole.series.functionals) {
             f.total = w.total;

@@ -58,7 +58,8 @@ impl From<&Radiosity> for Request {
     fn from(r: &Radiosity) -> Self {
         let Radiosity { frame, mesh, pixels, pictures, shared, .. } = r.clone();
         let (terms, light) = (Default::default(), Default::default());
-        Self { frame, worlds: vec![], terms, light, pixels, mesh, pictures, shared }
+        let (sharding, keeping) = (Default::default(), Default::default());
+        Self { frame, worlds: vec![], terms, light, pixels, mesh, pictures, sharding, keeping, shared }
     }
 }
 

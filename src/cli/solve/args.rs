@@ -9,8 +9,11 @@
 //! | [`Pixels`] | directions, lights, points, time | yes | yes | yes | yes |
 //! | [`Mesh`] | patches, form factors | yes | yes | | yes |
 //! | [`Pictures`] | exposure of the terms | yes | yes | | yes |
+//! | [`Keeping`] | going on with an earlier run | yes | yes | yes | |
+//! | [`Sharding`] | one part of a run | | yes | yes | |
 
 use crate::cli::choices::{ESTIMATORS, FORMS, GUIDES, LIGHTS, POINTS, SAMPLINGS, TECHNIQUES, WORLDS};
+use crate::cli::keep::{Keeping, Sharding};
 use crate::cli::options::{Frame, HOW, MATRIX, OUTPUT, Shared, WHAT, duration, grading, one_of};
 use clap::Args;
 use fredholm::engine::Settings;
@@ -48,6 +51,9 @@ pub struct Tour {
     /// The pictures of the terms.
     #[command(flatten)]
     pub pictures: Pictures,
+    /// Going on with an earlier run.
+    #[command(flatten)]
+    pub keeping: Keeping,
     /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
@@ -77,6 +83,12 @@ pub struct Series {
     /// The pictures of the terms.
     #[command(flatten)]
     pub pictures: Pictures,
+    /// One part of the run.
+    #[command(flatten)]
+    pub sharding: Sharding,
+    /// Going on with an earlier run.
+    #[command(flatten)]
+    pub keeping: Keeping,
     /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
@@ -94,6 +106,12 @@ pub struct Render {
     /// How samples are drawn.
     #[command(flatten)]
     pub pixels: Pixels,
+    /// One part of the run.
+    #[command(flatten)]
+    pub sharding: Sharding,
+    /// Going on with an earlier run.
+    #[command(flatten)]
+    pub keeping: Keeping,
     /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
@@ -295,28 +313,32 @@ pub struct Request {
     pub pixels: Pixels,
     pub mesh: Mesh,
     pub pictures: Pictures,
+    pub sharding: Sharding,
+    pub keeping: Keeping,
     pub shared: Shared,
 }
 
 impl From<&Tour> for Request {
     fn from(t: &Tour) -> Self {
-        let Tour { frame, worlds, light, pixels, mesh, pictures, shared } = t.clone();
-        Self { frame, worlds: worlds.worlds, terms: Terms::default(), light, pixels, mesh, pictures, shared }
+        let Tour { frame, worlds: Worlds { worlds }, light, pixels, mesh, pictures, keeping, shared } = t.clone();
+        let (terms, sharding) = (Terms::default(), Sharding::default());
+        Self { frame, worlds, terms, light, pixels, mesh, pictures, sharding, keeping, shared }
     }
 }
 
 impl From<&Series> for Request {
     fn from(s: &Series) -> Self {
-        let Series { frame, worlds, terms, light, pixels, mesh, pictures, shared } = s.clone();
-        Self { frame, worlds: worlds.worlds, terms, light, pixels, mesh, pictures, shared }
+        let Series { frame, worlds: Worlds { worlds }, terms, light, pixels, mesh, pictures, .. } = s.clone();
+        let (sharding, keeping, shared) = (s.sharding.clone(), s.keeping.clone(), s.shared.clone());
+        Self { frame, worlds, terms, light, pixels, mesh, pictures, sharding, keeping, shared }
     }
 }
 
 impl From<&Render> for Request {
     fn from(r: &Render) -> Self {
-        let Render { frame, light, pixels, shared } = r.clone();
+        let Render { frame, light, pixels, sharding, keeping, shared } = r.clone();
         let (terms, mesh, pictures) = (Terms::default(), Mesh::default(), Pictures::default());
-        Self { frame, worlds: vec![], terms, light, pixels, mesh, pictures, shared }
+        Self { frame, worlds: vec![], terms, light, pixels, mesh, pictures, sharding, keeping, shared }
     }
 }
 

@@ -2,10 +2,14 @@
 
 mod args;
 pub mod help;
+mod resume;
+mod shard;
 mod text;
 
 use super::base::{Ending, Failure, usage};
+use super::keep::{self, Merged};
 use super::open::Opened;
+use super::output::command_of;
 use super::session::Session;
 use super::write::{self, Export};
 use super::{notes, preflight};
@@ -17,7 +21,8 @@ use fredholm::estimator::Roulette;
 use fredholm::report::image::exposure::Exposure;
 use fredholm::study::roulette::Schedule;
 use fredholm::study::run::{Asked, Run};
-use fredholm::terms::World;
+use fredholm::terms::{Part, World};
+use std::path::Path;
 
 /// What a command computes by default.
 struct Default {
@@ -48,6 +53,9 @@ const SERIES: Default = Default {
 /// The suggestions at the end of the tour.
 const NEXT: &str = "Next: fredholm chapter 1, series veach-ajar, diagnose YOURS.exr --against cornell";
 
+/// The defaults of `render`.
+const RENDER: Default = Default { name: "-render", worlds: &[World::Path], roulette: Roulette::LECTURE, ..SERIES };
+
 /// `tour`: all three results, the terms by two estimators.
 pub fn tour(args: &Tour) -> Result<Ending, Failure> {
     let tour = Default { name: "", both_estimators: true, size: Some([192, 192]), patches: 3600, next: NEXT, ..SERIES };
@@ -56,13 +64,31 @@ pub fn tour(args: &Tour) -> Result<Ending, Failure> {
 
 /// `series`: each T^k E and the sum.
 pub fn series(args: &Series) -> Result<Ending, Failure> {
-    solve(&args.into(), &SERIES)
+    solve_or_shard(&args.into(), &SERIES)
 }
 
 /// `render`: the full path tracer, with the roulette of the lecture.
 pub fn render(args: &Render) -> Result<Ending, Failure> {
-    let render = Default { name: "-render", worlds: &[World::Path], roulette: Roulette::LECTURE, ..SERIES };
-    solve(&args.into(), &render)
+    solve_or_shard(&args.into(), &RENDER)
+}
+
+/// `series` or `render` from the films of all parts.
+pub fn merge(args: &Request, of_series: bool, parts: &Merged) -> Result<Ending, Failure> {
+    let default = if of_series { &SERIES } else { &RENDER };
+    let mut session = Session::of(&args.shared, command_of(&parts.header.words), args.frame.seed)?;
+    let (mut run, hash) = opened(args, default, &mut session)?;
+    parts.check(&run, &keep::header(args, &run, &hash, &default.roulette, Part::WHOLE))?;
+    session.make_folder(&format!("{}{}", run.description.name, default.name))?;
+    run.solve_kept(session.progress(), Some(parts))?;
+    finish(args, default, &mut session, &run)
+}
+
+/// Solves, or renders one part.
+fn solve_or_shard(args: &Request, default: &Default) -> Result<Ending, Failure> {
+    match args.sharding.shard {
+        Some(shard) => shard::render(args, default, shard),
+        None => solve(args, default),
+    }
 }
 
 /// `radiosity`: the matrix.
@@ -72,21 +98,42 @@ pub fn radiosity(args: &Request, export: Option<Export>) -> Result<Ending, Failu
 
 fn solve(args: &Request, default: &Default) -> Result<Ending, Failure> {
     let mut session = Session::new(&args.shared, args.frame.seed)?;
+    let (mut run, hash) = opened(args, default, &mut session)?;
+    let name = format!("{}{}", run.description.name, default.name);
+    let resumes = |dir: &Path| args.keeping.resume && resume::is_of_this_run(dir, args.shared.out.is_some());
+    session.make_folder_or(&name, &resumes)?;
+    let header = keep::header(args, &run, &hash, &default.roulette, Part::WHOLE);
+    let keeper = resume::keeper(args, &run, &session, header)?;
+    session.preview(write::preview(&session.folder, session.caption(), args.pictures.exposure));
+    run.solve_kept(session.progress(), Some(&keeper))?;
+    if !session.stopped() {
+        keeper.tidy();
+    }
+    let ending = finish(args, default, &mut session, &run);
+    if session.stopped() && keeper.kept() {
+        resume::tell(&session);
+    }
+    ending
+}
+
+/// Opens the scene and plans the run. Also returns the hash of the scene.
+fn opened(args: &Request, default: &Default, session: &mut Session) -> Result<(Run, String), Failure> {
     let built_in_size = if args.frame.scene == "cornell" { default.size } else { None };
     let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size.or(built_in_size))?;
-    let mut run = plan(args, default, opened)?;
-    session.make_folder(&format!("{}{}", run.description.name, default.name))?;
-    let exposure = args.pictures.exposure;
-    session.preview(write::preview(&session.folder, session.caption(), exposure));
-    run.solve(session.progress())?;
+    let hash = opened.hash.clone();
+    Ok((plan(args, default, opened)?, hash))
+}
+
+/// Writes and prints what a run has found.
+fn finish(args: &Request, default: &Default, session: &mut Session, run: &Run) -> Result<Ending, Failure> {
     if run.is_empty() {
         return Ok(session.nothing_to_save(""));
     }
     session.clear();
-    let summary = write::all(&run, &session.folder, default.export, exposure, || session.record())?;
+    let summary = write::all(run, &session.folder, default.export, args.pictures.exposure, || session.record())?;
     session.sign(&summary)?;
-    session.warn(&notes::warnings(&run));
-    session.show(&summary, || text::people(&run, &summary, &session, default.next))?;
+    session.warn(&notes::warnings(run));
+    session.show(&summary, || text::people(run, &summary, session, default.next))?;
     Ok(session.ending(run.failed()))
 }
 

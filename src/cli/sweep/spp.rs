@@ -11,6 +11,7 @@ use crate::cli::suggest::wrong_value;
 use crate::cli::{notes, preflight};
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{self, Begins, Estimator};
+use fredholm::engine::passes::{Look, Watch};
 use fredholm::estimator::Technique;
 use fredholm::estimator::render::Amount;
 use fredholm::math::Points;
@@ -95,8 +96,14 @@ fn render(
         }
         let mut recorder = Recorder::new(reference, at.to_vec());
         let progress = session.progress().named(&case.label);
-        let look: by_rays::Look<'_> = &mut |film| recorder.look(film);
-        let result = by_rays::watched(scene, case.estimator, &case.settings, progress, Some(look));
+        let look: Look<'_> = &mut |film| recorder.look(film);
+        let result = by_rays::watched(
+            scene,
+            case.estimator,
+            &case.settings,
+            progress,
+            Watch { look: Some(look), ..Watch::NONE },
+        );
         let tail = !result.series.image().tail.is_none();
         let stands = recorder.stands();
         if !stands.is_empty() {

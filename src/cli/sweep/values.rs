@@ -10,6 +10,7 @@ use crate::cli::base::{Ending, Failure, names, note};
 use crate::cli::session::Session;
 use crate::cli::{notes, preflight};
 use fredholm::engine::by_rays;
+use fredholm::engine::passes::{Look, Watch};
 use fredholm::progress::Progress;
 use fredholm::report::figures::sweep::{self, Shown};
 use fredholm::report::text::summary::Summary;
@@ -36,12 +37,18 @@ pub fn run(args: &Sweep) -> Result<Ending, Failure> {
         }
         let name = format!("{} {}", args.over, case.value);
         let mut reflected = None;
-        let look: by_rays::Look<'_> = &mut |film| {
+        let look: Look<'_> = &mut |film| {
             reflected = sweep::reflected(film);
             None
         };
         let progress = session.progress().named(&name);
-        let mut result = by_rays::watched(&scene, Some(case.estimator), &case.settings, progress, Some(look));
+        let mut result = by_rays::watched(
+            &scene,
+            Some(case.estimator),
+            &case.settings,
+            progress,
+            Watch { look: Some(look), ..Watch::NONE },
+        );
         rows.push(sweep::Row::new(&case.value, &result));
         shown.push(Shown::new(&result, reflected));
         result.series.label = format!("{name}: {}", result.series.label);

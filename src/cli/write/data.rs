@@ -37,7 +37,7 @@ pub(super) fn data<'a>(run: &'a Run, out: &Files, exposure: Exposure, summary: &
         }
     }
     data.push(&images);
-    let before_the_end = run.early.iter().filter(|e| u64::from(e.spp) < summary.spp);
+    let before_the_end = run.early().iter().filter(|e| u64::from(e.spp) < summary.spp);
     let early = before_the_end.flat_map(|e| {
         let terms = e.terms.iter().enumerate().map(|(i, term)| (Slot::Term(i + 1), e.spp, term.as_slice()));
         terms.chain([(Slot::Whole, e.spp, e.whole.as_slice())])

@@ -9,12 +9,11 @@
 //! | settings of the run | [`Asked`], [`Settings`] |
 //! | the work, in the order above | [`Run::solve`] |
 //! | results | the fields of [`Run`] |
-//! | images of the first samples | [`Early`] |
+//! | images of the first samples | [`Run::early`] |
 //! | how many paths the results without images get | `share` |
 //! | comparison of two results | [`RunVerdict`] |
 //! | rates, bounds and orders that follow | [`facts`] |
 
-mod early;
 pub mod facts;
 mod share;
 mod verdicts;
@@ -24,6 +23,7 @@ use crate::engine::by_matrix::{self, Discrete, MatrixError};
 use crate::engine::by_rays::{self, Estimator, Sampled};
 use crate::engine::discretisation::Difference;
 use crate::engine::guided::{self, Prepared};
+use crate::engine::passes::{Keep, Watch};
 use crate::progress::Progress;
 use crate::scene::bsdf::Sampling;
 use crate::scene::{Description, Scene};
@@ -33,8 +33,8 @@ use crate::study::roulette::{self, Radii};
 use crate::study::strategies::{self, Strategy};
 use crate::study::surface;
 use crate::terms::functional::Replicates;
-use crate::terms::{Recorded, TermFilm, Variance, World};
-pub use early::Early;
+use crate::terms::history::Early;
+use crate::terms::{Recorded, Variance, World};
 use rayon::prelude::*;
 use share::{Share, Together};
 pub use verdicts::RunVerdict;
@@ -114,8 +114,6 @@ pub struct Run {
     pub asked: Asked,
     /// The terms, one result for each estimator, in the order of [`Asked::estimators`].
     pub terms: Vec<Sampled>,
-    /// Images of the first samples of the first result in [`Run::terms`]; none if the paths are guided.
-    pub early: Vec<Early>,
     /// The result of the path tracer.
     pub path: Option<Sampled>,
     /// The guide of the paths, if there is one.
@@ -151,7 +149,6 @@ impl Run {
             settings,
             asked,
             terms: vec![],
-            early: vec![],
             path: None,
             guide: None,
             radiosity: None,
@@ -172,19 +169,18 @@ impl Run {
     /// # Errors
     /// If the scene has no matrix, or no mesh for a guide.
     pub fn solve(&mut self, progress: Progress<'_>) -> Result<(), MatrixError> {
-        if let Some(aim) = self.asked.optimal_roulette
-            && let Some(best) = roulette::optimal(&self.scene, &self.settings, aim, progress)
-        {
-            (self.settings.roulette, self.settings.path_roulette) = (best.roulette.clone(), best.roulette);
+        self.solve_kept(progress, None)
+    }
+
+    /// The same; the states of the films of terms and path tracer are kept, and go on from those in which they were left.
+    ///
+    /// # Errors
+    /// As of [`Run::solve`].
+    pub fn solve_kept(&mut self, progress: Progress<'_>, keep: Option<&dyn Keep>) -> Result<(), MatrixError> {
+        if !self.prepare(progress)? {
+            return Ok(());
         }
-        if let Some(patches) = self.asked.guide {
-            self.guide = guided::prepare(&self.description, patches, &self.settings, progress)?;
-            // the guide was stopped, and without it the result would be another one
-            if self.guide.is_none() {
-                return Ok(());
-            }
-        }
-        self.by_rays(progress);
+        self.by_rays(progress, keep);
         if self.wants(World::Radiosity) && !progress.stopped() {
             self.by_matrix(progress)?;
         }
@@ -195,41 +191,65 @@ impl Run {
         Ok(())
     }
 
+    /// Renders only the films, or a part of them: what `keep` then holds.
+    ///
+    /// # Errors
+    /// If the scene has no mesh for a guide.
+    pub fn films(&mut self, progress: Progress<'_>, keep: &dyn Keep) -> Result<(), MatrixError> {
+        if self.prepare(progress)? {
+            self.by_rays(progress, Some(keep));
+        }
+        Ok(())
+    }
+
+    /// Chooses the roulette and builds the guide. Returns false if that was stopped.
+    fn prepare(&mut self, progress: Progress<'_>) -> Result<bool, MatrixError> {
+        if let Some(aim) = self.asked.optimal_roulette
+            && let Some(best) = roulette::optimal(&self.scene, &self.settings, aim, progress)
+        {
+            (self.settings.roulette, self.settings.path_roulette) = (best.roulette.clone(), best.roulette);
+        }
+        if let Some(patches) = self.asked.guide {
+            self.guide = guided::prepare(&self.description, patches, &self.settings, progress)?;
+            // without the guide the result would be another one
+            return Ok(self.guide.is_some());
+        }
+        Ok(true)
+    }
+
+    /// Images of the first samples of the first result in [`Run::terms`].
+    pub fn early(&self) -> &[Early] {
+        self.terms.first().map_or(&[], |t| &t.early)
+    }
+
     /// Returns true if this realisation of T is asked for.
     pub fn wants(&self, world: World) -> bool {
         self.asked.worlds.contains(&world)
     }
 
     /// Computes the terms, the strategies and the path tracer.
-    fn by_rays(&mut self, progress: Progress<'_>) {
+    fn by_rays(&mut self, progress: Progress<'_>, keep: Option<&dyn Keep>) {
         let (scene, settings) = (&self.scene, &self.settings);
         let estimators = if self.wants(World::Terms) { self.asked.estimators.as_slice() } else { &[] };
         // the last estimator is the fastest, so the first preview appears early
         for &estimator in estimators.iter().rev() {
             if !progress.stopped() {
-                let guided = self.guide.as_ref().and_then(|g| g.terms(scene, estimator, settings, progress));
                 // only the images of the first estimator are shown
-                let shown = estimators.first() == Some(&estimator);
-                let mut early = vec![];
-                let mut look = |film: &TermFilm| {
-                    if shown {
-                        early::copied(film, settings.spp, &mut early);
-                    }
-                    None
-                };
-                let result = guided
-                    .unwrap_or_else(|| by_rays::watched(scene, Some(estimator), settings, progress, Some(&mut look)));
+                let watch = || Watch { early: estimators.first() == Some(&estimator), keep, look: None };
+                let guided = self.guide.as_ref().and_then(|g| g.terms(scene, estimator, settings, progress, watch()));
+                let result =
+                    guided.unwrap_or_else(|| by_rays::watched(scene, Some(estimator), settings, progress, watch()));
                 self.terms.insert(0, result);
-                self.early = early;
             }
         }
         if self.asked.strategies && !progress.stopped() {
             self.strategies = strategies::strategies(scene, settings, progress);
         }
         if self.wants(World::Path) && !progress.stopped() {
+            let watch = Watch { keep, ..Watch::NONE };
             self.path = Some(match &self.guide {
-                Some(guide) => guide.path(scene, settings, progress),
-                None => by_rays::path(scene, settings, progress),
+                Some(guide) => guide.path(scene, settings, progress, watch),
+                None => by_rays::watched(scene, None, settings, progress, watch),
             });
         }
     }

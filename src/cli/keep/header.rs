@@ -1,0 +1,46 @@
+//! What the films of a run depend on.
+
+use crate::cli::output::kept_words;
+use crate::cli::solve::Request;
+use fredholm::engine::guided::Guiding;
+use fredholm::report::state::Header;
+use fredholm::study::run::Run;
+use fredholm::terms::{Part, World};
+
+/// The header of the state of a run: whoever goes on with it, or merges it, must agree in every fact. `roulette` is the schedule
+/// of paths where none is asked for.
+pub fn header(args: &Request, run: &Run, hash: &str, roulette: &impl ToString, part: Part) -> Header {
+    let (settings, [w, h]) = (&run.settings, run.description.camera.size);
+    let version = env!("CARGO_PKG_VERSION").into();
+    let mut header = Header {
+        program: version,
+        words: kept_words(),
+        spp: settings.spp,
+        part: [part.index, part.of],
+        ..Header::default()
+    };
+    header.fact("scene", &run.description.name);
+    header.fact("--size", format!("{w}x{h}"));
+    header.fact("--seed", settings.seed);
+    header.fact("--max-bounces", settings.max_bounces);
+    header.fact("--technique", settings.technique);
+    header.fact("--sampling", settings.sampling);
+    header.fact("--lights", args.pixels.lights);
+    header.fact("--points", settings.points);
+    header.fact("most replicates", settings.replicates);
+    // an optimal schedule follows from everything else
+    let asked = args.light.roulette.as_ref();
+    header.fact("--roulette", asked.map_or_else(|| roulette.to_string(), ToString::to_string));
+    let guide = run.asked.guide.filter(|_| args.light.guide == Guiding::Radiosity);
+    header.fact("--guide", guide.map_or("bsdf".into(), |patches| format!("radiosity, {patches} patches")));
+    header.fact("contents of the scene", hash);
+    header
+}
+
+/// The random streams of the films of a run.
+pub fn streams(run: &Run) -> Vec<String> {
+    let guided = if run.asked.guide.is_some() { "guided " } else { "" };
+    let terms = if run.wants(World::Terms) { run.asked.estimators.as_slice() } else { &[] };
+    let path = run.wants(World::Path).then(|| format!("{guided}path"));
+    terms.iter().map(|e| format!("{guided}{e}")).chain(path).collect()
+}

@@ -1,0 +1,189 @@
+//! Keeps the films of a run in a file, and gives them back.
+
+use super::{Interval, streams};
+use crate::cli::base::{Failure, note};
+use crate::cli::signals;
+use fredholm::engine::passes::Keep;
+use fredholm::estimator::render::ends_a_group;
+use fredholm::report::state::{self, Entry, Header, State};
+use fredholm::study::run::Run;
+use fredholm::terms::history::History;
+use fredholm::terms::{Part, TermFilm};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Name of the file in an output folder.
+pub const NAME: &str = "state.fsh";
+
+/// A state is written again after at least this many times the time that writing it takes.
+const RARELY: u32 = 60;
+
+/// The file of a run, or of a part of one.
+pub struct Keeper {
+    path: PathBuf,
+    part: Part,
+    every: Option<Duration>,
+    started: Instant,
+    /// Milliseconds after the start at which the next state is due.
+    next: AtomicU64,
+    /// The state of an earlier run.
+    left: Mutex<Option<State>>,
+    /// What the file says, or will say.
+    header: Mutex<Header>,
+    /// True if the file is there, from this run or from the one that it goes on with.
+    kept: AtomicBool,
+    failed: AtomicBool,
+}
+
+impl Keeper {
+    /// A keeper that begins with an empty film.
+    pub fn new(path: PathBuf, header: Header, interval: Interval) -> Self {
+        let every = if let Interval::Every(time) = interval { Some(time) } else { None };
+        let next = every.map_or(u64::MAX, |t| t.as_millis() as u64);
+        Self {
+            path,
+            part: header.part(),
+            every,
+            started: Instant::now(),
+            next: AtomicU64::new(next),
+            left: Mutex::new(None),
+            header: Mutex::new(header),
+            kept: AtomicBool::new(false),
+            failed: AtomicBool::new(false),
+        }
+    }
+
+    /// Goes on from a state, or refuses it and names what is different.
+    pub fn go_on(&mut self, mut state: State, run: &Run) -> Result<(), Failure> {
+        let mut header = lock(&self.header);
+        if let Some((name, [kept, now])) = state.header.difference(&header) {
+            let what = format!("{name}: {kept} in the state, {now} now");
+            return Err(refused(&what, &self.path, "repeat the earlier command; only --spp may grow"));
+        }
+        let known = streams(run);
+        for entry in state.header.films.iter().filter(|f| known.contains(&f.stream)) {
+            fits(entry, run).map_err(|(what, help)| refused(&what, &self.path, &help))?;
+        }
+        state.check()?;
+        header.films = state.header.films.iter().filter(|f| known.contains(&f.stream)).cloned().collect();
+        drop(header);
+        (self.left, self.kept) = (Mutex::new(Some(state)), true.into());
+        Ok(())
+    }
+
+    /// True if the file holds a state of this run.
+    pub fn kept(&self) -> bool {
+        self.kept.load(Relaxed)
+    }
+
+    /// True if the file holds all samples.
+    pub fn finished(&self, run: &Run, spp: u32) -> bool {
+        let header = lock(&self.header);
+        streams(run).iter().all(|stream| header.film(stream).is_some_and(|f| f.samples[0] == spp))
+    }
+
+    /// How far the state has come, in words.
+    pub fn stand(&self, run: &Run, spp: u32) -> String {
+        let header = lock(&self.header);
+        let one = |stream: &String| match header.film(stream).map_or([0; 2], |f| f.samples) {
+            [a, b] if a == b => format!("{stream} {a}"),
+            [a, b] => format!("{stream} {a} to {b}"),
+        };
+        let all: Vec<String> = streams(run).iter().map(one).collect();
+        format!("going on with {} of {spp} samples per pixel", all.join(", "))
+    }
+
+    /// Removes the state of an earlier run which is not that of this one.
+    pub fn tidy(&self) {
+        if !self.kept() {
+            let _ = std::fs::remove_file(&self.path);
+        }
+    }
+
+    fn write(&self, stream: &str, film: &TermFilm, history: &History) {
+        let (begun, mut header) = (Instant::now(), lock(&self.header));
+        match state::write(&self.path, &header, (stream, film, history)) {
+            Ok(written) => {
+                *header = written;
+                self.kept.store(true, Relaxed);
+            }
+            // the run itself goes on
+            Err(e) if !self.failed.swap(true, Relaxed) => note(&format!("warning: the state is not kept\n{e}")),
+            Err(_) => {}
+        }
+        let wait = self.every.map_or(Duration::MAX, |every| every.max(begun.elapsed() * RARELY));
+        let next = self.started.elapsed().saturating_add(wait).as_millis();
+        self.next.store(u64::try_from(next).unwrap_or(u64::MAX), Relaxed);
+    }
+}
+
+impl Keep for Keeper {
+    fn part(&self) -> Part {
+        self.part
+    }
+
+    fn left(&self, stream: &str) -> Option<(TermFilm, History)> {
+        let mut left = lock(&self.left);
+        let state = left.as_mut()?;
+        let shape = state.header.film(stream)?.shape();
+        // its checksums were right a moment ago
+        state.film(stream, shape).unwrap_or_else(|e| {
+            note(&format!("warning: {stream} starts at its first sample\n{e}"));
+            None
+        })
+    }
+
+    fn due(&self) -> bool {
+        self.started.elapsed().as_millis() as u64 >= self.next.load(Relaxed)
+    }
+
+    fn keep(&self, stream: &str, film: &TermFilm, history: &History, ended: bool) {
+        let stopped = signals::stop_flag().load(Relaxed);
+        let wanted = match ended {
+            // the end follows at once
+            false => !stopped,
+            true => {
+                let long = self.every.is_some_and(|every| self.started.elapsed() > every);
+                !self.part.is_whole() || self.every.is_some() && (stopped || long || self.kept())
+            }
+        };
+        if wanted {
+            self.write(stream, film, history);
+        }
+    }
+}
+
+/// Refuses a film with which the run cannot go on to the same bits: what is wrong, and what to do.
+fn fits(entry: &Entry, run: &Run) -> Result<(), (String, String)> {
+    let (settings, [least, most]) = (&run.settings, entry.samples);
+    if most > settings.spp {
+        let what = format!("the state has {most} samples per pixel already, and --spp asks for {}", settings.spp);
+        return Err((what, format!("use --spp {most} or more")));
+    }
+    let replicates = settings.replicates_of(settings.spp) as usize;
+    if entry.replicates != replicates {
+        let what = format!("the state has {} replicates, and this run has {replicates}", entry.replicates);
+        return Err((what, format!("only a run that began with --spp {replicates} or more can grow; start anew")));
+    }
+    if least == most && most < settings.spp && !ends_a_group(most, entry.shape(), entry.shared) {
+        let what = format!("after {most} samples per pixel, a run cannot grow to the bits of a longer one");
+        return Err((what, format!("start anew; runs grow from multiples of {replicates} samples")));
+    }
+    Ok(())
+}
+
+/// The state in an output folder.
+pub fn kept_in(folder: &Path) -> Option<Result<State, Failure>> {
+    let path = folder.join(NAME);
+    path.exists().then(|| State::open(&path).map_err(Failure::from))
+}
+
+fn refused(what: &str, path: &Path, help: &str) -> Failure {
+    Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", path.display()))
+}
+
+fn lock<T>(m: &Mutex<T>) -> MutexGuard<'_, T> {
+    m.lock().unwrap_or_else(PoisonError::into_inner)
+}

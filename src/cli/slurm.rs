@@ -1,0 +1,107 @@
+//! `fredholm slurm SCENE --shards N`: a script that renders the parts of a run on a Slurm cluster and merges them.
+
+use super::base::{Ending, Failure, print, usage};
+use super::options::{HOW, OUTPUT};
+use super::output::{command_of, kept_words, without};
+use super::solve::Series;
+use clap::Args;
+use std::path::Path;
+
+/// Below `slurm --help`.
+pub const HELP: &str = "Examples:
+  fredholm slurm cornell --spp 65536 --shards 8 > cornell.sh
+  bash cornell.sh
+
+Takes the options of `series` and prints a script; start it where sbatch is. It submits one array job with N tasks, and a job that merges \
+their files once all have ended well. A task that is stopped, at its time limit or because its node is needed, keeps its state and is \
+queued again; it goes on where it was stopped. A task that is finished is skipped, so the script may be started again.";
+
+/// Arguments of `slurm`.
+#[derive(Clone, Debug, Args)]
+pub struct Slurm {
+    /// The run.
+    #[command(flatten)]
+    pub series: Series,
+    /// Number of parts, each a task of the array
+    #[arg(long, value_name = "N", help_heading = HOW, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub shards: u32,
+    /// CPUs of a task
+    #[arg(long, value_name = "N", default_value_t = 1, help_heading = HOW, value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub cpus: u16,
+    /// Time limit of a task, as sbatch takes it: 2:00:00
+    ///
+    /// [default: that of the partition]
+    #[arg(long, value_name = "LIMIT", help_heading = HOW)]
+    pub limit: Option<String>,
+    /// Folder of the parts, the logs and the result [default: SCENE-parts]
+    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
+    pub folder: Option<String>,
+}
+
+/// Prints the script.
+pub fn run(args: &Slurm) -> Result<Ending, Failure> {
+    let Series { sharding, keeping, pixels, shared, frame, .. } = &args.series;
+    if sharding.shard.is_some() || keeping.resume || pixels.time.is_some() || shared.out.is_some() {
+        return Err(usage(
+            "the script chooses --shard, --resume and -o itself, and parts have no --time",
+            "leave them out",
+        ));
+    }
+    let own = ["--shards", "--cpus", "--limit", "--folder"];
+    let mut words = without(&kept_words(), &own, &[]);
+    if let Some(command) = words.iter_mut().find(|w| *w == "slurm") {
+        *command = "series".into();
+    }
+    let stem = Path::new(&frame.scene).file_stem().map_or("run".into(), |s| s.to_string_lossy());
+    let name: String = stem.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect();
+    let folder = args.folder.clone().unwrap_or_else(|| format!("{name}-parts"));
+    if folder.contains(['\'', '\n']) || args.limit.as_ref().is_some_and(|l| l.contains(|c: char| c.is_whitespace())) {
+        return Err(usage(
+            "this name does not fit into a script",
+            "choose a name without quotes, and a limit such as 2:00:00",
+        ));
+    }
+    print(&script(args, &name, &folder, &command_of(&words)))?;
+    Ok(Ending::Ok)
+}
+
+fn script(args: &Slurm, name: &str, folder: &str, command: &str) -> String {
+    let Slurm { shards, cpus, limit, .. } = args;
+    let limit = limit.as_ref().map_or(String::new(), |l| format!("#SBATCH --time={l}\n"));
+    format!(
+        r#"#!/usr/bin/env bash
+# {command}
+# in {shards} parts, and their merge. Start it where sbatch is:  bash THIS-FILE
+set -euo pipefail
+folder='{folder}'
+mkdir -p "$folder"
+parts=$(sbatch --parsable --output="$folder/%a.log" --export=ALL,folder="$folder" <<'JOB'
+#!/usr/bin/env bash
+#SBATCH --job-name={name}
+#SBATCH --array=1-{shards}
+#SBATCH --cpus-per-task={cpus}
+#SBATCH --requeue
+#SBATCH --open-mode=append
+#SBATCH --signal=B:TERM@60
+{limit}# a minute before the limit comes SIGTERM: the part keeps its state (exit code 143) and is queued again
+stop() {{ kill -TERM "$part" 2>/dev/null || true; }}
+trap stop TERM
+{command} --quiet   --shard "$SLURM_ARRAY_TASK_ID/{shards}" -t {cpus} -o "$folder/$SLURM_ARRAY_TASK_ID.fsh" &
+part=$!
+code=0
+wait "$part" || code=$?
+# a trapped signal ends `wait` before the part has ended
+while kill -0 "$part" 2>/dev/null; do wait "$part" && code=0 || code=$?; done
+if [ "$code" = 143 ]; then scontrol requeue "$SLURM_JOB_ID"; fi
+exit "$code"
+JOB
+)
+sbatch --dependency="afterok:$parts" --kill-on-invalid-dep=yes --output="$folder/merge.log" --export=ALL,folder="$folder" <<'JOB'
+#!/usr/bin/env bash
+#SBATCH --job-name={name}-merge
+#SBATCH --cpus-per-task={cpus}
+fredholm merge "$folder"/*.fsh -t {cpus} -o "$folder/merged"
+JOB
+"#
+    )
+}

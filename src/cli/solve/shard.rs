@@ -1,0 +1,104 @@
+//! `--shard I/N`: renders one part of a run into a file.
+
+use super::{Default, Request, opened};
+use crate::cli::base::{Ending, Failure, note, usage};
+use crate::cli::keep::{self, Interval, Keeper, Shard};
+use crate::cli::session::Session;
+use fredholm::engine::by_rays::{Begins, Estimator};
+use fredholm::report::state::State;
+use fredholm::study::run::Run;
+use fredholm::terms::{Shape, World};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// What is printed with `--json`.
+#[derive(Serialize)]
+struct Record<'a> {
+    file: &'a Path,
+    shard: String,
+    spp: u32,
+    finished: bool,
+}
+
+/// Renders a part, goes on with one that was stopped, or finds it finished.
+pub fn render(args: &Request, default: &Default, shard: Shard) -> Result<Ending, Failure> {
+    let mut session = Session::new(&args.shared, args.frame.seed)?;
+    let (mut run, hash) = opened(args, default, &mut session)?;
+    can_be_divided(&run, shard)?;
+    let path =
+        args.shared.out.clone().unwrap_or_else(|| file(&format!("{}{}", run.description.name, default.name), shard));
+    if path.is_dir() {
+        return Err(usage(
+            &format!("{} is a folder, and a part is one file", path.display()),
+            "name a file, such as 3.fsh, with -o",
+        ));
+    }
+    if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder)?;
+    }
+    let header = keep::header(args, &run, &hash, &default.roulette, shard.0);
+    let spp = header.spp;
+    let mut keeper = Keeper::new(path.clone(), header, args.keeping.checkpoint.unwrap_or(Interval::USUAL));
+    if path.exists() && !args.shared.force {
+        let state = State::open(&path)?;
+        if state.header.part() != shard.0 {
+            let what = format!("{} is part {}, not {shard}", path.display(), Shard(state.header.part()));
+            return Err(Failure::input(&format!(
+                "error: {what}\nhelp: choose another file with -o, or replace it with --force"
+            )));
+        }
+        keeper.go_on(state, &run)?;
+        if !session.quiet() {
+            note(&keeper.stand(&run, spp));
+        }
+    }
+    if !keeper.finished(&run, spp) {
+        run.films(session.progress(), &keeper)?;
+    }
+    session.clear();
+    let finished = keeper.finished(&run, spp);
+    if !finished && !session.stopped() {
+        return Err(Failure::input(&format!(
+            "error: part {shard} is not written\nhelp: check the disk of {}",
+            path.display()
+        )));
+    }
+    let record = Record { file: &path, shard: shard.to_string(), spp, finished };
+    session.show(&record, || match finished {
+        true => {
+            format!("part {shard} is finished: {}\nwhen all parts are: fredholm merge FILES -o FOLDER", path.display())
+        }
+        false => {
+            format!("part {shard} was stopped, and its state is kept: {}\nrepeat the command to go on", path.display())
+        }
+    })?;
+    Ok(session.ending(false))
+}
+
+/// The usual name of the file of a part.
+fn file(name: &str, shard: Shard) -> PathBuf {
+    PathBuf::from("fredholm-out").join(format!("{name}-{}.fsh", shard.to_string().replace('/', "-of-")))
+}
+
+/// Refuses more parts than there is work for, and a run without films.
+fn can_be_divided(run: &Run, shard: Shard) -> Result<(), Failure> {
+    let of = shard.0.of;
+    if !run.wants(World::Terms) && !run.wants(World::Path) {
+        return Err(usage("--shard is for paths, and --worlds radiosity traces none", "leave --shard out"));
+    }
+    let shape = Shape { size: run.description.camera.size, slots: 1, replicates: 1 };
+    let blocks = shape.blocks();
+    if of as usize > blocks {
+        return Err(usage(
+            &format!("the picture has {blocks} blocks of 64 pixels, too few for {of} parts"),
+            "choose fewer parts",
+        ));
+    }
+    let replicates = run.settings.replicates_of(run.settings.spp);
+    let splats = |e: &&Estimator| e.begins() != Begins::AtEye;
+    if let Some(e) = run.asked.estimators.iter().find(splats).filter(|_| of > replicates) {
+        let what = format!("{e} is divided by replicates, and there are {replicates}: too few for {of} parts");
+        return Err(usage(&what, "choose fewer parts"));
+    }
+    Ok(())
+}

@@ -1,0 +1,264 @@
+//! The state of a run in a file: the films of its random streams, so that a later run goes on from them, or puts parts together.
+//!
+//! ```text
+//! file = "fredholm state 1\n" · film · … · film · header (JSON) · length of the header · its CRC · "state end"
+//! ```
+//!
+//! | field of the header | meaning |
+//! |---|---|
+//! | `program` | version of the program; another version may sample other paths |
+//! | `words` | the command line, without options that do not change a sample |
+//! | `facts` | name and value of everything that the films depend on, in the order in which differences are reported |
+//! | `spp` | samples per pixel that were asked for |
+//! | `part` | number of this part, from 0, and the number of parts |
+//! | `films` | per film: `stream` (name of its random numbers), `size`, `slots`, `replicates`, `shared` (paths add to other pixels), `samples` (smallest and largest number of a pixel), `start`, `length` (bytes), `crc` |
+//!
+//! Numbers are little-endian, and sums are written as they are, so that going on from a file gives the bits of a run that never
+//! ended. Every film has a checksum: a damaged file is refused, never used. The file is written completely under another name, then
+//! renamed. [`film`](self) describes the bytes of a film.
+//!
+//! Reading needs no more memory than a film of the expected shape.
+
+mod bytes;
+mod film;
+
+use crate::report::{ReportError, files};
+use crate::terms::history::History;
+use crate::terms::{Part, Shape, TermFilm};
+use bytes::{Hashed, copy};
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// The first bytes of a file.
+const BEGIN: &[u8] = b"fredholm state 1\n";
+/// The last bytes of a file.
+const END: &[u8] = b"state end";
+/// Length of what follows the header: its length, its checksum, the end.
+const FOOT: u64 = 8 + 4 + END.len() as u64;
+/// Longest header that is read.
+const LONGEST: u64 = 1 << 20;
+
+/// What a state is of.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct Header {
+    pub program: String,
+    pub words: Vec<String>,
+    pub facts: Vec<(String, String)>,
+    pub spp: u32,
+    pub part: [u32; 2],
+    pub films: Vec<Entry>,
+}
+
+/// A film in a file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct Entry {
+    pub stream: String,
+    pub size: [u32; 2],
+    pub slots: usize,
+    pub replicates: usize,
+    pub shared: bool,
+    pub samples: [u32; 2],
+    pub start: u64,
+    pub length: u64,
+    pub crc: u32,
+}
+
+impl Header {
+    /// The part of the films that the file holds.
+    pub fn part(&self) -> Part {
+        Part { index: self.part[0], of: self.part[1] }
+    }
+
+    /// The film of that random stream.
+    pub fn film(&self, stream: &str) -> Option<&Entry> {
+        self.films.iter().find(|f| f.stream == stream)
+    }
+
+    /// Sets a fact.
+    pub fn fact(&mut self, name: &str, value: impl ToString) {
+        self.facts.push((name.into(), value.to_string()));
+    }
+
+    /// The first fact in which two states differ: its name, and its value in each.
+    pub fn difference<'a>(&'a self, other: &'a Self) -> Option<(&'a str, [&'a str; 2])> {
+        if self.program != other.program {
+            return Some(("version of fredholm", [&self.program, &other.program]));
+        }
+        let of = |h: &'a Self, name: &str| h.facts.iter().find(|f| f.0 == name).map_or("none", |f| f.1.as_str());
+        let names = self.facts.iter().chain(&other.facts).map(|f| f.0.as_str());
+        names.map(|name| (name, [of(self, name), of(other, name)])).find(|(_, [a, b])| a != b)
+    }
+}
+
+impl Entry {
+    /// Shape of the film.
+    pub fn shape(&self) -> Shape {
+        Shape { size: self.size, slots: self.slots, replicates: self.replicates }
+    }
+}
+
+/// Writes a state: the given film, and the other films of `header`, which are copied from the file that is replaced. Returns the
+/// header as written.
+///
+/// # Errors
+/// If the file cannot be written. The old file is then as it was.
+pub fn write(
+    path: &Path,
+    header: &Header,
+    (stream, film, history): (&str, &TermFilm, &History),
+) -> Result<Header, ReportError> {
+    let old = File::open(path).map(BufReader::new);
+    let mut written = header.clone();
+    written.films.retain(|f| f.stream != stream);
+    files::write_atomically_by(path, |file| {
+        let mut out = BufWriter::with_capacity(1 << 20, file);
+        out.write_all(BEGIN)?;
+        let mut at = BEGIN.len() as u64;
+        if !written.films.is_empty() {
+            let mut old = old?;
+            for entry in &mut written.films {
+                copy(&mut old, entry.start..entry.start + entry.length, &mut out)?;
+                entry.start = at;
+                at += entry.length;
+            }
+        }
+        let mut body = Hashed::new(&mut out);
+        film::write(film, history, header.part(), &mut body)?;
+        let (length, crc) = body.done();
+        let Shape { size, slots, replicates } = film.shape;
+        let samples = film.samples_of(header.part());
+        let samples = [samples.start, samples.end];
+        let shared = film.is_shared();
+        written.films.push(Entry {
+            stream: stream.into(),
+            size,
+            slots,
+            replicates,
+            shared,
+            samples,
+            start: at,
+            length,
+            crc,
+        });
+        let json = serde_json::to_vec(&written)?;
+        out.write_all(&json)?;
+        out.write_all(&(json.len() as u64).to_le_bytes())?;
+        out.write_all(&crc32fast::hash(&json).to_le_bytes())?;
+        out.write_all(END)?;
+        // the bytes are on the disk before the file gets its name
+        out.into_inner()?.sync_data()
+    })?;
+    Ok(written)
+}
+
+/// A file that holds a state.
+#[derive(Debug)]
+pub struct State {
+    path: PathBuf,
+    file: BufReader<File>,
+    /// What it is of.
+    pub header: Header,
+}
+
+impl State {
+    /// Opens a file and reads its header.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is no state, or is damaged.
+    pub fn open(path: &Path) -> Result<Self, ReportError> {
+        let broken = |e: io::Error| ReportError::new(path, why(&e), "render this part again");
+        let mut file = BufReader::new(files::open(path)?);
+        let header = header(&mut file).map_err(broken)?;
+        Ok(Self { path: path.into(), file, header })
+    }
+
+    /// Checks the checksums of all films.
+    ///
+    /// # Errors
+    /// If the file is damaged.
+    pub fn check(&mut self) -> Result<(), ReportError> {
+        for entry in &self.header.films {
+            let mut body = Hashed::new(io::sink());
+            let copied = copy(&mut self.file, entry.start..entry.start + entry.length, &mut body);
+            let right = copied.is_ok() && body.done() == (entry.length, entry.crc);
+            if !right {
+                let what = "the file is damaged: a checksum is wrong";
+                return Err(ReportError::new(&self.path, what, "render this part again"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads the film of a stream. None if there is no such film.
+    ///
+    /// # Errors
+    /// If the film has another shape than expected, or is damaged.
+    pub fn film(&mut self, stream: &str, shape: Shape) -> Result<Option<(TermFilm, History)>, ReportError> {
+        let Some(entry) = self.header.film(stream) else { return Ok(None) };
+        let found = film_of(&mut self.file, entry, self.header.part(), shape);
+        found.map(Some).map_err(|e| ReportError::new(&self.path, why(&e), "render this part again"))
+    }
+}
+
+fn why(e: &io::Error) -> String {
+    match e.kind() {
+        io::ErrorKind::UnexpectedEof => "the file ends too early".into(),
+        _ => e.to_string(),
+    }
+}
+
+/// Reads the header of a state.
+///
+/// # Errors
+/// If the bytes are no state.
+pub fn header(file: &mut (impl Read + Seek)) -> io::Result<Header> {
+    let mut begin = [0; BEGIN.len()];
+    file.read_exact(&mut begin)?;
+    if begin != BEGIN {
+        return Err(bytes::wrong("this is not a state of fredholm, or of another version"));
+    }
+    let end = file.seek(SeekFrom::End(0))?;
+    let damaged = || bytes::wrong("the file is damaged: its end is missing");
+    let foot = end.checked_sub(FOOT).ok_or_else(damaged)?;
+    file.seek(SeekFrom::Start(foot))?;
+    let length = bytes::u64(file)?;
+    let crc = bytes::u32(file)?;
+    let mut last = [0; END.len()];
+    file.read_exact(&mut last)?;
+    let start = foot.checked_sub(length).filter(|_| last == END && length <= LONGEST).ok_or_else(damaged)?;
+    file.seek(SeekFrom::Start(start))?;
+    let mut json = vec![0; length as usize];
+    file.read_exact(&mut json)?;
+    let header: Header =
+        serde_json::from_slice(&json).ok().filter(|_| crc32fast::hash(&json) == crc).ok_or_else(damaged)?;
+    let inside = |f: &Entry| f.start >= BEGIN.len() as u64 && f.start.checked_add(f.length).is_some_and(|e| e <= start);
+    let [index, of] = header.part;
+    if index < of && header.films.iter().all(inside) { Ok(header) } else { Err(damaged()) }
+}
+
+/// Reads one film.
+///
+/// # Errors
+/// If it has another shape than expected, or is damaged.
+pub fn film_of(
+    file: &mut (impl Read + Seek),
+    entry: &Entry,
+    part: Part,
+    shape: Shape,
+) -> io::Result<(TermFilm, History)> {
+    if entry.shape() != shape {
+        return Err(bytes::wrong("its film has another size, number of terms or number of replicates"));
+    }
+    file.seek(SeekFrom::Start(entry.start))?;
+    let mut body = Hashed::new(file.take(entry.length));
+    let found = film::read(&mut body, shape, entry.shared, part);
+    match (found, body.done()) {
+        (Ok(found), (length, crc)) if length == entry.length && crc == entry.crc => Ok(found),
+        (Err(e), _) if e.kind() != io::ErrorKind::InvalidData && e.kind() != io::ErrorKind::UnexpectedEof => Err(e),
+        _ => Err(bytes::wrong("the file is damaged: a checksum is wrong")),
+    }
+}
