@@ -124,12 +124,13 @@ impl Amount {
 /// True if a render that has ended after `done` samples can go on to the same bits as one that never ended. Paths are computed in
 /// groups, and the order of a group decides in which order numbers are added; so no group may be cut.
 pub fn ends_a_group(done: u32, shape: Shape, shared: bool) -> bool {
-    let first = shape.replicates as u32;
-    let mut start = first;
+    // the pass within which it ended
+    let mut start = shape.replicates as u32;
     while start <= done / 2 {
         start *= 2;
     }
-    let whole = |group: u32| done >= first && (done - start).is_multiple_of(group);
+    let start = if start > done { 0 } else { start };
+    let whole = |group: u32| (done - start).is_multiple_of(group);
     if shared {
         return whole(splats::deep(shape.pixels() as u32));
     }

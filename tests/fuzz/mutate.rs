@@ -85,6 +85,7 @@ pub fn mutated(corpus: &[Vec<u8>], words: &[Vec<u8>], r: &mut Random) -> Vec<u8>
     }
     if r.below(8) > 0 {
         repair(&mut out);
+        repair_state(&mut out);
     }
     out
 }
@@ -115,7 +116,28 @@ fn repair(bytes: &mut [u8]) {
     }
 }
 
-/// The CRC of a PNG chunk.
+/// Corrects the checksums of a state, so that its reader looks at what was changed.
+fn repair_state(bytes: &mut Vec<u8>) {
+    const END: &[u8] = b"state end";
+    let Some(foot) = bytes.len().checked_sub(12 + END.len()).filter(|_| bytes.ends_with(END)) else { return };
+    let length = u64::from_le_bytes(bytes[foot..foot + 8].try_into().unwrap()) as usize;
+    let Some(start) = foot.checked_sub(length) else { return };
+    let Ok(mut header) = serde_json::from_slice::<serde_json::Value>(&bytes[start..foot]) else { return };
+    for film in header["films"].as_array_mut().into_iter().flatten() {
+        let place = |name: &str| film[name].as_u64().map(|n| n as usize);
+        let of = place("start").zip(place("length"));
+        let Some(body) = of.and_then(|(a, n)| bytes.get(a..a.checked_add(n)?)) else { continue };
+        film["crc"] = crc(body).into();
+    }
+    let json = serde_json::to_vec(&header).unwrap();
+    bytes.truncate(start);
+    bytes.extend_from_slice(&json);
+    bytes.extend_from_slice(&(json.len() as u64).to_le_bytes());
+    bytes.extend_from_slice(&crc(&json).to_le_bytes());
+    bytes.extend_from_slice(END);
+}
+
+/// The CRC of a PNG chunk, and of a state.
 fn crc(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |c, _| if c & 1 == 1 { (c >> 1) ^ 0xedb8_8320 } else { c >> 1 })

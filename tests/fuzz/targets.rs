@@ -12,12 +12,14 @@
 //! (`fuzz/README.md`).
 
 use fredholm::report::image::foreign;
+use fredholm::report::state;
 use fredholm::report::text::{summary, table};
 use fredholm::scene::{
     Scene, SceneError,
     load::{Loaded, Options, scene, toml},
 };
 use fredholm::stats::{Criterion, compare, discretisation};
+use fredholm::terms::Shape;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -59,6 +61,7 @@ pub const TARGETS: &[Target] = &[
     Target { name: "jpeg", per_byte: 1 << 15, read: |desk, bytes| image(desk, "jpg", bytes) },
     Target { name: "png", per_byte: 1 << 18, read: |desk, bytes| image(desk, "png", bytes) },
     Target { name: "summary", per_byte: 1 << 10, read: finished },
+    Target { name: "state", per_byte: 1 << 6, read: state },
 ];
 
 impl Target {
@@ -185,6 +188,27 @@ fn image(desk: &Desk, ending: &str, bytes: &[u8]) -> bool {
         Err(e) => assert!(!e.cause.is_empty() && !e.help.is_empty(), "{e}"),
     }
     read > 0
+}
+
+/// A state, or a part of a run: its header, and its films if they have the shape of the corpus.
+fn state(_: &Desk, bytes: &[u8]) -> bool {
+    let mut file = std::io::Cursor::new(bytes);
+    let header = match state::header(&mut file) {
+        Ok(header) => header,
+        Err(e) => {
+            assert!(!e.to_string().is_empty());
+            return false;
+        }
+    };
+    let shape = Shape { size: [16, 9], slots: 4, replicates: 4 };
+    let read = |entry: &state::Entry| match state::film_of(&mut file.clone(), entry, header.part(), shape) {
+        Ok((film, _)) => film.shape == shape,
+        Err(e) => {
+            assert!(!e.to_string().is_empty());
+            false
+        }
+    };
+    header.films.iter().any(read)
 }
 
 /// A result, compared with itself as `fredholm compare` does.

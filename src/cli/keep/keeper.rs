@@ -24,6 +24,8 @@ const RARELY: u32 = 60;
 pub struct Keeper {
     path: PathBuf,
     part: Part,
+    /// True for a part of a run: its file is its result, and is always written.
+    is_result: bool,
     every: Option<Duration>,
     started: Instant,
     /// Milliseconds after the start at which the next state is due.
@@ -45,6 +47,7 @@ impl Keeper {
         Self {
             path,
             part: header.part(),
+            is_result: false,
             every,
             started: Instant::now(),
             next: AtomicU64::new(next),
@@ -53,6 +56,11 @@ impl Keeper {
             kept: AtomicBool::new(false),
             failed: AtomicBool::new(false),
         }
+    }
+
+    /// The same for a part of a run, whose result is the file.
+    pub fn of_part(path: PathBuf, header: Header, interval: Interval) -> Self {
+        Self { is_result: true, ..Self::new(path, header, interval) }
     }
 
     /// Goes on from a state, or refuses it and names what is different.
@@ -146,7 +154,7 @@ impl Keep for Keeper {
             false => !stopped,
             true => {
                 let long = self.every.is_some_and(|every| self.started.elapsed() > every);
-                !self.part.is_whole() || self.every.is_some() && (stopped || long || self.kept())
+                self.is_result || self.every.is_some() && (stopped || long || self.kept())
             }
         };
         if wanted {

@@ -38,7 +38,7 @@ pub fn render(args: &Request, default: &Default, shard: Shard) -> Result<Ending,
     }
     let header = keep::header(args, &run, &hash, &default.roulette, shard.0);
     let spp = header.spp;
-    let mut keeper = Keeper::new(path.clone(), header, args.keeping.checkpoint.unwrap_or(Interval::USUAL));
+    let mut keeper = Keeper::of_part(path.clone(), header, args.keeping.checkpoint.unwrap_or(Interval::USUAL));
     if path.exists() && !args.shared.force {
         let state = State::open(&path)?;
         if state.header.part() != shard.0 {
@@ -88,9 +88,10 @@ fn can_be_divided(run: &Run, shard: Shard) -> Result<(), Failure> {
     }
     let shape = Shape { size: run.description.camera.size, slots: 1, replicates: 1 };
     let blocks = shape.blocks();
-    if of as usize > blocks {
+    let gathers = run.wants(World::Path) || run.asked.estimators.iter().any(|e| e.begins() == Begins::AtEye);
+    if gathers && of as usize > blocks {
         return Err(usage(
-            &format!("the picture has {blocks} blocks of 64 pixels, too few for {of} parts"),
+            &format!("{of} parts are too many: the picture has {blocks} block{} of 64 pixels", if blocks == 1 { "" } else { "s" }),
             "choose fewer parts",
         ));
     }
