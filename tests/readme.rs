@@ -25,7 +25,7 @@ fn commands() -> Vec<String> {
 }
 
 /// Flags that make a command quick, by the words with which it starts.
-const QUICK: [(&str, &str); 15] = [
+const QUICK: [(&str, &str); 16] = [
     ("series", "--spp 16 --size 16x16 --patches 60"),
     ("sweep", "--spp 16 --size 16x16"),
     ("check bias", "--spp 64 --size 8x8"),
@@ -39,6 +39,7 @@ const QUICK: [(&str, &str); 15] = [
     ("diagnose", "--spp 64 --paths 4096"),
     ("zoo", "--spp 16 --size 16x16"),
     ("info", ""),
+    ("slurm", "--spp 16 --shards 2"),
     ("figure --list", ""),
     ("figure", "--quick"),
 ];
