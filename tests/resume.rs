@@ -146,7 +146,9 @@ fn what_cannot_go_on_is_refused_by_name() {
     let base = "series cornell --worlds terms --size 32x32 -q";
     // so large that a state is kept
     let large = base.replace("32x32", "256x256");
-    let kept = |spp: u32, folder: &str| ok(desk, &format!("{large} --pictures-only --spp {spp} --checkpoint 10ms -o {folder}"));
+    let kept = |spp: u32, folder: &str| {
+        ok(desk, &format!("{large} --pictures-only --spp {spp} --checkpoint 10ms -o {folder}"))
+    };
     ok(desk, &format!("{base} --spp 1024 --checkpoint 10ms -o a"));
     let on = |more: &str| format!("{base} {more} --resume -o a");
     refused(desk, &on("--spp 2048 --seed 1"), &["--seed: 0 in the state, 1 now"]);
@@ -158,7 +160,11 @@ fn what_cannot_go_on_is_refused_by_name() {
     kept(8, "few");
     refused(desk, &format!("{large} --pictures-only --spp 64 --resume -o few"), &["8 replicates", "16"]);
     kept(20, "odd");
-    refused(desk, &format!("{large} --pictures-only --spp 64 --resume -o odd"), &["after 20 samples", "multiples of 16"]);
+    refused(
+        desk,
+        &format!("{large} --pictures-only --spp 64 --resume -o odd"),
+        &["after 20 samples", "multiples of 16"],
+    );
     // a damaged state
     let path = desk.join("a/state.fsh");
     let mut bytes = std::fs::read(&path).unwrap();
@@ -177,7 +183,8 @@ fn a_stopped_run_is_not_begun_anew_by_mistake_and_says_how_it_goes_on() {
     let desk = TempDir::new().unwrap();
     let desk = desk.path();
     let line = "series cornell --worlds terms --size 32x32 --spp 1024 --seed 7";
-    let mut child = command(desk, &format!("{line} -o run")).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child =
+        command(desk, &format!("{line} -o run")).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     std::thread::sleep(Duration::from_millis(200));
     assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
     let stopped = child.wait().unwrap().code() == Some(143);

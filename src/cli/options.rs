@@ -30,7 +30,7 @@ pub struct Changes {
     /// Let a material emit light: lamp=17,12,4
     ///
     /// The three numbers are radiance in W sr⁻¹ m⁻². May be repeated.
-    #[arg(long, value_name = "NAME=R,G,B")]
+    #[arg(long, value_name = "NAME=R,G,B", hide_short_help = true)]
     pub emit: Vec<String>,
     /// Make every surface Lambertian, as a matrix needs it
     ///

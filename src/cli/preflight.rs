@@ -15,9 +15,15 @@ use fredholm::terms::World;
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
 /// Refuses a film that needs more memory than is free: the sums of all terms, pixels and replicates are held at the same time.
-pub fn fits_in_memory(settings: &Settings, [w, h]: [u32; 2]) -> Result<(), Failure> {
+pub fn fits_in_memory(settings: &Settings, size: [u32; 2]) -> Result<(), Failure> {
+    part_fits_in_memory(settings, size, 1)
+}
+
+/// The same for one of several parts, which touches only its own blocks of the film.
+pub fn part_fits_in_memory(settings: &Settings, [w, h]: [u32; 2], parts: u32) -> Result<(), Failure> {
     let replicates = u64::from(settings.replicates_of(settings.spp));
     let bytes = u64::from(w) * u64::from(h) * (settings.max_bounces as u64 + 2) * (replicates + 2) * 24;
+    let bytes = bytes / u64::from(parts);
     let what = format!("{w}×{h} pixels with terms up to k = {}", settings.max_bounces);
     fits(bytes, &what, "choose a smaller --size or --max-bounces")
 }

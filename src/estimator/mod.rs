@@ -28,6 +28,7 @@ pub mod equilibrium;
 mod example;
 pub mod gather;
 pub mod light_tracer;
+mod pass;
 pub mod path_tracer;
 pub mod paths;
 pub mod prefix;

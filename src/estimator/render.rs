@@ -18,6 +18,7 @@
 //! | R | number of replicates | [`Amount::replicates`] |
 //! | | a film and how it goes on | [`Render`] |
 
+use super::pass::Pass;
 use super::totals::Totals;
 use super::{Batch, Job, Paths, TermEstimator, TermSink, splats};
 use crate::math::{Columns, Key};
@@ -189,17 +190,6 @@ impl Render<'_> {
         }
         film
     }
-}
-
-/// One pass.
-#[derive(Clone, Copy)]
-pub(super) struct Pass<'a> {
-    pub(super) key: Key,
-    /// The number of samples that every pixel of the part shall have.
-    pub(super) until: u32,
-    pub(super) part: Part,
-    /// True if the pass shall pause.
-    pub(super) due: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// The part of the film that one job fills: sums, squares, sample counts.

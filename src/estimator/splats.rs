@@ -8,7 +8,7 @@
 //! sums have the same bits for any number of threads. Sorting also has a reason in the hardware: contributions that come in
 //! the order of the film need few memory accesses.
 
-use super::render::Pass;
+use super::pass::Pass;
 use super::totals::Totals;
 use super::{Batch, Job, Paths, TermEstimator, TermSink};
 use crate::math::{Columns, Rgb};

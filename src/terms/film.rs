@@ -310,3 +310,38 @@ impl TermFilm {
         least.min(most)..most
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sums of n numbers that are not negative are wrong by less than n 2⁻⁵³ of themselves (Higham, *Accuracy and Stability of
+    /// Numerical Algorithms*, §4.2). A replicate has at most 2²¹ samples of a pixel, so that a mean is right to 2.4·10⁻¹⁰.
+    #[test]
+    fn the_longest_sum_keeps_nine_digits() {
+        const N: u32 = 1 << 21;
+        let shape = Shape { size: [1, 1], slots: 1, replicates: 1 };
+        let (mut sums, mut squares) = (vec![0.0; 3], vec![0.0]);
+        let (largest, rays) = (vec![Largest::default()], vec![0]);
+        let (sums, squares) = (&mut sums[..], &mut squares[..]);
+        let mut block =
+            FilmBlock { shape, first: 0, pixels: 1, shared: false, sums, squares, largest, non_finite: 0, rays };
+        // whole multiples of 2⁻⁴⁰, most of them small and a few of them large, so that the exact sum is a whole number
+        let mut exact = 0_u128;
+        let mut value = Columns::default();
+        for i in 0..N {
+            let bits = u64::from(i.wrapping_mul(2_654_435_761) >> 8);
+            let whole = if i % 1000 == 0 { bits << 26 } else { bits << 10 };
+            exact += u128::from(whole);
+            let x = (whole as f64 / (1_u64 << 40) as f64) as f32;
+            [&mut value.x, &mut value.y, &mut value.z].into_iter().for_each(|c| {
+                c.clear();
+                c.push(x);
+            });
+            block.add(0, &[0], &[i], &value);
+        }
+        let exact = exact as f64 / (1_u64 << 40) as f64;
+        let wrong = block.sums.iter().map(|s| (s / exact - 1.0).abs()).fold(0.0, f64::max);
+        assert!(wrong < f64::from(N) * 0.5 * f64::EPSILON && wrong < 1e-9, "{wrong:e}");
+    }
+}

@@ -136,7 +136,9 @@ fn a_second_ctrl_c_is_not_needed() {
         assert!(finite, "{name}");
     }
     assert!(s.terms.iter().all(|t| t.mean.is_finite() && t.std_error.is_finite()));
+    // and the state, from which it can go on
     let mut listed = s.files;
+    listed.push("state.fsh".into());
     listed.sort();
     assert_eq!(names(&desk.path("long")), listed, "no temporary file is left");
 }
@@ -173,6 +175,8 @@ fn help_says_how_k_counts() {
       series       Estimates each T^k E and the sum; compares path tracer and matrix
       render       Renders with the path tracer alone
       radiosity    Solves with the matrix alone: form factors, solvers, modes
+      merge        Puts the parts of a run together: the bits of one run
+      slurm        Prints a script that renders on a Slurm cluster
       compare      Compares two results: a verdict per term, a map of z
       diagnose     Checks another renderer's pictures, and names the mistake
       sweep        Varies one setting: cost and variance of the terms

@@ -14,7 +14,7 @@ use super::session::Session;
 use super::write::{self, Export};
 use super::{notes, preflight};
 pub use args::{Mesh, Pictures, Pixels, Render, Request, Series, Tour};
-use fredholm::engine::by_rays::Estimator;
+use fredholm::engine::by_rays::{Begins, Estimator};
 use fredholm::engine::discretisation::{Factors, Form};
 use fredholm::engine::guided::{self, Guiding};
 use fredholm::estimator::Roulette;
@@ -161,7 +161,10 @@ fn plan(args: &Request, default: &Default, opened: Opened) -> Result<Run, Failur
         Guiding::Radiosity => preflight::can_be_guided(&scene, &estimators, &settings, &worlds)?,
     }
     preflight::light_is_seen(&scene, &estimators, &settings, &worlds)?;
-    preflight::fits_in_memory(&settings, description.camera.size)?;
+    // where paths start at the lights, every part touches the whole film
+    let splats = estimators.iter().any(|e| e.begins() != Begins::AtEye);
+    let parts = args.sharding.shard.filter(|_| !splats).map_or(1, |s| s.0.of);
+    preflight::part_fits_in_memory(&settings, description.camera.size, parts)?;
     if worlds.contains(&World::Radiosity) {
         preflight::rows_fit_in_memory(&scene, &settings)?;
     }

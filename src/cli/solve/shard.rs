@@ -91,7 +91,10 @@ fn can_be_divided(run: &Run, shard: Shard) -> Result<(), Failure> {
     let gathers = run.wants(World::Path) || run.asked.estimators.iter().any(|e| e.begins() == Begins::AtEye);
     if gathers && of as usize > blocks {
         return Err(usage(
-            &format!("{of} parts are too many: the picture has {blocks} block{} of 64 pixels", if blocks == 1 { "" } else { "s" }),
+            &format!(
+                "{of} parts are too many: the picture has {blocks} block{} of 64 pixels",
+                if blocks == 1 { "" } else { "s" }
+            ),
             "choose fewer parts",
         ));
     }
