@@ -1,9 +1,10 @@
 //! `fredholm slurm SCENE --shards N`: a script that renders the parts of a run on a Slurm cluster and merges them.
 
 use super::base::{Ending, Failure, print, usage};
-use super::options::{HOW, OUTPUT};
+use super::keep::interval;
+use super::options::{Changes, Frame, HOW, OUTPUT};
 use super::output::{command_of, kept_words, without};
-use super::solve::Series;
+use super::solve::{Light, Mesh, Pictures, Pixels, Terms, Worlds};
 use clap::Args;
 use std::path::Path;
 
@@ -16,12 +17,37 @@ Takes the options of `series` and prints a script; start it where sbatch is. It 
 their files once all have ended well. A task that is stopped, at its time limit or because its node is needed, keeps its state and is \
 queued again; it goes on where it was stopped. A task that is finished is skipped, so the script may be started again.";
 
-/// Arguments of `slurm`.
+/// Arguments of `slurm`: those of `series`, which the parts get as they are, but for what the script chooses itself.
 #[derive(Clone, Debug, Args)]
+#[allow(dead_code, reason = "the options are checked here, and read by the parts")]
 pub struct Slurm {
-    /// The run.
+    /// Scene, samples, size, K, seed.
     #[command(flatten)]
-    pub series: Series,
+    pub frame: Frame,
+    /// The ways to solve the scene.
+    #[command(flatten)]
+    pub worlds: Worlds,
+    /// The estimator of the terms.
+    #[command(flatten)]
+    pub terms: Terms,
+    /// How paths find light and when they end.
+    #[command(flatten)]
+    pub light: Light,
+    /// How samples are drawn.
+    #[command(flatten)]
+    pub pixels: Pixels,
+    /// The matrix.
+    #[command(flatten)]
+    pub mesh: Mesh,
+    /// The pictures of the terms.
+    #[command(flatten)]
+    pub pictures: Pictures,
+    /// Changes to the scene.
+    #[command(flatten)]
+    pub changes: Changes,
+    /// How often a part keeps its state: 60s, 5m, off [default: 60s]
+    #[arg(long, value_name = "TIME", value_parser = checkpoint, help_heading = OUTPUT, hide_short_help = true)]
+    pub checkpoint: Option<String>,
     /// Number of parts, each a task of the array
     #[arg(long, value_name = "N", help_heading = HOW, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub shards: u32,
@@ -38,21 +64,21 @@ pub struct Slurm {
     pub folder: Option<String>,
 }
 
+fn checkpoint(text: &str) -> Result<String, String> {
+    interval(text).map(|_| text.to_owned())
+}
+
 /// Prints the script.
 pub fn run(args: &Slurm) -> Result<Ending, Failure> {
-    let Series { sharding, keeping, pixels, shared, frame, .. } = &args.series;
-    if sharding.shard.is_some() || keeping.resume || pixels.time.is_some() || shared.out.is_some() {
-        return Err(usage(
-            "the script chooses --shard, --resume and -o itself, and parts have no --time",
-            "leave them out",
-        ));
+    if args.pixels.time.is_some() {
+        return Err(usage("parts need the same number of samples, and --time does not fix it", "use --spp"));
     }
     let own = ["--shards", "--cpus", "--limit", "--folder"];
     let mut words = without(&kept_words(), &own, &[]);
     if let Some(command) = words.iter_mut().find(|w| *w == "slurm") {
         *command = "series".into();
     }
-    let stem = Path::new(&frame.scene).file_stem().map_or("run".into(), |s| s.to_string_lossy());
+    let stem = Path::new(&args.frame.scene).file_stem().map_or("run".into(), |s| s.to_string_lossy());
     let name: String = stem.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect();
     let folder = args.folder.clone().unwrap_or_else(|| format!("{name}-parts"));
     if folder.contains(['\'', '\n']) || args.limit.as_ref().is_some_and(|l| l.contains(|c: char| c.is_whitespace())) {
@@ -68,6 +94,7 @@ pub fn run(args: &Slurm) -> Result<Ending, Failure> {
 fn script(args: &Slurm, name: &str, folder: &str, command: &str) -> String {
     let Slurm { shards, cpus, limit, .. } = args;
     let limit = limit.as_ref().map_or(String::new(), |l| format!("#SBATCH --time={l}\n"));
+    let keep = args.checkpoint.as_ref().map_or(String::new(), |time| format!(" --checkpoint {time}"));
     format!(
         r#"#!/usr/bin/env bash
 # {command}
@@ -86,7 +113,8 @@ parts=$(sbatch --parsable --output="$folder/%a.log" --export=ALL,folder="$folder
 {limit}# a minute before the limit comes SIGTERM: the part keeps its state (exit code 143) and is queued again
 stop() {{ kill -TERM "$part" 2>/dev/null || true; }}
 trap stop TERM
-{command} --quiet   --shard "$SLURM_ARRAY_TASK_ID/{shards}" -t {cpus} -o "$folder/$SLURM_ARRAY_TASK_ID.fsh" &
+{command} --quiet{keep} \
+  --shard "$SLURM_ARRAY_TASK_ID/{shards}" -t {cpus} -o "$folder/$SLURM_ARRAY_TASK_ID.fsh" &
 part=$!
 code=0
 wait "$part" || code=$?

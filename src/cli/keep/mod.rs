@@ -66,7 +66,8 @@ impl Interval {
 /// Shortest time between two states.
 const SHORTEST: Duration = Duration::from_millis(10);
 
-fn interval(text: &str) -> Result<Interval, String> {
+/// Parses the time between two states.
+pub fn interval(text: &str) -> Result<Interval, String> {
     match text {
         "off" => Ok(Interval::Off),
         _ => duration(text).map(|t| Interval::Every(t.max(SHORTEST))).map_err(|e| format!("{e}, or `off`")),
