@@ -38,7 +38,8 @@ fn corpus(target: &Target) -> Vec<Vec<u8>> {
 fn every_reader(cases: u64) {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let desk = desk();
-    for target in TARGETS {
+    let only = std::env::var("FUZZ").ok();
+    for target in TARGETS.iter().filter(|t| only.as_ref().is_none_or(|name| t.name == name)) {
         let corpus = corpus(target);
         let words = dictionary(&folder().join("dictionaries").join(format!("{}.txt", target.name)));
         let whole = corpus.iter().filter(|file| target.check(&desk, file)).count();

@@ -9,6 +9,7 @@ use fredholm::engine::batches::Side;
 use fredholm::engine::by_rays::{self, Estimator};
 use fredholm::engine::known::growth::{FromEye, growth, proved};
 use fredholm::engine::known::resort::with_last_resort;
+use fredholm::engine::passes::Watch;
 use fredholm::estimator::render::{Amount, render};
 use fredholm::estimator::{PathTracer, Plan, Prefix, Roulette, Technique, TermEstimator};
 use fredholm::math::Key;
@@ -153,7 +154,7 @@ fn infinite_variance_is_said_in_place_of_an_error() {
         Some(Estimator::Prefix),
         &longer,
         Progress::NONE,
-        Some(&mut |film| recorder.look(film)),
+        Watch { look: Some(&mut |film| recorder.look(film)), ..Watch::NONE },
     );
     let stands = recorder.stands();
     for (variance, known) in [(Variance::Finite, true), (swept.series.variance, false)] {

@@ -72,6 +72,19 @@ pub fn is_taken(folder: &Path) -> bool {
     File::open(folder.join(NAME)).is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
+/// True if a run is at work in this folder, and does not end at once. A run that was killed a moment ago may need some time until
+/// its memory is free.
+pub fn stays_taken(folder: &Path) -> bool {
+    const POLLS: u32 = 20;
+    for _ in 0..POLLS {
+        if !is_taken(folder) {
+            return false;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    true
+}
+
 /// The command of a run that was killed in this folder. None if there is none, or if a run is at work.
 pub fn left_behind(folder: &Path) -> Option<String> {
     let mut file = File::open(folder.join(NAME)).ok()?;

@@ -30,7 +30,7 @@ pub fn folder(asked: Option<&Path>, name: &str, owner: &Owner<'_>) -> Result<(Pa
             let what = format!("the output folder holds an input, {}", input.display());
             return Err(refused(&what, dir, "choose another with -o"));
         }
-        if claim::is_taken(dir) {
+        if claim::stays_taken(dir) {
             return Err(taken(dir));
         }
         if !force && !ours(dir, command) && !resumes(dir) {

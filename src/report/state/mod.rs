@@ -18,6 +18,23 @@
 //! renamed. [`film`](self) describes the bytes of a film.
 //!
 //! Reading needs no more memory than a film of the expected shape.
+//!
+//! ```
+//! use fredholm::report::state::{self, Header, State};
+//! use fredholm::terms::{Shape, TermFilm, history::History};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let (path, header) = (folder.path().join("state.fsh"), Header { part: [0, 1], ..Header::default() });
+//! let shape = Shape { size: [8, 8], slots: 10, replicates: 16 };
+//! let film = TermFilm::new(shape);
+//! state::write(&path, &header, ("prefix", &film, &History::default()))?;
+//!
+//! let mut kept = State::open(&path)?;
+//! let (again, _) = kept.film("prefix", shape)?.unwrap();
+//! assert_eq!(again.samples, film.samples);
+//! assert!(kept.film("path", shape)?.is_none());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod bytes;
 mod film;
