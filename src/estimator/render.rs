@@ -9,14 +9,14 @@
 //! independent jobs. The samples of a pixel are added in order by one thread, so the sums have the same bits for any number
 //! of threads.
 //!
-//! A render may be left and taken up again ([`Render`]): within a pass a block has all samples of the pass or none, and the blocks
+//! A render may be left and taken up again: within a pass a block has all samples of the pass or none, and the blocks
 //! that have none are done later. What a job adds is therefore always the same, and so are the bits of the film.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | N | samples per pixel | [`Amount::spp`] |
 //! | R | number of replicates | [`Amount::replicates`] |
-//! | | a film and how it goes on | [`Render`] |
+//! | | a film and how it goes on | `Render` |
 
 use super::pass::Pass;
 use super::totals::Totals;
