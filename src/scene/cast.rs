@@ -55,11 +55,11 @@ impl Scene {
     /// What the first `n` rays of a wave see: points, normals and sides in `rays.q`, `rays.m` and `rays.side`. A ray that
     /// leaves the scene sees the sky, if there is one, or [`NOWHERE`].
     pub(crate) fn look_wave(&self, rays: &mut Rays, n: usize) {
-        self.closest_wave(rays, n);
         let nothing = if self.has_environment() { ESCAPED } else { NOWHERE };
         if let Some(table) = &self.table {
-            return arrive::arrive_in_lanes(table, &self.accel.shapes, rays, n, (nothing, self.beyond));
+            return arrive::look_in_lanes(table, &self.accel.shapes, rays, n, (nothing, self.beyond));
         }
+        self.accel.closest_wave(rays, n);
         for i in 0..n {
             let (o, d) = (rays.o.get(i), rays.d.get(i));
             let (p, n, side) = if rays.prim[i] != u32::MAX {

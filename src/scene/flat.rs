@@ -37,6 +37,8 @@ pub(crate) struct Flat {
     pub(super) half_v: Vec3,
     /// (1 − M)/s for both coordinates: hits are kept inside this range.
     pub(super) keep: [f32; 2],
+    /// Below both of `keep` by more than the rounding of a coordinate.
+    deep: f32,
     /// The axis along which the normal points, if the edges are along the other two; otherwise 3.
     pub(super) axis: usize,
     /// The coordinates along the next axis and the one after it: factor and summand of each.
@@ -56,6 +58,8 @@ impl Flat {
         let part = |k: f64, most: f64| [0, 1].map(|i| (k * round[i] + touch[i]).min(most));
         let sure = part(UNSURE, 0.25).map(|r| 1.0 - r);
         let [wide, long] = [0, 1].map(|i| (1.0 + part(KEEP, 0.5)[i]) / sure[i]);
+        // coordinates before and after the projection differ by rounding only: R is twice the error of one
+        let deep = [0, 1].map(|i| (1.0 - part(KEEP, MOST_KEEP)[i] - 2.0 * UNSURE * round[i]) / sure[i]);
         let f = |v: DVec3| v.as_vec3();
         let flat = Self {
             axis: 3,
@@ -73,6 +77,7 @@ impl Flat {
             half_u: f(0.5 * u),
             half_v: f(0.5 * v),
             keep: [0, 1].map(|i| ((1.0 - part(KEEP, MOST_KEEP)[i]) / sure[i]) as f32),
+            deep: deep[0].min(deep[1]) as f32,
         };
         flat.with_axis()
     }
@@ -90,35 +95,14 @@ impl Flat {
         }
     }
 
-    /// How many numbers describe where a hit lies.
-    pub(crate) const NUMBERS: usize = 14;
-
-    /// The numbers that [`Self::settle_inside`] uses.
-    pub(crate) fn numbers(&self) -> [f32; Self::NUMBERS] {
-        let Self { n, h, a, a0, b, b0, keep, .. } = *self;
-        [n.x, n.y, n.z, h, a.x, a.y, a.z, a0, b.x, b.y, b.z, b0, keep[0], keep[1]]
+    /// The plane: its normal and its distance from the origin.
+    pub(crate) fn plane(&self) -> (Vec3, f32) {
+        (self.n, self.h)
     }
 
-    /// A parallelogram with these numbers. It has no corners, so no ray can meet it.
-    #[inline(always)]
-    pub(crate) fn on_plane(x: [f32; Self::NUMBERS]) -> Self {
-        Self {
-            n: Vec3::new(x[0], x[1], x[2]),
-            h: x[3],
-            a: Vec3::new(x[4], x[5], x[6]),
-            a0: x[7],
-            b: Vec3::new(x[8], x[9], x[10]),
-            b0: x[11],
-            keep: [x[12], x[13]],
-            sure: [0.0; 2],
-            half_u: Vec3::ZERO,
-            half_v: Vec3::ZERO,
-            band: 0.0,
-            axis: 3,
-            along: [0.0; 4],
-            corners: [Vec3::ZERO; 4],
-            center: Vec3::ZERO,
-        }
+    /// If the coordinate of [`Self::look`] is at most this, the hit is inside the edges and [`Self::settle`] only projects it.
+    pub(crate) fn deep(&self) -> f32 {
+        self.deep
     }
 
     /// The numbers that [`Self::point`] uses: centre, halves of the edges, plane.
@@ -133,9 +117,25 @@ impl Flat {
     /// A parallelogram with these numbers. It has no corners, so no ray can meet it.
     #[inline(always)]
     pub(crate) fn spanned(x: [f32; Self::SPAN]) -> Self {
-        let none = Self::on_plane([0.0; Self::NUMBERS]);
         let v = |i: usize| Vec3::new(x[i], x[i + 1], x[i + 2]);
-        Self { center: v(0), half_u: v(3), half_v: v(6), n: v(9), h: x[12], ..none }
+        Self {
+            center: v(0),
+            half_u: v(3),
+            half_v: v(6),
+            n: v(9),
+            h: x[12],
+            a: Vec3::ZERO,
+            a0: 0.0,
+            b: Vec3::ZERO,
+            b0: 0.0,
+            keep: [0.0; 2],
+            deep: 0.0,
+            sure: [0.0; 2],
+            band: 0.0,
+            axis: 3,
+            along: [0.0; 4],
+            corners: [Vec3::ZERO; 4],
+        }
     }
 
     /// The unit normal of the front.
@@ -150,27 +150,32 @@ impl Flat {
         onto(self.center + self.half_u * (2.0 * u[0] - 1.0) + self.half_v * (2.0 * u[1] - 1.0), self.n, self.h)
     }
 
-    /// Returns the distance t, whether the ray passes inside the parallelogram or close to its edges, and whether this is
-    /// certain. If not, [`Self::edges`] decides. Packets use this function lane by lane.
+    /// Returns the distance t, and the larger coordinate across the parallelogram in absolute value. Packets use this function
+    /// lane by lane.
     #[inline(always)]
-    pub(crate) fn look(&self, o: Vec3, d: Vec3) -> (f32, bool, bool) {
+    pub(crate) fn look(&self, o: Vec3, d: Vec3) -> (f32, f32) {
         let t = (self.h - dot(self.n, o)) / dot(self.n, d);
         let p = Vec3::new(d.x * t + o.x, d.y * t + o.y, d.z * t + o.z);
         let (u, v) = ((dot(self.a, p) + self.a0).abs(), (dot(self.b, p) + self.b0).abs());
-        let most = if u > v { u } else { v };
-        (t, (most <= self.band) & (t > 0.0), most <= 1.0)
+        (t, if u > v { u } else { v })
     }
 
     /// [`Self::look`] for a parallelogram along the axes, with half the operations: the products with zero are left out. The
     /// bits are the same; only t = ±∞, which is no hit, gives other numbers.
     #[inline(always)]
-    pub(crate) fn look_along<const AXIS: usize>(&self, o: Vec3, d: Vec3) -> (f32, bool, bool) {
+    pub(crate) fn look_along<const AXIS: usize>(&self, o: Vec3, d: Vec3) -> (f32, f32) {
         let (one, other, [a, a0, b, b0]) = ((AXIS + 1) % 3, (AXIS + 2) % 3, self.along);
         let (n, o, d) = (self.n.to_array()[AXIS], o.to_array(), d.to_array());
         let t = (self.h - n * o[AXIS]) / (n * d[AXIS]);
         let (u, v) = ((a * (d[one] * t + o[one]) + a0).abs(), (b * (d[other] * t + o[other]) + b0).abs());
-        let most = if u > v { u } else { v };
-        (t, (most <= self.band) & (t > 0.0), most <= 1.0)
+        (t, if u > v { u } else { v })
+    }
+
+    /// Returns true if a ray meets the parallelogram at t, or passes close to its edges. It meets it if the coordinate `most` of
+    /// [`Self::look`] is at most 1; if it is larger, [`Self::edges`] decides.
+    #[inline(always)]
+    pub(crate) fn near(&self, t: f32, most: f32) -> bool {
+        (most <= self.band) & (t > 0.0)
     }
 
     /// Returns true if the line of the ray passes between the edges. An edge that a neighbouring primitive shares has the
@@ -193,31 +198,19 @@ impl Flat {
 
     #[inline(always)]
     pub(super) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
-        let (t, near, certain) = self.look(o, d);
-        let mut met = near & certain;
-        if near != met {
-            met = self.edges(o, d);
-        }
-        (t, met)
+        let (t, most) = self.look(o, d);
+        (t, self.near(t, most) && (most <= 1.0 || self.edges(o, d)))
     }
 
     /// The point of the plane nearest to `p`, kept inside the edges.
     #[inline(always)]
     pub(crate) fn settle(&self, p: Vec3) -> Vec3 {
-        let (p, [u, v], inside) = self.settle_inside(p);
-        if inside {
+        let p = onto(p, self.n, self.h);
+        let (u, v, [ku, kv]) = (dot(self.a, p) + self.a0, dot(self.b, p) + self.b0, self.keep);
+        if (u.abs() <= ku) & (v.abs() <= kv) {
             return p;
         }
-        let [ku, kv] = self.keep;
         let back = |x: f32, k: f32| if x.abs() <= k { 0.0 } else { k.copysign(x) - x };
         p + self.half_u * (self.sure[0] * back(u, ku)) + self.half_v * (self.sure[1] * back(v, kv))
-    }
-
-    /// The point of the plane nearest to `p`, its coordinates, and whether it is inside the edges already, as nearly all are.
-    #[inline(always)]
-    pub(crate) fn settle_inside(&self, p: Vec3) -> (Vec3, [f32; 2], bool) {
-        let p = onto(p, self.n, self.h);
-        let (u, v) = (dot(self.a, p) + self.a0, dot(self.b, p) + self.b0);
-        (p, [u, v], (u.abs() <= self.keep[0]) & (v.abs() <= self.keep[1]))
     }
 }
