@@ -35,6 +35,9 @@ impl Amount {
     }
 }
 
+/// Sums in a page of memory.
+const PAGE: usize = 4096 / size_of::<f64>();
+
 /// Number of paths of a wave.
 const WAVE: u32 = 1024;
 
@@ -112,6 +115,10 @@ fn pass<T: Transport>(
     let job = |paths: &mut Paths<T::Wave>, (i, ((sums, squares), counts)): (usize, Part)| {
         if may_stop && progress.stopped() {
             return Totals::new(shape.slots);
+        }
+        if !may_stop {
+            // memory is written before it is read, or every page is brought in twice
+            sums.iter_mut().step_by(PAGE).for_each(|s| *s = 0.0);
         }
         let first = (i * BLOCK) as u32;
         let pixels = first..first + counts.len() as u32;
