@@ -17,6 +17,16 @@ fn edge(a: Vec3, b: Vec3, d: Vec3) -> f32 {
     plucker::edge(a.to_array(), b.to_array(), d.to_array())
 }
 
+/// How a parallelogram lies. Products with zero are left out.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Form {
+    /// Its normal is along this axis, its edges along the other two.
+    Aligned(usize),
+    /// One edge is along this axis, normal and other edge across it: the side of a box that stands.
+    Upright(usize),
+    General,
+}
+
 /// A parallelogram, ready for rays, in the plane `n·p = h`. The coordinates `a·p + a0` and `b·p + b0` run from −1/s to 1/s
 /// across it, with s = 1 − R and R in units of half the width. If both are in [−1, 1], a hit is certain.
 #[derive(Clone, Copy, Debug)]
@@ -39,10 +49,9 @@ pub(crate) struct Flat {
     pub(super) keep: [f32; 2],
     /// Below both of `keep` by more than the rounding of a coordinate.
     deep: f32,
-    /// The axis along which the normal points, if the edges are along the other two; otherwise 3.
-    pub(super) axis: usize,
-    /// The coordinates along the next axis and the one after it: factor and summand of each.
-    along: [f32; 4],
+    pub(super) form: Form,
+    /// Of an aligned or upright parallelogram: the coordinates that [`Self::look_aligned`] or [`Self::look_upright`] uses.
+    along: [f32; 5],
 }
 
 impl Flat {
@@ -62,8 +71,8 @@ impl Flat {
         let deep = [0, 1].map(|i| (1.0 - part(KEEP, MOST_KEEP)[i] - 2.0 * UNSURE * round[i]) / sure[i]);
         let f = |v: DVec3| v.as_vec3();
         let flat = Self {
-            axis: 3,
-            along: [0.0; 4],
+            form: Form::General,
+            along: [0.0; 5],
             n: f(n),
             h: n.dot(origin) as f32,
             a: f(a / sure[0]),
@@ -79,20 +88,30 @@ impl Flat {
             keep: [0, 1].map(|i| ((1.0 - part(KEEP, MOST_KEEP)[i]) / sure[i]) as f32),
             deep: deep[0].min(deep[1]) as f32,
         };
-        flat.with_axis()
+        flat.with_form()
     }
 
-    /// Sets [`Self::axis`] and [`Self::along`].
-    fn with_axis(self) -> Self {
+    /// Sets [`Self::form`] and [`Self::along`].
+    fn with_form(self) -> Self {
         let only = |v: Vec3, axis: usize| (0..3).all(|i| i == axis || v[i] == 0.0);
-        let of = |v: Vec3| (0..3).find(|&axis| only(v, axis)).unwrap_or(3);
-        let (axis, [a, b]) = (of(self.n), [(self.a, self.a0), (self.b, self.b0)]);
-        let (one, other) = ((axis + 1) % 3, (axis + 2) % 3);
-        let pairs = [[a, b], [b, a]];
-        match pairs.into_iter().find(|[a, b]| axis < 3 && of(a.0) == one && of(b.0) == other) {
-            Some([(a, a0), (b, b0)]) => Self { axis, along: [a[one], a0, b[other], b0], ..self },
-            None => self,
+        let pairs = [[(self.a, self.a0), (self.b, self.b0)], [(self.b, self.b0), (self.a, self.a0)]];
+        for axis in 0..3 {
+            let (one, other) = ((axis + 1) % 3, (axis + 2) % 3);
+            for [(a, a0), (b, b0)] in pairs {
+                if only(self.n, axis) && only(a, one) && only(b, other) {
+                    return Self { form: Form::Aligned(axis), along: [a[one], a0, b[other], b0, 0.0], ..self };
+                }
+            }
         }
+        for axis in 0..3 {
+            let (one, other) = ((axis + 1) % 3, (axis + 2) % 3);
+            for [(a, a0), (b, b0)] in pairs {
+                if self.n[axis] == 0.0 && only(a, axis) && b[axis] == 0.0 {
+                    return Self { form: Form::Upright(axis), along: [a[axis], a0, b[one], b[other], b0], ..self };
+                }
+            }
+        }
+        self
     }
 
     /// The plane: its normal and its distance from the origin.
@@ -132,8 +151,8 @@ impl Flat {
             deep: 0.0,
             sure: [0.0; 2],
             band: 0.0,
-            axis: 3,
-            along: [0.0; 4],
+            form: Form::General,
+            along: [0.0; 5],
             corners: [Vec3::ZERO; 4],
         }
     }
@@ -160,14 +179,25 @@ impl Flat {
         (t, if u > v { u } else { v })
     }
 
-    /// [`Self::look`] for a parallelogram along the axes, with half the operations: the products with zero are left out. The
+    /// [`Self::look`] for [`Form::Aligned`], with half the operations: the products with zero are left out. The
     /// bits are the same; only t = ±∞, which is no hit, gives other numbers.
     #[inline(always)]
-    pub(crate) fn look_along<const AXIS: usize>(&self, o: Vec3, d: Vec3) -> (f32, f32) {
-        let (one, other, [a, a0, b, b0]) = ((AXIS + 1) % 3, (AXIS + 2) % 3, self.along);
+    pub(crate) fn look_aligned<const AXIS: usize>(&self, o: Vec3, d: Vec3) -> (f32, f32) {
+        let (one, other, [a, a0, b, b0, _]) = ((AXIS + 1) % 3, (AXIS + 2) % 3, self.along);
         let (n, o, d) = (self.n.to_array()[AXIS], o.to_array(), d.to_array());
         let t = (self.h - n * o[AXIS]) / (n * d[AXIS]);
         let (u, v) = ((a * (d[one] * t + o[one]) + a0).abs(), (b * (d[other] * t + o[other]) + b0).abs());
+        (t, if u > v { u } else { v })
+    }
+
+    /// The same for [`Form::Upright`], with two thirds of the operations.
+    #[inline(always)]
+    pub(crate) fn look_upright<const AXIS: usize>(&self, o: Vec3, d: Vec3) -> (f32, f32) {
+        let (one, other, [a, a0, b, c, b0]) = ((AXIS + 1) % 3, (AXIS + 2) % 3, self.along);
+        let (n, o, d) = (self.n.to_array(), o.to_array(), d.to_array());
+        let t = (self.h - (n[one] * o[one] + n[other] * o[other])) / (n[one] * d[one] + n[other] * d[other]);
+        let (up, x, y) = (d[AXIS] * t + o[AXIS], d[one] * t + o[one], d[other] * t + o[other]);
+        let (u, v) = ((a * up + a0).abs(), (b * x + c * y + b0).abs());
         (t, if u > v { u } else { v })
     }
 

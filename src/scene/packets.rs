@@ -5,7 +5,8 @@
 //! [lanes](super::sixteen) are plain Rust that the compiler vectorises. `pulp` compiles them for several instruction sets and
 //! chooses one at run time.
 
-use super::shape::{Ball, Flat, Shape};
+use super::flat::{Flat, Form};
+use super::shape::{Ball, Shape};
 use super::sixteen::{LANES, Lane, Lane3, ZERO, ZERO3, get, load3};
 use super::vertex::Rays;
 use crate::math::{Points, Streams};
@@ -59,28 +60,29 @@ fn distances(meet: impl Fn(Vec3, Vec3) -> (f32, bool), o: &Lane3, d: &Lane3) -> 
     r
 }
 
-/// [`Flat::look`], in the form for a parallelogram along the axes if it is one. The form is chosen here and not for each lane.
+/// [`Flat::look`] in the form of a parallelogram. The form is chosen here and not for each lane.
 macro_rules! by_form {
     ($flat:ident, $look:ident => $work:expr) => {
-        match $flat.axis {
-            0 => {
-                let $look = |o, d| $flat.look_along::<0>(o, d);
-                $work
-            }
-            1 => {
-                let $look = |o, d| $flat.look_along::<1>(o, d);
-                $work
-            }
-            2 => {
-                let $look = |o, d| $flat.look_along::<2>(o, d);
-                $work
-            }
-            _ => {
+        by_form!($flat, $look => $work, Aligned: look_aligned, Upright: look_upright, 0 1 2)
+    };
+    ($flat:ident, $look:ident => $work:expr, Aligned: $aligned:ident, Upright: $upright:ident, $x:literal $y:literal $z:literal) => {
+        match $flat.form {
+            Form::Aligned($x) => by_form!($flat.$aligned::<$x>, $look => $work),
+            Form::Aligned($y) => by_form!($flat.$aligned::<$y>, $look => $work),
+            Form::Aligned(_) => by_form!($flat.$aligned::<$z>, $look => $work),
+            Form::Upright($x) => by_form!($flat.$upright::<$x>, $look => $work),
+            Form::Upright($y) => by_form!($flat.$upright::<$y>, $look => $work),
+            Form::Upright(_) => by_form!($flat.$upright::<$z>, $look => $work),
+            Form::General => {
                 let $look = |o, d| $flat.look(o, d);
                 $work
             }
         }
     };
+    ($flat:ident.$by:ident::<$axis:literal>, $look:ident => $work:expr) => {{
+        let $look = |o, d| $flat.$by::<$axis>(o, d);
+        $work
+    }};
 }
 
 /// Takes the hits of a parallelogram. Lanes with a ray close to an edge are rare and are tested one by one.
@@ -89,10 +91,11 @@ fn nearest_flat(s: &Flat, look: impl Fn(Vec3, Vec3) -> (f32, f32), id: u32, o: &
     let (mut any, mut r, mut most) = (0, ZERO, ZERO);
     for i in 0..LANES {
         let (t, m) = look(get(o, i), get(d, i));
-        let near = s.near(t, m) & (t < met.t[i]);
-        r[i] = if near & (m <= 1.0) { t } else { f32::INFINITY };
+        let (near, sure) = (s.near(t, m), m <= 1.0);
+        // without a look at `met`: the next primitive need not wait for this one
+        r[i] = if near & sure { t } else { f32::INFINITY };
         most[i] = m;
-        any |= u32::from(near & !(m <= 1.0));
+        any |= u32::from(near & !sure & (t < met.t[i]));
     }
     met.take(&r, &most, id);
     if any != 0 {
@@ -176,9 +179,9 @@ fn block_flat(s: &Flat, look: impl Fn(Vec3, Vec3) -> (f32, f32), o: &Lane3, d: &
     let (mut any, mut r) = (0, ZERO);
     for i in 0..LANES {
         let (t, most) = look(get(o, i), get(d, i));
-        let near = s.near(t, most) & (t < 1.0);
-        r[i] = if near & (most <= 1.0) { t } else { f32::INFINITY };
-        any |= u32::from(near & !(most <= 1.0));
+        let (near, sure) = (s.near(t, most), most <= 1.0);
+        r[i] = if near & sure { t } else { f32::INFINITY };
+        any |= u32::from(near & !sure & (t < 1.0));
     }
     block(&r, blocked);
     if any != 0 {
