@@ -16,7 +16,7 @@
 
 use super::packets::{self, Met};
 use super::rounding::onto;
-use super::shape::{self, Ball, Hit, Shape};
+use super::shape::{self, Ball, Hit, Shape, Triangle};
 use super::sixteen::{LANES, Lane, Lane3, ZERO3, get, load3, put, put_if, store3};
 use super::vertex::{Rays, Side, Vertex};
 use glam::Vec3;
@@ -167,12 +167,42 @@ fn see_balls(table: &Table, (o, d, t): (&Lane3, &Lane3, &Lane), prim: &[u32; LAN
     }
 }
 
+/// Rays whose shapes are found together.
+const AHEAD: usize = 16;
+
+/// What the first `n` rays see in a scene of any size, from `rays.t` and `rays.prim`; like [`look_in_lanes`].
+pub(crate) fn see_one_by_one(shapes: &[Shape], rays: &mut Rays, n: usize, (nothing, beyond): (Side, f32)) {
+    for first in (0..n).step_by(AHEAD) {
+        // the kinds of many shapes, before a branch depends on one: their memory is far away and is waited for once
+        let triangles: [Option<&Triangle>; AHEAD] =
+            std::array::from_fn(|j| match shapes.get(rays.prim[first + j] as usize) {
+                Some(Shape::Triangle(t)) => Some(t),
+                _ => None,
+            });
+        for (i, triangle) in (first..n).zip(triangles) {
+            let (o, d, hit) = (rays.o.get(i), rays.d.get(i), Hit { t: rays.t[i], prim: rays.prim[i] });
+            let v = match triangle {
+                Some(t) => vertex(t.settle(o + d * hit.t), t.n, d, hit.prim),
+                None if hit.prim != u32::MAX => arrive(shapes, o, d, hit),
+                None => Vertex { p: o + d * beyond, n: -d, omega: -d, side: nothing },
+            };
+            rays.q.set(i, v.p);
+            rays.m.set(i, v.n);
+            rays.side[i] = v.side;
+        }
+    }
+}
+
 /// The vertex where one ray arrives.
 #[inline(always)]
 pub(crate) fn arrive(shapes: &[Shape], o: Vec3, d: Vec3, hit: Hit) -> Vertex {
     let shape = &shapes[hit.prim as usize];
     let p = shape.settle(o + d * hit.t);
-    let n = shape.normal(p);
+    vertex(p, shape.normal(p), d, hit.prim)
+}
+
+#[inline(always)]
+fn vertex(p: Vec3, n: Vec3, d: Vec3, prim: u32) -> Vertex {
     let back = shape::dot(n, d) > 0.0;
-    Vertex { p, n: if back { -n } else { n }, omega: -d, side: 2 * hit.prim + u32::from(back) }
+    Vertex { p, n: if back { -n } else { n }, omega: -d, side: 2 * prim + u32::from(back) }
 }

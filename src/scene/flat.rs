@@ -114,6 +114,31 @@ impl Flat {
         self
     }
 
+    /// How many numbers [`Self::look`] and [`Self::near`] use.
+    pub(crate) const NUMBERS: usize = 13;
+
+    /// These numbers.
+    pub(crate) fn numbers(&self) -> [f32; Self::NUMBERS] {
+        let Self { n, h, a, a0, b, b0, band, .. } = *self;
+        [n.x, n.y, n.z, h, a.x, a.y, a.z, a0, b.x, b.y, b.z, b0, band]
+    }
+
+    /// A parallelogram with these numbers. It has no corners.
+    #[inline(always)]
+    pub(crate) fn with_numbers(x: [f32; Self::NUMBERS]) -> Self {
+        let v = |i: usize| Vec3::new(x[i], x[i + 1], x[i + 2]);
+        Self {
+            n: v(0),
+            h: x[3],
+            a: v(4),
+            a0: x[7],
+            b: v(8),
+            b0: x[11],
+            band: x[12],
+            ..Self::spanned([0.0; Self::SPAN])
+        }
+    }
+
     /// The plane: its normal and its distance from the origin.
     pub(crate) fn plane(&self) -> (Vec3, f32) {
         (self.n, self.h)
