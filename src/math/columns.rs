@@ -52,7 +52,7 @@ impl Columns {
     /// Changes the sign of the first `n` vectors.
     pub fn negate(&mut self, n: usize) {
         for a in [&mut self.x, &mut self.y, &mut self.z] {
-            a[..n].iter_mut().for_each(|a| *a = -*a);
+            negate(&mut a[..n]);
         }
     }
 
@@ -86,6 +86,14 @@ impl Columns {
 fn multiply_with_simd<'a, S: Simd>(_simd: S, a: &'a mut [f32], b: &'a [f32]) {
     for (a, b) in a.iter_mut().zip(b) {
         *a *= b;
+    }
+}
+
+#[pulp::with_simd(negate = Arch::new())]
+#[inline(always)]
+fn negate_with_simd<'a, S: Simd>(_simd: S, a: &'a mut [f32]) {
+    for a in a {
+        *a = -*a;
     }
 }
 
