@@ -90,6 +90,7 @@ fn multiply_with_simd<'a, S: Simd>(_simd: S, a: &'a mut [f32], b: &'a [f32]) {
 }
 
 #[pulp::with_simd(negate = Arch::new())]
+#[allow(clippy::needless_lifetimes)] // the macro needs a name
 #[inline(always)]
 fn negate_with_simd<'a, S: Simd>(_simd: S, a: &'a mut [f32]) {
     for a in a {

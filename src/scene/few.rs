@@ -69,8 +69,8 @@ impl Few {
             }
             if least != u32::MAX {
                 let mut first = 0;
-                for i in 0..LANES {
-                    first |= u32::from(look.t[i] == least) << i;
+                for (i, &t) in look.t.iter().enumerate() {
+                    first |= u32::from(t == least) << i;
                 }
                 let prim = block.prim[first.trailing_zeros() as usize % LANES];
                 best.take(Hit { t: f32::from_bits(least), prim });
@@ -116,14 +116,14 @@ impl Block {
     #[inline(always)]
     fn look(&self, o: Vec3, d: Vec3) -> Look {
         let (mut t, mut close) = ([0; LANES], 0);
-        for i in 0..LANES {
+        for (i, t) in t.iter_mut().enumerate() {
             let flat = Flat::with_numbers(std::array::from_fn(
                 #[inline(always)]
                 |k| self.numbers[k][i],
             ));
             let (at, most) = flat.look(o, d);
             let (near, sure) = (flat.near(at, most), most <= 1.0);
-            t[i] = if near & sure { at.to_bits() } else { u32::MAX };
+            *t = if near & sure { at.to_bits() } else { u32::MAX };
             close |= u32::from(near & !sure);
         }
         Look { t, close }

@@ -53,9 +53,9 @@ impl Met {
 #[inline(always)]
 fn distances(meet: impl Fn(Vec3, Vec3) -> (f32, bool), o: &Lane3, d: &Lane3) -> Lane {
     let mut r = ZERO;
-    for i in 0..LANES {
+    for (i, r) in r.iter_mut().enumerate() {
         let (t, met) = meet(get(o, i), get(d, i));
-        r[i] = if met { t } else { f32::INFINITY };
+        *r = if met { t } else { f32::INFINITY };
     }
     r
 }
@@ -177,10 +177,10 @@ fn block(r: &Lane, blocked: &mut [u32; LANES]) {
 #[inline(always)]
 fn block_flat(s: &Flat, look: impl Fn(Vec3, Vec3) -> (f32, f32), o: &Lane3, d: &Lane3, blocked: &mut [u32; LANES]) {
     let (mut any, mut r) = (0, ZERO);
-    for i in 0..LANES {
+    for (i, r) in r.iter_mut().enumerate() {
         let (t, most) = look(get(o, i), get(d, i));
         let (near, sure) = (s.near(t, most), most <= 1.0);
-        r[i] = if near & sure { t } else { f32::INFINITY };
+        *r = if near & sure { t } else { f32::INFINITY };
         any |= u32::from(near & !sure & (t < 1.0));
     }
     block(&r, blocked);
