@@ -14,16 +14,13 @@
 //! near the edge of a parallelogram, follow one by one. All call the functions of [`shape`](super::shape), so that the bits are
 //! those of single rays.
 
-use super::packets::{self, Met};
+use super::packets::{self, MOST, Met};
 use super::rounding::onto;
 use super::shape::{self, Ball, Hit, Shape, Triangle};
 use super::sixteen::{LANES, Lane, Lane3, ZERO3, get, load3, put, put_if, store3};
 use super::vertex::{Rays, Side, Vertex};
 use glam::Vec3;
 use pulp::{Arch, Simd};
-
-/// Number of primitives in the table: as many as a scene in packets may have.
-pub(crate) const MOST: usize = 64;
 
 /// Kinds of primitives.
 const FLAT: u32 = 0;

@@ -14,11 +14,11 @@ use glam::Vec3;
 use pulp::{Arch, Simd};
 
 /// Largest number of primitives for packets; beyond it the tree is faster.
-const SMALL: usize = super::arrive::MOST;
+pub(super) const MOST: usize = 64;
 
 /// Returns true if a scene should be traced in packets: it has few primitives.
 pub(crate) fn suit(shapes: &[Shape]) -> bool {
-    shapes.len() <= SMALL
+    shapes.len() <= MOST
 }
 
 /// The first hits of sixteen rays.
