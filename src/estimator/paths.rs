@@ -176,15 +176,13 @@ impl<W> Paths<W> {
 
     /// Adds the emission at the vertices that the paths have hit to a slot, weighted by the technique and the throughput.
     pub fn score_hits(&mut self, technique: Technique, slot: usize, sink: &mut impl TermSink) {
-        technique.weigh_hits(&mut self.samples, self.n);
-        self.samples.value.multiply(&self.throughput, self.n);
+        technique.score_hits(&mut self.samples, &self.throughput, self.n);
         self.add(slot, sink);
     }
 
     /// Adds the connections to a slot, weighted by the technique and the throughput.
     pub fn score_connections(&mut self, technique: Technique, slot: usize, sink: &mut impl TermSink) {
-        technique.weigh_connections(&mut self.samples, self.n);
-        self.samples.value.multiply(&self.throughput, self.n);
+        technique.score_connections(&mut self.samples, &self.throughput, self.n);
         self.add(slot, sink);
     }
 

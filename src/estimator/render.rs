@@ -50,6 +50,9 @@ impl Amount {
     }
 }
 
+/// Sums in a page of memory.
+const PAGE: usize = 4096 / size_of::<f64>();
+
 /// Number of paths of a wave.
 const WAVE: u32 = 1024;
 
@@ -225,6 +228,10 @@ fn pass<T: Transport>(
         let stops = || samples.start > 0 && progress.stopped() || due();
         if samples.is_empty() || !part.has(i) || stops() {
             return Totals::new(shape.slots);
+        }
+        if !may_stop {
+            // memory is written before it is read, or every page is brought in twice
+            sums.iter_mut().step_by(PAGE).for_each(|s| *s = 0.0);
         }
         let first = (i * BLOCK) as u32;
         let pixels = first..first + counts.len() as u32;

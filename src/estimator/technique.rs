@@ -69,17 +69,23 @@ impl Technique {
         }
     }
 
-    /// Multiplies the values of a wave of hits by their weights.
-    pub fn weigh_hits(self, samples: &mut Samples, n: usize) {
-        if self != Self::Scatter {
-            multiply(samples, n, |p, other| self.hit(p, other));
+    /// Multiplies the values of the first `n` hits of a wave by their weights and throughputs.
+    pub fn score_hits(self, samples: &mut Samples, throughput: &Columns, n: usize) {
+        match self {
+            Self::Scatter => samples.value.multiply(throughput, n),
+            Self::Connect => score(samples, throughput, n, |p, other| Self::Connect.hit(p, other)),
+            Self::Mis => score(samples, throughput, n, |p, other| Self::Mis.hit(p, other)),
+            Self::Power => score(samples, throughput, n, |p, other| Self::Power.hit(p, other)),
         }
     }
 
-    /// Multiplies the values of a wave of connections by their weights.
-    pub fn weigh_connections(self, samples: &mut Samples, n: usize) {
-        if self != Self::Connect {
-            multiply(samples, n, |p, other| self.connection(p, other));
+    /// Multiplies the values of the first `n` connections of a wave by their weights and throughputs.
+    pub fn score_connections(self, samples: &mut Samples, throughput: &Columns, n: usize) {
+        match self {
+            Self::Connect => samples.value.multiply(throughput, n),
+            Self::Scatter => score(samples, throughput, n, |p, other| Self::Scatter.connection(p, other)),
+            Self::Mis => score(samples, throughput, n, |p, other| Self::Mis.connection(p, other)),
+            Self::Power => score(samples, throughput, n, |p, other| Self::Power.connection(p, other)),
         }
     }
 }
@@ -96,16 +102,32 @@ fn power(p: f32, other: f32) -> f32 {
     1.0 / (1.0 + ratio * ratio)
 }
 
-#[inline(always)]
-fn multiply(samples: &mut Samples, n: usize, weight: impl Fn(f32, f32) -> f32) {
-    let (p, other) = (&samples.pdf[..n], &samples.other_pdf[..n]);
-    let Columns { x, y, z } = &mut samples.value;
-    let (x, y, z) = (&mut x[..n], &mut y[..n], &mut z[..n]);
-    for i in 0..n {
-        let w = weight(p[i], other[i]);
-        x[i] *= w;
-        y[i] *= w;
-        z[i] *= w;
+struct Score<'a, F> {
+    samples: &'a mut Samples,
+    throughput: &'a Columns,
+    n: usize,
+    weight: F,
+}
+
+fn score(samples: &mut Samples, throughput: &Columns, n: usize, weight: impl Fn(f32, f32) -> f32) {
+    pulp::Arch::new().dispatch(Score { samples, throughput, n, weight });
+}
+
+impl<F: Fn(f32, f32) -> f32> pulp::WithSimd for Score<'_, F> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { samples, throughput, n, weight } = self;
+        let (p, other) = (&samples.pdf[..n], &samples.other_pdf[..n]);
+        let (a, b, c) = (&throughput.x[..n], &throughput.y[..n], &throughput.z[..n]);
+        let Columns { x, y, z } = &mut samples.value;
+        let (x, y, z) = (&mut x[..n], &mut y[..n], &mut z[..n]);
+        for i in 0..n {
+            let w = weight(p[i], other[i]);
+            x[i] = x[i] * w * a[i];
+            y[i] = y[i] * w * b[i];
+            z[i] = z[i] * w * c[i];
+        }
     }
 }
 

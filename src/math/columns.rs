@@ -2,6 +2,7 @@
 //! lanes.
 
 use glam::Vec3;
+use pulp::{Arch, Simd};
 
 /// An array of `n` vectors or colours, stored as one column per component.
 #[derive(Clone, Debug, Default)]
@@ -44,14 +45,14 @@ impl Columns {
     /// Multiplies the first `n` vectors component by component with those of `by`.
     pub fn multiply(&mut self, by: &Columns, n: usize) {
         for (a, b) in [(&mut self.x, &by.x), (&mut self.y, &by.y), (&mut self.z, &by.z)] {
-            a[..n].iter_mut().zip(&b[..n]).for_each(|(a, b)| *a *= b);
+            multiply(&mut a[..n], &b[..n]);
         }
     }
 
     /// Changes the sign of the first `n` vectors.
     pub fn negate(&mut self, n: usize) {
         for a in [&mut self.x, &mut self.y, &mut self.z] {
-            a[..n].iter_mut().for_each(|a| *a = -*a);
+            negate(&mut a[..n]);
         }
     }
 
@@ -77,6 +78,23 @@ impl Columns {
         gather(&mut self.x, &from.x, indices);
         gather(&mut self.y, &from.y, indices);
         gather(&mut self.z, &from.z, indices);
+    }
+}
+
+#[pulp::with_simd(multiply = Arch::new())]
+#[inline(always)]
+fn multiply_with_simd<'a, S: Simd>(_simd: S, a: &'a mut [f32], b: &'a [f32]) {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a *= b;
+    }
+}
+
+#[pulp::with_simd(negate = Arch::new())]
+#[allow(clippy::needless_lifetimes)] // the macro needs a name
+#[inline(always)]
+fn negate_with_simd<'a, S: Simd>(_simd: S, a: &'a mut [f32]) {
+    for a in a {
+        *a = -*a;
     }
 }
 

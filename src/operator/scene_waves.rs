@@ -18,7 +18,8 @@ use super::transport::Samples;
 use crate::math::{Columns, Rgb, Streams, columns};
 use crate::scene::bsdf::{Bsdf, TransportMode};
 use crate::scene::{
-    Camera, DELTA, ESCAPED, NOTHING, NOWHERE, Rays, Received, VertexWave, Vertices, by_path, camera_rays, numbers,
+    Camera, DELTA, ESCAPED, LIGHT, NOTHING, NOWHERE, Rays, Received, VertexWave, Vertices, by_path, camera_rays,
+    numbers,
 };
 
 impl SceneTransport<'_> {
@@ -38,13 +39,17 @@ impl SceneTransport<'_> {
     pub(crate) fn connect_numbered(&self, wave: &mut VertexWave, n: usize, out: &mut Samples) {
         let VertexWave { p, n: normals, omega, side, rays } = wave;
         let at = Vertices { p, n: normals, omega, side };
-        out.value.fill(n, Rgb::ZERO);
-        out.pdf[..n].fill(1.0);
-        out.other_pdf[..n].fill(0.0);
-        if self.scene.lights.is_empty() {
+        let lit = !self.scene.lights.is_empty();
+        let places = if lit { self.scene.sort(at, n, rays, Bsdf::connects) } else { 0 };
+        // paths without a place receive nothing
+        if places < n {
+            out.value.fill(n, Rgb::ZERO);
+            out.pdf[..n].fill(1.0);
+            out.other_pdf[..n].fill(0.0);
+        }
+        if !lit {
             return;
         }
-        let places = self.scene.sort(at, n, rays, Bsdf::connects);
         self.scene.light_wave(at, rays, places);
         self.scene.connect(at, rays, self.sampling);
         let mut some = 0;
@@ -80,12 +85,13 @@ impl SceneTransport<'_> {
         out.other_pdf[..on].fill(0.0);
         for (to, &place) in list.iter().enumerate() {
             let (seen, place) = (rays.side[place as usize], place as usize);
-            if rays.flag[place] == DELTA {
+            // few rays find a light
+            if seen < LIGHT && self.scene.light_density(seen) == 0.0 || rays.flag[place] == DELTA {
                 continue;
             }
             if seen == ESCAPED {
                 out.other_pdf[to] = self.scene.sky_pdf(rays.d.get(place));
-            } else if self.scene.light_density(seen) != 0.0 {
+            } else {
                 let from = at.get(rays.order[place] as usize);
                 (out.pdf[to], out.other_pdf[to]) = self.densities(&from, &rays.seen(place), rays.cosine[place]);
             }

@@ -1,8 +1,10 @@
 //! Ray tracing with a tree of boxes: the first surface on a ray, and a test whether a segment is free.
 //!
 //! The tree is [`wide`](super::wide). If two primitives are hit at the same distance, the one with the lower number is
-//! returned, whatever the order of traversal. A wave of rays shares one choice of the instruction set and one stack.
+//! returned, whatever the order of traversal. A wave of rays shares one choice of the instruction set and one stack. Single
+//! rays in very small scenes go without the tree: [`few`](super::few).
 
+use super::few::Few;
 use super::rounding::{EPSILON, WIDER};
 use super::shape::{Hit, Shape};
 use super::vertex::Rays;
@@ -12,6 +14,7 @@ use glam::{DVec3, Vec3};
 pub(crate) struct Accel {
     pub(crate) shapes: Vec<Shape>,
     wide: Wide,
+    few: Option<Few>,
     best: InstructionSet,
 }
 
@@ -33,8 +36,8 @@ pub(crate) fn widened([low, high]: [DVec3; 2], farthest: f64, touch: f64) -> [Ve
 impl Accel {
     /// Builds the tree; `bounds` are the [`widened`] boxes of the shapes.
     pub(crate) fn new(shapes: Vec<Shape>, bounds: Vec<[Vec3; 2]>) -> Self {
-        let wide = Wide::new(&shapes, bounds);
-        Self { shapes, wide, best: InstructionSet::best() }
+        let (wide, few) = (Wide::new(&shapes, bounds), Few::new(&shapes));
+        Self { shapes, wide, few, best: InstructionSet::best() }
     }
 
     /// The nearest hit with t > 0 on the ray `o + t·d`.
@@ -79,7 +82,10 @@ impl Task for Closest<'_> {
     type Output = Hit;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> Hit {
-        let Self { accel: Accel { shapes, wide, .. }, o, d } = self;
+        let Self { accel: Accel { shapes, wide, few, .. }, o, d } = self;
+        if let Some(few) = few {
+            return few.closest(shapes, o, d);
+        }
         if wide.waiting <= SMALL_ROOM {
             return wide.closest(l, shapes, o, d, &mut [0; SMALL_ROOM]);
         }
@@ -100,7 +106,10 @@ impl Task for Occluded<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> bool {
-        let Self { accel: Accel { shapes, wide, .. }, o, d } = self;
+        let Self { accel: Accel { shapes, wide, few, .. }, o, d } = self;
+        if let Some(few) = few {
+            return few.occluded(shapes, o, d);
+        }
         if wide.waiting <= SMALL_ROOM {
             return wide.occluded(l, shapes, o, d, &mut [0; SMALL_ROOM]);
         }

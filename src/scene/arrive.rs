@@ -1,4 +1,4 @@
-//! Where the rays of a wave arrive: the point, the normal and the side that each ray sees, in SIMD lanes.
+//! What the rays of a wave see: the point, the normal and the side where each ray arrives, in SIMD lanes.
 //!
 //! ```text
 //! x = settle(o + t d)        n = ± normal of the primitive, on the side of the ray
@@ -6,20 +6,21 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | o, d, t, primitive | the ray and what it hit | `Rays::o`, `d`, `t`, `prim` |
+//! | o, d | the ray | `Rays::o`, `d` |
+//! | t, primitive | what it meets first | [`Met`] |
 //! | x, n, side | what it sees | `Rays::q`, `m`, `side` |
 //!
-//! Parallelograms, disks and spheres are gathered from [`Table`] into lanes; triangles of small scenes follow one by one. All
-//! call the functions of [`shape`](super::shape), so that the bits are those of single rays.
+//! Planes of parallelograms and disks, and spheres, are gathered from [`Table`] into lanes. Triangles of small scenes, and hits
+//! near the edge of a parallelogram, follow one by one. All call the functions of [`shape`](super::shape), so that the bits are
+//! those of single rays.
 
-use super::shape::{self, Ball, Flat, Hit, Shape};
-use super::sixteen::{LANES, Lane, Lane3, ZERO3, get, load, load3, put, put_if, store3};
+use super::packets::{self, MOST, Met};
+use super::rounding::onto;
+use super::shape::{self, Ball, Hit, Shape, Triangle};
+use super::sixteen::{LANES, Lane, Lane3, ZERO3, get, load3, put, put_if, store3};
 use super::vertex::{Rays, Side, Vertex};
 use glam::Vec3;
 use pulp::{Arch, Simd};
-
-/// Number of primitives in the table: as many as a scene in packets may have.
-pub(crate) const MOST: usize = 64;
 
 /// Kinds of primitives.
 const FLAT: u32 = 0;
@@ -28,8 +29,10 @@ const BALL: u32 = 1;
 /// The primitives of a small scene, one column per number, each with zeros for primitives of other kinds.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
-    /// Parallelograms, and the planes of disks. Nothing is inside the edges of a triangle, so that its hits are found one by one.
-    flats: [[f32; MOST]; Flat::NUMBERS],
+    /// Normals and distances of the planes of parallelograms and disks.
+    planes: [[f32; MOST]; 4],
+    /// Hits with larger coordinates than this are settled one by one: near the edges of parallelograms, and on triangles.
+    deep: [f32; MOST],
     balls: [[f64; MOST]; Ball::NUMBERS],
     kind: [u32; MOST],
     balls_too: bool,
@@ -39,33 +42,34 @@ impl Table {
     /// The table of the first primitives.
     pub(crate) fn new(shapes: &[Shape]) -> Self {
         let mut all = Self {
-            flats: [[0.0; MOST]; Flat::NUMBERS],
+            planes: [[0.0; MOST]; 4],
+            deep: [f32::INFINITY; MOST],
             balls: [[0.0; MOST]; Ball::NUMBERS],
             kind: [FLAT; MOST],
             balls_too: false,
         };
         for (i, shape) in shapes.iter().take(MOST).enumerate() {
-            let mut flat = [0.0; Flat::NUMBERS];
+            let mut plane = (Vec3::ZERO, 0.0);
             match shape {
-                Shape::Flat(s) => flat = s.numbers(),
-                Shape::Disc(s) => flat = s.numbers(),
+                Shape::Flat(s) => (plane, all.deep[i]) = (s.plane(), s.deep()),
+                Shape::Disc(s) => plane = s.plane(),
                 Shape::Ball(s) => {
                     all.balls.iter_mut().zip(s.numbers()).for_each(|(c, x)| c[i] = x);
                     (all.kind[i], all.balls_too) = (BALL, true);
                 }
-                Shape::Triangle(_) => flat[Flat::NUMBERS - 2..].fill(-1.0),
+                Shape::Triangle(_) => all.deep[i] = -1.0,
             }
-            all.flats.iter_mut().zip(flat).for_each(|(c, x)| c[i] = x);
+            let (n, h) = plane;
+            all.planes.iter_mut().zip([n.x, n.y, n.z, h]).for_each(|(c, x)| c[i] = x);
         }
         all
     }
 
     #[inline(always)]
-    fn flat(&self, i: u32) -> Flat {
-        Flat::on_plane(std::array::from_fn(
-            #[inline(always)]
-            |k| self.flats[k][i as usize % MOST],
-        ))
+    fn plane(&self, i: u32) -> (Vec3, f32) {
+        let [x, y, z, h] = &self.planes;
+        let i = i as usize % MOST;
+        (Vec3::new(x[i], y[i], z[i]), h[i])
     }
 
     #[inline(always)]
@@ -85,59 +89,69 @@ struct Seen {
 }
 
 /// What the first `n` rays see. Rays that hit nothing see `nothing`, at the distance `beyond`.
-#[pulp::with_simd(arrive_in_lanes = Arch::new())]
+#[pulp::with_simd(look_in_lanes = Arch::new())]
 #[inline(always)]
-pub(crate) fn arrive_in_lanes_with_simd<'a, S: Simd>(
+pub(crate) fn look_in_lanes_with_simd<'a, S: Simd>(
     _simd: S,
     table: &'a Table,
     shapes: &'a [Shape],
     rays: &'a mut Rays,
     n: usize,
-    (nothing, beyond): (Side, f32),
+    nothing: (Side, f32),
 ) {
     for at in (0..n).step_by(LANES) {
-        let (o, d, t) = (load3(&rays.o, at), load3(&rays.d, at), load(&rays.t, at));
-        let mut prim = [0; LANES];
-        prim.copy_from_slice(&rays.prim[at..at + LANES]);
-        let mut seen = Seen { q: ZERO3, m: ZERO3, side: [nothing; LANES] };
-        let mut outside = 0;
-        for i in 0..LANES {
-            let (o, d, is) = (get(&o, i), get(&d, i), prim[i] != u32::MAX);
-            let flat = table.flat(prim[i]);
-            let ((p, _, inside), n) = (flat.settle_inside(o + d * t[i]), flat.normal());
-            outside |= u32::from(is & !inside);
-            let back = shape::dot(n, d) > 0.0;
-            let far = o + d * beyond;
-            put(&mut seen.q, i, if is { p } else { far });
-            put(&mut seen.m, i, if is & !back { n } else { -if is { n } else { d } });
-            seen.side[i] = if is { prim[i].wrapping_mul(2) | u32::from(back) } else { nothing };
-        }
-        if table.balls_too {
-            let mut balls = 0;
-            for prim in prim {
-                balls |= u32::from((table.kind[prim as usize % MOST] == BALL) & (prim != u32::MAX));
-            }
-            if balls != 0 {
-                arrive_on_balls(table, (&o, &d, &t), &prim, &mut seen);
-            }
-        }
-        // hits to be moved inside the edges, and triangles
-        for i in 0..if outside != 0 { LANES } else { 0 } {
-            if prim[i] != u32::MAX && table.kind[prim[i] as usize % MOST] == FLAT {
-                let v = arrive(shapes, get(&o, i), get(&d, i), Hit { t: t[i], prim: prim[i] });
-                put(&mut seen.q, i, v.p);
-                put(&mut seen.m, i, v.n);
-                seen.side[i] = v.side;
-            }
-        }
+        let (o, d) = (load3(&rays.o, at), load3(&rays.d, at));
+        let seen = if table.balls_too {
+            see(table, shapes, (&o, &d), &packets::meet::<true>(shapes, &o, &d), nothing)
+        } else {
+            see(table, shapes, (&o, &d), &packets::meet::<false>(shapes, &o, &d), nothing)
+        };
         store3(&mut rays.q, at, &seen.q);
         store3(&mut rays.m, at, &seen.m);
         rays.side[at..at + LANES].copy_from_slice(&seen.side);
     }
 }
 
+/// What sixteen rays see where they meet the shapes.
 #[inline(always)]
-fn arrive_on_balls(table: &Table, (o, d, t): (&Lane3, &Lane3, &Lane), prim: &[u32; LANES], seen: &mut Seen) {
+fn see(table: &Table, shapes: &[Shape], (o, d): (&Lane3, &Lane3), met: &Met, (nothing, beyond): (Side, f32)) -> Seen {
+    let Met { t, prim, most } = met;
+    let mut seen = Seen { q: ZERO3, m: ZERO3, side: [nothing; LANES] };
+    let mut shallow = 0;
+    for i in 0..LANES {
+        let (o, d, is) = (get(o, i), get(d, i), prim[i] != u32::MAX);
+        let (n, h) = table.plane(prim[i]);
+        shallow |= u32::from(is & (most[i] > table.deep[prim[i] as usize % MOST]));
+        let p = onto(o + d * t[i], n, h);
+        let back = shape::dot(n, d) > 0.0;
+        let far = o + d * beyond;
+        put(&mut seen.q, i, if is { p } else { far });
+        put(&mut seen.m, i, if is & !back { n } else { -if is { n } else { d } });
+        seen.side[i] = if is { prim[i].wrapping_mul(2) | u32::from(back) } else { nothing };
+    }
+    if table.balls_too {
+        let mut balls = 0;
+        for &prim in prim {
+            balls |= u32::from((table.kind[prim as usize % MOST] == BALL) & (prim != u32::MAX));
+        }
+        if balls != 0 {
+            see_balls(table, (o, d, t), prim, &mut seen);
+        }
+    }
+    // hits to be moved inside the edges, and triangles
+    for i in 0..if shallow != 0 { LANES } else { 0 } {
+        if prim[i] != u32::MAX && table.kind[prim[i] as usize % MOST] == FLAT {
+            let v = arrive(shapes, get(o, i), get(d, i), Hit { t: t[i], prim: prim[i] });
+            put(&mut seen.q, i, v.p);
+            put(&mut seen.m, i, v.n);
+            seen.side[i] = v.side;
+        }
+    }
+    seen
+}
+
+#[inline(always)]
+fn see_balls(table: &Table, (o, d, t): (&Lane3, &Lane3, &Lane), prim: &[u32; LANES], seen: &mut Seen) {
     for i in 0..LANES {
         let ball = table.ball(prim[i]);
         let p = ball.settle(get(o, i) + get(d, i) * t[i]);
@@ -150,12 +164,42 @@ fn arrive_on_balls(table: &Table, (o, d, t): (&Lane3, &Lane3, &Lane), prim: &[u3
     }
 }
 
+/// Rays whose shapes are found together.
+const AHEAD: usize = 16;
+
+/// What the first `n` rays see in a scene of any size, from `rays.t` and `rays.prim`; like [`look_in_lanes`].
+pub(crate) fn see_one_by_one(shapes: &[Shape], rays: &mut Rays, n: usize, (nothing, beyond): (Side, f32)) {
+    for first in (0..n).step_by(AHEAD) {
+        // the kinds of many shapes, before a branch depends on one: their memory is far away and is waited for once
+        let triangles: [Option<&Triangle>; AHEAD] =
+            std::array::from_fn(|j| match shapes.get(rays.prim[first + j] as usize) {
+                Some(Shape::Triangle(t)) => Some(t),
+                _ => None,
+            });
+        for (i, triangle) in (first..n).zip(triangles) {
+            let (o, d, hit) = (rays.o.get(i), rays.d.get(i), Hit { t: rays.t[i], prim: rays.prim[i] });
+            let v = match triangle {
+                Some(t) => vertex(t.settle(o + d * hit.t), t.n, d, hit.prim),
+                None if hit.prim != u32::MAX => arrive(shapes, o, d, hit),
+                None => Vertex { p: o + d * beyond, n: -d, omega: -d, side: nothing },
+            };
+            rays.q.set(i, v.p);
+            rays.m.set(i, v.n);
+            rays.side[i] = v.side;
+        }
+    }
+}
+
 /// The vertex where one ray arrives.
 #[inline(always)]
 pub(crate) fn arrive(shapes: &[Shape], o: Vec3, d: Vec3, hit: Hit) -> Vertex {
     let shape = &shapes[hit.prim as usize];
     let p = shape.settle(o + d * hit.t);
-    let n = shape.normal(p);
+    vertex(p, shape.normal(p), d, hit.prim)
+}
+
+#[inline(always)]
+fn vertex(p: Vec3, n: Vec3, d: Vec3, prim: u32) -> Vertex {
     let back = shape::dot(n, d) > 0.0;
-    Vertex { p, n: if back { -n } else { n }, omega: -d, side: 2 * hit.prim + u32::from(back) }
+    Vertex { p, n: if back { -n } else { n }, omega: -d, side: 2 * prim + u32::from(back) }
 }

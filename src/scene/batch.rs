@@ -12,7 +12,7 @@ use glam::Vec3;
 pub enum Way {
     /// The tree, all rays of a batch at once.
     Tree,
-    /// The tree, one ray at a time.
+    /// One ray at a time: through the tree, or in lanes in a very small scene.
     Single,
     /// The tree, all rays at once, without instructions that only some machines have.
     Plain,

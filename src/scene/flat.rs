@@ -17,6 +17,16 @@ fn edge(a: Vec3, b: Vec3, d: Vec3) -> f32 {
     plucker::edge(a.to_array(), b.to_array(), d.to_array())
 }
 
+/// How a parallelogram lies. Products with zero are left out.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Form {
+    /// Its normal is along this axis, its edges along the other two.
+    Aligned(usize),
+    /// One edge is along this axis, normal and other edge across it: the side of a box that stands.
+    Upright(usize),
+    General,
+}
+
 /// A parallelogram, ready for rays, in the plane `n·p = h`. The coordinates `a·p + a0` and `b·p + b0` run from −1/s to 1/s
 /// across it, with s = 1 − R and R in units of half the width. If both are in [−1, 1], a hit is certain.
 #[derive(Clone, Copy, Debug)]
@@ -37,10 +47,11 @@ pub(crate) struct Flat {
     pub(super) half_v: Vec3,
     /// (1 − M)/s for both coordinates: hits are kept inside this range.
     pub(super) keep: [f32; 2],
-    /// The axis along which the normal points, if the edges are along the other two; otherwise 3.
-    pub(super) axis: usize,
-    /// The coordinates along the next axis and the one after it: factor and summand of each.
-    along: [f32; 4],
+    /// Below both of `keep` by more than the rounding of a coordinate.
+    deep: f32,
+    pub(super) form: Form,
+    /// Of an aligned or upright parallelogram: the coordinates that [`Self::look_aligned`] or [`Self::look_upright`] uses.
+    along: [f32; 5],
 }
 
 impl Flat {
@@ -56,10 +67,12 @@ impl Flat {
         let part = |k: f64, most: f64| [0, 1].map(|i| (k * round[i] + touch[i]).min(most));
         let sure = part(UNSURE, 0.25).map(|r| 1.0 - r);
         let [wide, long] = [0, 1].map(|i| (1.0 + part(KEEP, 0.5)[i]) / sure[i]);
+        // coordinates before and after the projection differ by rounding only: R is twice the error of one
+        let deep = [0, 1].map(|i| (1.0 - part(KEEP, MOST_KEEP)[i] - 2.0 * UNSURE * round[i]) / sure[i]);
         let f = |v: DVec3| v.as_vec3();
         let flat = Self {
-            axis: 3,
-            along: [0.0; 4],
+            form: Form::General,
+            along: [0.0; 5],
             n: f(n),
             h: n.dot(origin) as f32,
             a: f(a / sure[0]),
@@ -73,52 +86,67 @@ impl Flat {
             half_u: f(0.5 * u),
             half_v: f(0.5 * v),
             keep: [0, 1].map(|i| ((1.0 - part(KEEP, MOST_KEEP)[i]) / sure[i]) as f32),
+            deep: deep[0].min(deep[1]) as f32,
         };
-        flat.with_axis()
+        flat.with_form()
     }
 
-    /// Sets [`Self::axis`] and [`Self::along`].
-    fn with_axis(self) -> Self {
+    /// Sets [`Self::form`] and [`Self::along`].
+    fn with_form(self) -> Self {
         let only = |v: Vec3, axis: usize| (0..3).all(|i| i == axis || v[i] == 0.0);
-        let of = |v: Vec3| (0..3).find(|&axis| only(v, axis)).unwrap_or(3);
-        let (axis, [a, b]) = (of(self.n), [(self.a, self.a0), (self.b, self.b0)]);
-        let (one, other) = ((axis + 1) % 3, (axis + 2) % 3);
-        let pairs = [[a, b], [b, a]];
-        match pairs.into_iter().find(|[a, b]| axis < 3 && of(a.0) == one && of(b.0) == other) {
-            Some([(a, a0), (b, b0)]) => Self { axis, along: [a[one], a0, b[other], b0], ..self },
-            None => self,
+        let pairs = [[(self.a, self.a0), (self.b, self.b0)], [(self.b, self.b0), (self.a, self.a0)]];
+        for axis in 0..3 {
+            let (one, other) = ((axis + 1) % 3, (axis + 2) % 3);
+            for [(a, a0), (b, b0)] in pairs {
+                if only(self.n, axis) && only(a, one) && only(b, other) {
+                    return Self { form: Form::Aligned(axis), along: [a[one], a0, b[other], b0, 0.0], ..self };
+                }
+            }
         }
+        for axis in 0..3 {
+            let (one, other) = ((axis + 1) % 3, (axis + 2) % 3);
+            for [(a, a0), (b, b0)] in pairs {
+                if self.n[axis] == 0.0 && only(a, axis) && b[axis] == 0.0 {
+                    return Self { form: Form::Upright(axis), along: [a[axis], a0, b[one], b[other], b0], ..self };
+                }
+            }
+        }
+        self
     }
 
-    /// How many numbers describe where a hit lies.
-    pub(crate) const NUMBERS: usize = 14;
+    /// How many numbers [`Self::look`] and [`Self::near`] use.
+    pub(crate) const NUMBERS: usize = 13;
 
-    /// The numbers that [`Self::settle_inside`] uses.
+    /// These numbers.
     pub(crate) fn numbers(&self) -> [f32; Self::NUMBERS] {
-        let Self { n, h, a, a0, b, b0, keep, .. } = *self;
-        [n.x, n.y, n.z, h, a.x, a.y, a.z, a0, b.x, b.y, b.z, b0, keep[0], keep[1]]
+        let Self { n, h, a, a0, b, b0, band, .. } = *self;
+        [n.x, n.y, n.z, h, a.x, a.y, a.z, a0, b.x, b.y, b.z, b0, band]
     }
 
-    /// A parallelogram with these numbers. It has no corners, so no ray can meet it.
+    /// A parallelogram with these numbers. It has no corners.
     #[inline(always)]
-    pub(crate) fn on_plane(x: [f32; Self::NUMBERS]) -> Self {
+    pub(crate) fn with_numbers(x: [f32; Self::NUMBERS]) -> Self {
+        let v = |i: usize| Vec3::new(x[i], x[i + 1], x[i + 2]);
         Self {
-            n: Vec3::new(x[0], x[1], x[2]),
+            n: v(0),
             h: x[3],
-            a: Vec3::new(x[4], x[5], x[6]),
+            a: v(4),
             a0: x[7],
-            b: Vec3::new(x[8], x[9], x[10]),
+            b: v(8),
             b0: x[11],
-            keep: [x[12], x[13]],
-            sure: [0.0; 2],
-            half_u: Vec3::ZERO,
-            half_v: Vec3::ZERO,
-            band: 0.0,
-            axis: 3,
-            along: [0.0; 4],
-            corners: [Vec3::ZERO; 4],
-            center: Vec3::ZERO,
+            band: x[12],
+            ..Self::spanned([0.0; Self::SPAN])
         }
+    }
+
+    /// The plane: its normal and its distance from the origin.
+    pub(crate) fn plane(&self) -> (Vec3, f32) {
+        (self.n, self.h)
+    }
+
+    /// If the coordinate of [`Self::look`] is at most this, the hit is inside the edges and [`Self::settle`] only projects it.
+    pub(crate) fn deep(&self) -> f32 {
+        self.deep
     }
 
     /// The numbers that [`Self::point`] uses: centre, halves of the edges, plane.
@@ -133,9 +161,25 @@ impl Flat {
     /// A parallelogram with these numbers. It has no corners, so no ray can meet it.
     #[inline(always)]
     pub(crate) fn spanned(x: [f32; Self::SPAN]) -> Self {
-        let none = Self::on_plane([0.0; Self::NUMBERS]);
         let v = |i: usize| Vec3::new(x[i], x[i + 1], x[i + 2]);
-        Self { center: v(0), half_u: v(3), half_v: v(6), n: v(9), h: x[12], ..none }
+        Self {
+            center: v(0),
+            half_u: v(3),
+            half_v: v(6),
+            n: v(9),
+            h: x[12],
+            a: Vec3::ZERO,
+            a0: 0.0,
+            b: Vec3::ZERO,
+            b0: 0.0,
+            keep: [0.0; 2],
+            deep: 0.0,
+            sure: [0.0; 2],
+            band: 0.0,
+            form: Form::General,
+            along: [0.0; 5],
+            corners: [Vec3::ZERO; 4],
+        }
     }
 
     /// The unit normal of the front.
@@ -150,27 +194,43 @@ impl Flat {
         onto(self.center + self.half_u * (2.0 * u[0] - 1.0) + self.half_v * (2.0 * u[1] - 1.0), self.n, self.h)
     }
 
-    /// Returns the distance t, whether the ray passes inside the parallelogram or close to its edges, and whether this is
-    /// certain. If not, [`Self::edges`] decides. Packets use this function lane by lane.
+    /// Returns the distance t, and the larger coordinate across the parallelogram in absolute value. Packets use this function
+    /// lane by lane.
     #[inline(always)]
-    pub(crate) fn look(&self, o: Vec3, d: Vec3) -> (f32, bool, bool) {
+    pub(crate) fn look(&self, o: Vec3, d: Vec3) -> (f32, f32) {
         let t = (self.h - dot(self.n, o)) / dot(self.n, d);
         let p = Vec3::new(d.x * t + o.x, d.y * t + o.y, d.z * t + o.z);
         let (u, v) = ((dot(self.a, p) + self.a0).abs(), (dot(self.b, p) + self.b0).abs());
-        let most = if u > v { u } else { v };
-        (t, (most <= self.band) & (t > 0.0), most <= 1.0)
+        (t, if u > v { u } else { v })
     }
 
-    /// [`Self::look`] for a parallelogram along the axes, with half the operations: the products with zero are left out. The
+    /// [`Self::look`] for [`Form::Aligned`], with half the operations: the products with zero are left out. The
     /// bits are the same; only t = ±∞, which is no hit, gives other numbers.
     #[inline(always)]
-    pub(crate) fn look_along<const AXIS: usize>(&self, o: Vec3, d: Vec3) -> (f32, bool, bool) {
-        let (one, other, [a, a0, b, b0]) = ((AXIS + 1) % 3, (AXIS + 2) % 3, self.along);
+    pub(crate) fn look_aligned<const AXIS: usize>(&self, o: Vec3, d: Vec3) -> (f32, f32) {
+        let (one, other, [a, a0, b, b0, _]) = ((AXIS + 1) % 3, (AXIS + 2) % 3, self.along);
         let (n, o, d) = (self.n.to_array()[AXIS], o.to_array(), d.to_array());
         let t = (self.h - n * o[AXIS]) / (n * d[AXIS]);
         let (u, v) = ((a * (d[one] * t + o[one]) + a0).abs(), (b * (d[other] * t + o[other]) + b0).abs());
-        let most = if u > v { u } else { v };
-        (t, (most <= self.band) & (t > 0.0), most <= 1.0)
+        (t, if u > v { u } else { v })
+    }
+
+    /// The same for [`Form::Upright`], with two thirds of the operations.
+    #[inline(always)]
+    pub(crate) fn look_upright<const AXIS: usize>(&self, o: Vec3, d: Vec3) -> (f32, f32) {
+        let (one, other, [a, a0, b, c, b0]) = ((AXIS + 1) % 3, (AXIS + 2) % 3, self.along);
+        let (n, o, d) = (self.n.to_array(), o.to_array(), d.to_array());
+        let t = (self.h - (n[one] * o[one] + n[other] * o[other])) / (n[one] * d[one] + n[other] * d[other]);
+        let (up, x, y) = (d[AXIS] * t + o[AXIS], d[one] * t + o[one], d[other] * t + o[other]);
+        let (u, v) = ((a * up + a0).abs(), (b * x + c * y + b0).abs());
+        (t, if u > v { u } else { v })
+    }
+
+    /// Returns true if a ray meets the parallelogram at t, or passes close to its edges. It meets it if the coordinate `most` of
+    /// [`Self::look`] is at most 1; if it is larger, [`Self::edges`] decides.
+    #[inline(always)]
+    pub(crate) fn near(&self, t: f32, most: f32) -> bool {
+        (most <= self.band) & (t > 0.0)
     }
 
     /// Returns true if the line of the ray passes between the edges. An edge that a neighbouring primitive shares has the
@@ -193,31 +253,19 @@ impl Flat {
 
     #[inline(always)]
     pub(super) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
-        let (t, near, certain) = self.look(o, d);
-        let mut met = near & certain;
-        if near != met {
-            met = self.edges(o, d);
-        }
-        (t, met)
+        let (t, most) = self.look(o, d);
+        (t, self.near(t, most) && (most <= 1.0 || self.edges(o, d)))
     }
 
     /// The point of the plane nearest to `p`, kept inside the edges.
     #[inline(always)]
     pub(crate) fn settle(&self, p: Vec3) -> Vec3 {
-        let (p, [u, v], inside) = self.settle_inside(p);
-        if inside {
+        let p = onto(p, self.n, self.h);
+        let (u, v, [ku, kv]) = (dot(self.a, p) + self.a0, dot(self.b, p) + self.b0, self.keep);
+        if (u.abs() <= ku) & (v.abs() <= kv) {
             return p;
         }
-        let [ku, kv] = self.keep;
         let back = |x: f32, k: f32| if x.abs() <= k { 0.0 } else { k.copysign(x) - x };
         p + self.half_u * (self.sure[0] * back(u, ku)) + self.half_v * (self.sure[1] * back(v, kv))
-    }
-
-    /// The point of the plane nearest to `p`, its coordinates, and whether it is inside the edges already, as nearly all are.
-    #[inline(always)]
-    pub(crate) fn settle_inside(&self, p: Vec3) -> (Vec3, [f32; 2], bool) {
-        let p = onto(p, self.n, self.h);
-        let (u, v) = (dot(self.a, p) + self.a0, dot(self.b, p) + self.b0);
-        (p, [u, v], (u.abs() <= self.keep[0]) & (v.abs() <= self.keep[1]))
     }
 }

@@ -14,7 +14,7 @@
 use super::bsdf::{Bsdf, Model, Sampling, TransportMode, Visitor};
 use super::faces::{ColourTable, FEW, Group};
 use super::rounding::{offset_origin, segment};
-use super::sixteen::{LANES, Lane, Lane3, ZERO, ZERO3, get, load, load3, put, store, store3};
+use super::sixteen::{LANES, Lane3, ZERO, ZERO3, get, load, load3, put, store, store3};
 use super::vertex::{DELTA, NOTHING, Rays, SOME, Side};
 use super::{Scene, Vertex};
 use crate::math::{Columns, Rgb};
@@ -144,8 +144,8 @@ impl Scene {
 }
 
 #[inline(always)]
-pub(super) fn gather(column: &[f32], at: &Paths) -> Lane {
-    let mut lane = ZERO;
+pub(super) fn gather<X: Copy + Default>(column: &[X], at: &Paths) -> [X; LANES] {
+    let mut lane = [X::default(); LANES];
     if at.neighbours {
         lane.copy_from_slice(&column[at.list[0] as usize..][..LANES]);
     } else {
@@ -196,10 +196,7 @@ fn colours_in_lanes_with_simd<'a, S: Simd>(
 ) {
     for place in places.clone().step_by(LANES) {
         let list = paths(order, place, places.end);
-        let mut sides = [0; LANES];
-        for (to, &i) in sides.iter_mut().zip(&list.list) {
-            *to = side[i as usize];
-        }
+        let sides = gather(side, &list);
         for (to, table) in [&mut colour.x, &mut colour.y, &mut colour.z].into_iter().zip(table) {
             let mut lane = ZERO;
             for i in 0..LANES {

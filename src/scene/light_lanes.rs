@@ -77,7 +77,7 @@ fn chosen_points_with_simd<'a, S: Simd>(_simd: S, scene: &'a Scene, at: Vertices
         let list = paths(&rays.order, place, m);
         let mut r = Receivers {
             x: gather3(at.p, &list),
-            side: [0; LANES],
+            side: gather(at.side, &list),
             u: [
                 gather(&rays.u[0], &list),
                 gather(&rays.u[1], &list),
@@ -89,9 +89,6 @@ fn chosen_points_with_simd<'a, S: Simd>(_simd: S, scene: &'a Scene, at: Vertices
             probability: ZERO,
             sky: ZERO,
         };
-        for i in 0..LANES {
-            r.side[i] = at.side[list.list[i] as usize];
-        }
         let mut found = Found { to: ZERO3, pdf: ZERO, q: ZERO3, m: ZERO3, radiance: ZERO3 };
         let kinds = choose(scene, &mut r, &mut found);
         points_without_area(scene, kinds, &r, &mut found);
@@ -287,13 +284,9 @@ fn lamp_points_with_simd<'a, S: pulp::Simd>(
 #[inline(always)]
 fn points(point: impl Fn([f32; 2]) -> (Vec3, Vec3), density: f32, x: &Columns, rays: &mut Rays, m: usize) {
     for place in (0..m).step_by(LANES) {
-        let (mut to, mut q, mut n, mut at) = (ZERO3, ZERO3, ZERO3, ZERO3);
-        let (mut u, mut v, mut pdf) = (ZERO, ZERO, ZERO);
-        for lane in 0..LANES.min(m - place) {
-            let i = rays.order[place + lane] as usize;
-            put(&mut at, lane, x.get(i));
-            (u[lane], v[lane]) = (rays.u[2][i], rays.u[3][i]);
-        }
+        let list = paths(&rays.order, place, m);
+        let (at, u, v) = (gather3(x, &list), gather(&rays.u[2], &list), gather(&rays.u[3], &list));
+        let (mut to, mut q, mut n, mut pdf) = (ZERO3, ZERO3, ZERO3, ZERO);
         for lane in 0..LANES {
             let (p, normal) = point([u[lane], v[lane]]);
             let (d, r2, _, cos) = connection(get(&at, lane), Vec3::ZERO, p, normal);

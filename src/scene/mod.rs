@@ -26,6 +26,7 @@ pub mod emitter;
 mod error;
 pub mod export;
 mod faces;
+mod few;
 mod flat;
 mod groups;
 pub mod image_header;

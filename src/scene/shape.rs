@@ -239,12 +239,9 @@ pub(crate) struct Disc {
 }
 
 impl Disc {
-    /// The numbers of [`Flat::numbers`] for the plane of the disk, whose edges are out of reach.
-    pub(crate) fn numbers(&self) -> [f32; Flat::NUMBERS] {
-        let mut all = [0.0; Flat::NUMBERS];
-        all[..4].copy_from_slice(&[self.n.x, self.n.y, self.n.z, self.h]);
-        all[Flat::NUMBERS - 2..].fill(f32::MAX);
-        all
+    /// The plane: its normal and its distance from the origin.
+    pub(crate) fn plane(&self) -> (Vec3, f32) {
+        (self.n, self.h)
     }
 
     #[inline(always)]

@@ -83,9 +83,9 @@ impl Logarithms {
     }
 }
 
-/// Compresses (zlib) and writes as text (base64). Level 3 takes half the time of level 6 and is 1.4 % larger.
+/// Compresses (zlib) and writes as text (base64). Level 1 takes a quarter of the time of level 3 and is 3 % larger.
 pub fn text(bytes: &[u8]) -> String {
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(3));
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
     // writing to memory cannot fail
     let packed = encoder.write_all(bytes).and_then(|()| encoder.finish()).unwrap_or_default();
     BASE64_STANDARD.encode(packed)
