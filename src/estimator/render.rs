@@ -229,7 +229,7 @@ fn pass<T: Transport>(
         if samples.is_empty() || !part.has(i) || stops() {
             return Totals::new(shape.slots);
         }
-        if !may_stop {
+        if samples.start == 0 {
             // memory is written before it is read, or every page is brought in twice
             sums.iter_mut().step_by(PAGE).for_each(|s| *s = 0.0);
         }
