@@ -80,6 +80,18 @@ const RUNS: [&str; 6] = [
     "series cornell --worlds terms,path --guide radiosity --roulette window --patches 300 --size 40x40 --spp 256",
 ];
 
+/// Stops a run with a signal, so that it keeps what it has.
+fn stopped(desk: &Path, line: &str, after: Duration) {
+    let mut child = command(desk, line).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    std::thread::sleep(after);
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+    let begun = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        assert!(begun.elapsed() < Duration::from_secs(30), "{line}: it does not end");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
 /// Kills each run at `moments` moments, which are spread over its time, and goes on.
 fn killed_at(moments: u32) {
     let desk = TempDir::new().unwrap();
@@ -140,6 +152,62 @@ fn a_finished_run_grows_to_the_bits_of_a_longer_one() {
 }
 
 #[test]
+fn a_run_that_was_stopped_in_its_last_pass_grows_as_well() {
+    let desk = TempDir::new().unwrap();
+    let desk = desk.path();
+    let line = |spp: u32| format!("series cornell --worlds terms --size 96x96 --spp {spp} -q -t 1 --pictures-only");
+    ok(desk, &format!("{} -o whole", line(1024)));
+    for (i, after) in [400, 900, 1300].into_iter().enumerate() {
+        let folder = format!("stopped{i}");
+        stopped(desk, &format!("{} --checkpoint 10ms -o {folder}", line(784)), Duration::from_millis(after));
+        ok(desk, &format!("{} --resume -o {folder}", line(1024)));
+        assert_same(desk, ["whole", &folder], &format!("stopped after {after} ms"));
+    }
+}
+
+#[test]
+fn a_signal_in_the_first_pass_ends_the_run() {
+    let desk = TempDir::new().unwrap();
+    let desk = desk.path();
+    let line = "series cornell --worlds terms --size 400x400 --spp 32 -q -t 1 --pictures-only --checkpoint 300ms";
+    ok(desk, &format!("{line} -o whole"));
+    stopped(desk, &format!("{line} -o run"), Duration::from_millis(120));
+    ok(desk, &format!("{line} --resume -o run"));
+    assert_same(desk, ["whole", "run"], line);
+    for n in 1..=2 {
+        stopped(desk, &format!("{line} --shard {n}/2 -o {n}.fsh"), Duration::from_millis(120));
+        ok(desk, &format!("{line} --shard {n}/2 -o {n}.fsh"));
+    }
+    ok(desk, "merge 1.fsh 2.fsh -q -o merged");
+    assert_same(desk, ["whole", "merged"], line);
+}
+
+#[test]
+fn a_part_is_written_by_one_run_at_a_time() {
+    let desk = TempDir::new().unwrap();
+    let desk = desk.path();
+    let line = "series cornell --worlds terms,path --size 32x32 --spp 100000 -q --shard 1/2 --checkpoint 10ms -o 1.fsh";
+    let mut first = command(desk, line).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    while !desk.join("1.fsh").exists() {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    refused(desk, line, &["another run is writing this part", "1.fsh"]);
+    first.kill().unwrap();
+    first.wait().unwrap();
+}
+
+#[test]
+fn a_state_keeps_the_films_of_other_ways_to_solve() {
+    let desk = TempDir::new().unwrap();
+    let desk = desk.path();
+    let line = |worlds: &str| format!("series cornell --size 128x128 --spp 64 -q --checkpoint 10ms --worlds {worlds}");
+    ok(desk, &format!("{} -o run", line("terms,path")));
+    ok(desk, &format!("{} --estimator single --resume -o run", line("terms")));
+    let said = ok(desk, "series cornell --size 128x128 --spp 64 --worlds terms,path --resume -o run");
+    assert!(said.err.contains("going on with prefix 64, path 64 of 64"), "{}", said.err);
+}
+
+#[test]
 fn what_cannot_go_on_is_refused_by_name() {
     let desk = TempDir::new().unwrap();
     let desk = desk.path();
@@ -160,11 +228,7 @@ fn what_cannot_go_on_is_refused_by_name() {
     kept(8, "few");
     refused(desk, &format!("{large} --pictures-only --spp 64 --resume -o few"), &["8 replicates", "16"]);
     kept(20, "odd");
-    refused(
-        desk,
-        &format!("{large} --pictures-only --spp 64 --resume -o odd"),
-        &["after 20 samples", "multiples of 16"],
-    );
+    refused(desk, &format!("{large} --pictures-only --spp 64 --resume -o odd"), &["after 20 samples", "16, 32, 64"]);
     // a damaged state
     let path = desk.join("a/state.fsh");
     let mut bytes = std::fs::read(&path).unwrap();
@@ -244,8 +308,10 @@ fn parts_that_do_not_belong_together_are_refused_by_name() {
     refused(desk, "merge 1.fsh spp.fsh 3.fsh -o x", &["--spp is 64 in 1.fsh, 128 here", "spp.fsh"]);
     refused(desk, "merge 1.fsh four.fsh 3.fsh -o x", &["number of parts is 3", "four.fsh"]);
     refused(desk, "merge room.toml -o x", &["not a state", "room.toml"]);
+    ok(desk, &format!("{line} --patches 60 --shard 2/3 -o other.fsh"));
+    refused(desk, "merge 1.fsh other.fsh 3.fsh -o x", &["the command is", "--patches 60"]);
     // the file of another part is not replaced
-    refused(desk, &format!("{line} --shard 1/3 -o 2.fsh"), &["is part 2/3, not 1/3", "--force"]);
+    refused(desk, &format!("{line} --shard 1/3 -o 2.fsh"), &["this is part 2/3, not 1/3", "--force"]);
     refused(desk, &format!("{line} --seed 1 --shard 2/3 -o 2.fsh"), &["--seed"]);
     // a part that was stopped
     let long = "series room.toml --worlds terms --size 24x24 --spp 100000 -q";

@@ -35,7 +35,18 @@ pub enum Denied {
 impl Claim {
     /// Claims a folder, which must exist, and removes what a killed run left half-written there.
     pub fn folder(folder: &Path, command: &str) -> Result<Self, Denied> {
-        let path = folder.join(NAME);
+        let claim = Self::by(folder.join(NAME), command)?;
+        remove_unfinished(folder);
+        Ok(claim)
+    }
+
+    /// Claims one file, by another one beside it.
+    pub fn file(path: &Path, command: &str) -> Result<Self, Denied> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        Self::by(path.with_file_name(format!(".{name}.run")), command)
+    }
+
+    fn by(path: PathBuf, command: &str) -> Result<Self, Denied> {
         // the file may be removed by its owner between opening and locking it; then the lock is of no use
         for _ in 0..100 {
             let mut file = open(&path).map_err(Denied::Failed)?;
@@ -49,7 +60,6 @@ impl Claim {
             written.and_then(|()| file.flush()).map_err(Denied::Failed)?;
             // where a locked file cannot be read by its name (Windows), it cannot be removed either
             if std::fs::read_to_string(&path).map_or_else(|e| e.kind() != std::io::ErrorKind::NotFound, |t| t == mine) {
-                remove_unfinished(folder);
                 return Ok(Self { path, _file: file });
             }
         }

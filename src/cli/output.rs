@@ -47,7 +47,10 @@ pub fn folder(asked: Option<&Path>, name: &str, owner: &Owner<'_>) -> Result<(Pa
     // the first folder of a run that can go on comes before an empty one
     let going_on = folders().take_while(|dir| dir.exists()).find(|dir| resumes(dir));
     let free = |dir: &PathBuf| (*force || ours(dir, command)) && !inputs.iter().any(|input| is_in(input, dir));
-    for dir in going_on.into_iter().chain(folders().filter(free)) {
+    if let Some(dir) = going_on {
+        return claimed(&dir, command)?.map(|claim| (dir.clone(), claim)).ok_or_else(|| taken(&dir));
+    }
+    for dir in folders().filter(free) {
         if let Some(claim) = claimed(&dir, command)? {
             return Ok((dir, claim));
         }
@@ -121,6 +124,13 @@ pub fn command_of(words: &[String]) -> String {
     std::iter::once("fredholm".into()).chain(words.iter().map(|w| quoted(w))).collect::<Vec<_>>().join(" ")
 }
 
+/// The words with more options, before a `--` that ends the options.
+pub fn with_options(words: &[String], options: &[&str]) -> Vec<String> {
+    let end = words.iter().position(|w| w == "--").unwrap_or(words.len());
+    let options = options.iter().map(|o| (*o).to_owned());
+    words[..end].iter().cloned().chain(options).chain(words[end..].iter().cloned()).collect()
+}
+
 /// A command without the options that a resumed run may change.
 pub fn but_for_samples(words: &[String]) -> Vec<String> {
     without(words, &["--spp", "--time"], &[])
@@ -151,7 +161,8 @@ pub fn without(args: &[String], with_value: &[&str], alone: &[&str]) -> Vec<Stri
     words
 }
 
-fn quoted(arg: &str) -> String {
+/// A word as a shell reads it.
+pub fn quoted(arg: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_=.,:@/+".contains(c);
     if !arg.is_empty() && arg.chars().all(plain) {
         arg.to_string()

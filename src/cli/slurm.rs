@@ -2,8 +2,9 @@
 
 use super::base::{Ending, Failure, print, usage};
 use super::keep::interval;
+use super::open;
 use super::options::{Changes, Frame, HOW, OUTPUT};
-use super::output::{command_of, kept_words, without};
+use super::output::{command_of, kept_words, quoted, without};
 use super::solve::{Light, Mesh, Pictures, Pixels, Terms, Worlds};
 use clap::Args;
 use std::path::Path;
@@ -81,17 +82,24 @@ pub fn run(args: &Slurm) -> Result<Ending, Failure> {
     let stem = Path::new(&args.frame.scene).file_stem().map_or("run".into(), |s| s.to_string_lossy());
     let name: String = stem.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect();
     let folder = args.folder.clone().unwrap_or_else(|| format!("{name}-parts"));
-    if folder.contains(['\'', '\n']) || args.limit.as_ref().is_some_and(|l| l.contains(|c: char| c.is_whitespace())) {
+    if folder.contains(['\'', '\n', ',', '%'])
+        || args.limit.as_ref().is_some_and(|l| l.contains(|c: char| c.is_whitespace()))
+    {
         return Err(usage(
             "this name does not fit into a script",
-            "choose a name without quotes, and a limit such as 2:00:00",
+            "choose a name without quotes, commas and %, and a limit such as 2:00:00",
         ));
     }
-    print(&script(args, &name, &folder, &command_of(&words)))?;
+    // a scene that is not there would be found by every task
+    open::description(&args.frame.scene, &args.changes, args.frame.size)?;
+    print(&script(args, &name, &folder, &words))?;
     Ok(Ending::Ok)
 }
 
-fn script(args: &Slurm, name: &str, folder: &str, command: &str) -> String {
+fn script(args: &Slurm, name: &str, folder: &str, words: &[String]) -> String {
+    let end = words.iter().position(|w| w == "--").unwrap_or(words.len());
+    let (command, part) = (command_of(words), command_of(&words[..end]));
+    let rest: String = words[end..].iter().map(|w| format!(" {}", quoted(w))).collect();
     let Slurm { shards, cpus, limit, .. } = args;
     let limit = limit.as_ref().map_or(String::new(), |l| format!("#SBATCH --time={l}\n"));
     let keep = args.checkpoint.as_ref().map_or(String::new(), |time| format!(" --checkpoint {time}"));
@@ -113,8 +121,8 @@ parts=$(sbatch --parsable --output="$folder/%a.log" --export=ALL,folder="$folder
 {limit}# a minute before the limit comes SIGTERM: the part keeps its state (exit code 143) and is queued again
 stop() {{ kill -TERM "$part" 2>/dev/null || true; }}
 trap stop TERM
-{command} --quiet{keep} \
-  --shard "$SLURM_ARRAY_TASK_ID/{shards}" -t {cpus} -o "$folder/$SLURM_ARRAY_TASK_ID.fsh" &
+{part} --quiet{keep} \
+  --shard "$SLURM_ARRAY_TASK_ID/{shards}" -t {cpus} -o "$folder/$SLURM_ARRAY_TASK_ID.fsh"{rest} &
 part=$!
 code=0
 wait "$part" || code=$?

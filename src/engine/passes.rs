@@ -126,11 +126,8 @@ impl<'a, 'l> Passes<'a, 'l> {
     fn take_up(&mut self, film: TermFilm, mut history: History) {
         let samples = film.samples_of(part(&self.watch));
         let looked_at = |spp: u32| if samples.is_empty() { spp < samples.start } else { spp <= samples.start };
-        let replicates = film.shape.replicates as u32;
-        // a pass that ended with a smaller number of samples does not exist in a longer render
-        let usual = |spp: u32| spp.is_multiple_of(replicates) && (spp / replicates).is_power_of_two();
-        history.stands.retain(|s| looked_at(s.spp) && usual(s.spp));
-        history.early.retain(|e| looked_at(e.spp) && usual(e.spp));
+        history.stands.retain(|s| looked_at(s.spp) && is_usual(s.spp, &film));
+        history.early.retain(|e| looked_at(e.spp) && is_usual(e.spp, &film));
         if part(&self.watch).is_whole() {
             self.snapshots = history.stands.iter().map(|s| s.snapshot(film.shape)).collect();
         }
@@ -186,6 +183,12 @@ impl<'a, 'l> Passes<'a, 'l> {
             spp: film.least_samples(),
         }
     }
+}
+
+/// True if every longer render has a pass that ends after so many samples.
+fn is_usual(spp: u32, film: &TermFilm) -> bool {
+    let replicates = film.shape.replicates as u32;
+    spp.is_multiple_of(replicates) && (spp / replicates).is_power_of_two()
 }
 
 /// The part of the film that is rendered.
@@ -253,7 +256,9 @@ impl Between for Passes<'_, '_> {
         if until <= done && part.is_whole() {
             self.last = Some((self.seconds(), Statistics::of(film)));
         }
-        if film.shape.replicates > 1 && !apart {
+        // the bits of a run that is kept must not depend on where it was stopped
+        let exists = self.watch.keep.is_none() || until <= done || is_usual(done, film);
+        if film.shape.replicates > 1 && !apart && exists {
             self.variances(film, part);
         }
         until

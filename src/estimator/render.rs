@@ -174,13 +174,15 @@ impl Render<'_> {
         let Self { mut film, part, due } = self;
         let samples = film.samples_of(part);
         let mut done = samples.start;
-        // a film that was left within a pass finishes this pass first
-        let mut until = if samples.is_empty() { amount.next(done) } else { samples.end };
-        // a film that was left between two passes is looked at first, unless such a pass does not exist in a longer render
-        if done > 0 && samples.is_empty() && (done >= amount.spp || amount.next(done - 1) == done) {
+        // blocks that are further than others wait for them
+        let mut until = amount.next(done).max(samples.end);
+        // a film that was left between two passes is looked at first
+        if done > 0 && samples.is_empty() {
             until = between.look(&film, until).min(amount.spp);
         }
-        while done < until && !(done > 0 && progress.stopped()) {
+        // the first pass of a whole film is never stopped, so that every pixel holds samples
+        let stops = |done: u32| (done > 0 || !part.is_whole()) && progress.stopped();
+        while done < until && !stops(done) {
             pass(t, sensor, estimator, Pass { key: amount.key, until, part, due }, &mut film, progress);
             if film.samples_of(part).start < until {
                 between.keep(&film);
@@ -224,8 +226,7 @@ fn pass<T: Transport>(
     let floors = Largest::floors(&film.largest);
     let job = |paths: &mut Paths<T::Wave>, (i, ((sums, squares), counts)): (usize, Block)| {
         let samples = counts[0]..until;
-        // the first pass is never stopped, so that every pixel holds samples
-        let stops = || samples.start > 0 && progress.stopped() || due();
+        let stops = || (samples.start > 0 || !part.is_whole()) && progress.stopped() || due();
         if samples.is_empty() || !part.has(i) || stops() {
             return Totals::new(shape.slots);
         }

@@ -19,6 +19,8 @@ pub const NAME: &str = "state.fsh";
 
 /// A state is written again after at least this many times the time that writing it takes.
 const RARELY: u32 = 60;
+/// A film is kept at its end if the run has taken this part of the time between two states.
+const LONG: u32 = 4;
 
 /// The file of a run, or of a part of one.
 pub struct Keeper {
@@ -75,7 +77,8 @@ impl Keeper {
             fits(entry, run).map_err(|(what, help)| refused(&what, &self.path, &help))?;
         }
         state.check()?;
-        header.films = state.header.films.iter().filter(|f| known.contains(&f.stream)).cloned().collect();
+        // films that this run does not need stay in the file
+        header.films = state.header.films.clone();
         drop(header);
         (self.left, self.kept) = (Mutex::new(Some(state)), true.into());
         Ok(())
@@ -100,7 +103,8 @@ impl Keeper {
             [a, b] => format!("{stream} {a} to {b}"),
         };
         let all: Vec<String> = streams(run).iter().map(one).collect();
-        format!("going on with {} of {spp} samples per pixel", all.join(", "))
+        let of = if run.settings.time.is_some() { String::new() } else { format!(" of {spp}") };
+        format!("going on with {}{of} samples per pixel", all.join(", "))
     }
 
     /// Removes the state of an earlier run which is not that of this one.
@@ -144,7 +148,9 @@ impl Keep for Keeper {
     }
 
     fn due(&self) -> bool {
-        self.started.elapsed().as_millis() as u64 >= self.next.load(Relaxed)
+        // a run that was stopped keeps its state at its end, which is near
+        let stopped = signals::stop_flag().load(Relaxed);
+        !stopped && self.started.elapsed().as_millis() as u64 >= self.next.load(Relaxed)
     }
 
     fn keep(&self, stream: &str, film: &TermFilm, history: &History, ended: bool) {
@@ -153,7 +159,7 @@ impl Keep for Keeper {
             // the end follows at once
             false => !stopped,
             true => {
-                let long = self.every.is_some_and(|every| self.started.elapsed() > every);
+                let long = self.every.is_some_and(|every| self.started.elapsed() > every / LONG);
                 self.is_result || self.every.is_some() && (stopped || long || self.kept())
             }
         };
@@ -165,7 +171,7 @@ impl Keep for Keeper {
 
 /// Refuses a film with which the run cannot go on to the same bits: what is wrong, and what to do.
 fn fits(entry: &Entry, run: &Run) -> Result<(), (String, String)> {
-    let (settings, [least, most]) = (&run.settings, entry.samples);
+    let (settings, [_, most]) = (&run.settings, entry.samples);
     if most > settings.spp {
         let what = format!("the state has {most} samples per pixel already, and --spp asks for {}", settings.spp);
         return Err((what, format!("use --spp {most} or more")));
@@ -175,9 +181,11 @@ fn fits(entry: &Entry, run: &Run) -> Result<(), (String, String)> {
         let what = format!("the state has {} replicates, and this run has {replicates}", entry.replicates);
         return Err((what, format!("only a run that began with --spp {replicates} or more can grow; start anew")));
     }
-    if least == most && most < settings.spp && !ends_a_group(most, entry.shape(), entry.shared) {
+    // within a pass, the smaller number is where the pass before it ended
+    if most < settings.spp && !ends_a_group(most, entry.shape(), entry.shared) {
         let what = format!("after {most} samples per pixel, a run cannot grow to the bits of a longer one");
-        return Err((what, format!("start anew; runs grow from multiples of {replicates} samples")));
+        let [a, b, c] = [1, 2, 4].map(|n| n * replicates);
+        return Err((what, format!("start anew; runs can always grow from {a}, {b}, {c}, … samples")));
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 use super::{Shard, streams};
 use crate::cli::base::{Failure, note};
+use crate::cli::output::command_of;
 use fredholm::engine::passes::Keep;
 use fredholm::report::state::{Header, State};
 use fredholm::study::run::Run;
@@ -34,6 +35,9 @@ impl Merged {
             let differs = header.difference(other).map(|(name, values)| (name, values.map(str::to_owned)));
             let differs = differs.or((samples[0] != samples[1]).then_some(("--spp", samples)));
             let differs = differs.or((counts[0] != counts[1]).then_some(("number of parts", counts)));
+            let commands = [&header, other].map(|h| command_of(&h.words));
+            let differs =
+                differs.or((sorted(&header.words) != sorted(&other.words)).then_some(("the command", commands)));
             if let Some((name, [a, b])) = differs {
                 let what = format!("these are parts of two runs: {name} is {a} in {}, {b} here", first.display());
                 return Err(refused(&what, path, "merge the parts of one run"));
@@ -56,7 +60,7 @@ impl Merged {
             let (some, more) = missing.split_at(missing.len().min(8));
             let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
             let what = format!("parts are missing: {}{more}", some.join(", "));
-            return Err(Failure::Input(format!("error: {what}\nhelp: render them, and give all {of} files")));
+            return Err(Failure::Input(format!("error: {what}\nhelp: render them, and give the files of all parts")));
         }
         Ok(Self { parts: Mutex::new(parts), header })
     }
@@ -85,7 +89,8 @@ impl Merged {
             }
             state.check()?;
         }
-        Ok(())
+        // what cannot be put together is an error here, and not rendered later
+        streams(run).iter().try_for_each(|stream| self.film(stream).map(drop))
     }
 
     fn film(&self, stream: &str) -> Result<Option<(TermFilm, History)>, Failure> {
@@ -125,6 +130,12 @@ impl Keep for Merged {
         false
     }
     fn keep(&self, _: &str, _: &TermFilm, _: &History, _: bool) {}
+}
+
+fn sorted(words: &[String]) -> Vec<&String> {
+    let mut words: Vec<_> = words.iter().collect();
+    words.sort();
+    words
 }
 
 fn refused(what: &str, path: &Path, help: &str) -> Failure {

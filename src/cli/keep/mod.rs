@@ -30,7 +30,7 @@ pub struct Keeping {
     pub resume: bool,
     /// How often the state is kept for --resume: 60s, 5m, off
     ///
-    /// A run that takes longer keeps its state in state.fsh, in its output folder. Ctrl-C and a batch system's SIGTERM keep it too. If writing it
+    /// A run that takes longer than this keeps its state in state.fsh, in its output folder. Unless this is `off`, Ctrl-C and a batch system's SIGTERM keep it too. If writing it
     /// takes long, it is written less often, so that it costs less than two percent of the time. [default: 60s]
     #[arg(long, value_name = "TIME", value_parser = interval, hide_short_help = true)]
     pub checkpoint: Option<Interval>,
@@ -42,7 +42,7 @@ pub struct Keeping {
 pub struct Sharding {
     /// Render part I of N, for `fredholm merge`
     ///
-    /// For example 3/8. Writes one file, given with -o. Every part has its blocks of 64 pixels, or its replicates if paths start at the lights.
+    /// For example 3/8. Writes one file [default: fredholm-out/SCENE-COMMAND-3-of-8.fsh], which -o names. A part has every N-th block of 64 pixels, or every N-th replicate if paths start at the lights.
     /// A part that was stopped goes on when its command is repeated, and a finished part is skipped. The merged result has the bits of
     /// one run.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["resume", "time"], hide_short_help = true)]

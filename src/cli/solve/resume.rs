@@ -3,9 +3,10 @@
 use super::Request;
 use crate::cli::base::{Failure, note};
 use crate::cli::keep::{Interval, Keeper, NAME, kept_in};
-use crate::cli::output::{but_for_samples, kept_words};
+use crate::cli::output::{but_for_samples, command_of, kept_words, with_options};
 use crate::cli::session::Session;
 use fredholm::report::state::Header;
+use fredholm::report::text::summary;
 use fredholm::study::run::Run;
 use std::path::Path;
 
@@ -14,7 +15,13 @@ use std::path::Path;
 pub fn is_of_this_run(folder: &Path, named: bool) -> bool {
     let but = |words: &[String]| but_for_samples(words);
     match kept_in(folder) {
-        Some(Ok(state)) => named || but(&state.header.words) == but(&kept_words()),
+        // a folder that another command has written since then is not taken
+        Some(Ok(state)) => {
+            let of_state = but(&state.header.words);
+            let written = summary::read(&folder.join("summary.json")).ok().and_then(|s| shlex::split(&s.command));
+            let same = written.is_none_or(|words| but(&words[1..]) == of_state);
+            same && named || of_state == but(&kept_words())
+        }
         Some(Err(_)) => named,
         None => false,
     }
@@ -36,7 +43,12 @@ pub fn keeper(args: &Request, run: &Run, session: &Session, header: Header) -> R
         None if args.keeping.resume && !session.quiet() => {
             note(&format!("nothing was kept in {}: starting at the first sample", session.folder.display()));
         }
-        Some(Ok(state)) if !args.shared.force && state.header.films.iter().any(|f| f.samples[0] < state.header.spp) => {
+        // a run by the clock has no number of samples that it lacks
+        Some(Ok(state))
+            if run.settings.time.is_none()
+                && !args.shared.force
+                && state.header.films.iter().any(|f| f.samples[0] < state.header.spp) =>
+        {
             let path = session.folder.join(NAME);
             return Err(Failure::Input(format!(
                 "error: the output folder holds the state of this run, which was stopped\n  --> {}\nhelp: go on with --resume, or begin \
@@ -51,5 +63,6 @@ pub fn keeper(args: &Request, run: &Run, session: &Session, header: Header) -> R
 
 /// Says how a stopped run goes on.
 pub fn tell(session: &Session) {
-    note(&format!("to go on: {} --resume -o {}", session.command(), session.folder.display()));
+    let folder = session.folder.display().to_string();
+    note(&format!("to go on: {}", command_of(&with_options(&kept_words(), &["--resume", "-o", &folder]))));
 }

@@ -2,6 +2,7 @@
 
 use super::{Default, Request, opened};
 use crate::cli::base::{Ending, Failure, note, usage};
+use crate::cli::claim::{Claim, Denied};
 use crate::cli::keep::{self, Interval, Keeper, Shard};
 use crate::cli::session::Session;
 use fredholm::engine::by_rays::{Begins, Estimator};
@@ -36,16 +37,21 @@ pub fn render(args: &Request, default: &Default, shard: Shard) -> Result<Ending,
     if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder)?;
     }
+    let _claim = Claim::file(&path, session.command()).map_err(|denied| match denied {
+        Denied::Taken => {
+            refused(&path, "another run is writing this part", "wait until it ends, or choose another file with -o")
+        }
+        Denied::Failed(e) => refused(&path, &format!("the part cannot be written: {e}"), "choose another file with -o"),
+    })?;
     let header = keep::header(args, &run, &hash, &default.roulette, shard.0);
     let spp = header.spp;
     let mut keeper = Keeper::of_part(path.clone(), header, args.keeping.checkpoint.unwrap_or(Interval::USUAL));
     if path.exists() && !args.shared.force {
-        let state = State::open(&path)?;
+        const OTHER: &str = "choose another file with -o, or replace it with --force";
+        let state = State::open(&path).map_err(|e| refused(&path, &e.cause, OTHER))?;
         if state.header.part() != shard.0 {
-            let what = format!("{} is part {}, not {shard}", path.display(), Shard(state.header.part()));
-            return Err(Failure::input(&format!(
-                "error: {what}\nhelp: choose another file with -o, or replace it with --force"
-            )));
+            let what = format!("this is part {}, not {shard}", Shard(state.header.part()));
+            return Err(refused(&path, &what, OTHER));
         }
         keeper.go_on(state, &run)?;
         if !session.quiet() {
@@ -73,6 +79,10 @@ pub fn render(args: &Request, default: &Default, shard: Shard) -> Result<Ending,
         }
     })?;
     Ok(session.ending(false))
+}
+
+fn refused(path: &Path, what: &str, help: &str) -> Failure {
+    Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", path.display()))
 }
 
 /// The usual name of the file of a part.

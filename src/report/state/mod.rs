@@ -54,6 +54,8 @@ const BEGIN: &[u8] = b"fredholm state 1\n";
 const END: &[u8] = b"state end";
 /// Length of what follows the header: its length, its checksum, the end.
 const FOOT: u64 = 8 + 4 + END.len() as u64;
+/// What to do with a file that cannot be used.
+const AGAIN: &str = "choose another file, or render this one again from the start, with --force";
 /// Longest header that is read.
 const LONGEST: u64 = 1 << 20;
 
@@ -135,13 +137,20 @@ pub fn write(
         let mut out = BufWriter::with_capacity(1 << 20, file);
         out.write_all(BEGIN)?;
         let mut at = BEGIN.len() as u64;
-        if !written.films.is_empty() {
-            let mut old = old?;
-            for entry in &mut written.films {
-                copy(&mut old, entry.start..entry.start + entry.length, &mut out)?;
-                entry.start = at;
-                at += entry.length;
+        match old {
+            Ok(mut old) => {
+                for entry in &mut written.films {
+                    let mut body = Hashed::new(&mut out);
+                    copy(&mut old, entry.start..entry.start + entry.length, &mut body)?;
+                    if body.done() != (entry.length, entry.crc) {
+                        return Err(bytes::wrong("another run has written this file"));
+                    }
+                    entry.start = at;
+                    at += entry.length;
+                }
             }
+            // somebody has removed the file: its other films are lost, but not this one
+            Err(_) => written.films.clear(),
         }
         let mut body = Hashed::new(&mut out);
         film::write(film, history, header.part(), &mut body)?;
@@ -187,7 +196,7 @@ impl State {
     /// # Errors
     /// If the file cannot be read, is no state, or is damaged.
     pub fn open(path: &Path) -> Result<Self, ReportError> {
-        let broken = |e: io::Error| ReportError::new(path, why(&e), "render this part again");
+        let broken = |e: io::Error| ReportError::new(path, why(&e), AGAIN);
         let mut file = BufReader::new(files::open(path)?);
         let header = header(&mut file).map_err(broken)?;
         Ok(Self { path: path.into(), file, header })
@@ -204,7 +213,7 @@ impl State {
             let right = copied.is_ok() && body.done() == (entry.length, entry.crc);
             if !right {
                 let what = "the file is damaged: a checksum is wrong";
-                return Err(ReportError::new(&self.path, what, "render this part again"));
+                return Err(ReportError::new(&self.path, what, AGAIN));
             }
         }
         Ok(())
@@ -217,7 +226,7 @@ impl State {
     pub fn film(&mut self, stream: &str, shape: Shape) -> Result<Option<(TermFilm, History)>, ReportError> {
         let Some(entry) = self.header.film(stream) else { return Ok(None) };
         let found = film_of(&mut self.file, entry, self.header.part(), shape);
-        found.map(Some).map_err(|e| ReportError::new(&self.path, why(&e), "render this part again"))
+        found.map(Some).map_err(|e| ReportError::new(&self.path, why(&e), AGAIN))
     }
 }
 
@@ -234,9 +243,9 @@ fn why(e: &io::Error) -> String {
 /// If the bytes are no state.
 pub fn header(file: &mut (impl Read + Seek)) -> io::Result<Header> {
     let mut begin = [0; BEGIN.len()];
-    file.read_exact(&mut begin)?;
-    if begin != BEGIN {
-        return Err(bytes::wrong("this is not a state of fredholm, or of another version"));
+    let short = file.read_exact(&mut begin).is_err();
+    if short || begin != BEGIN {
+        return Err(bytes::wrong("this is not a state or a part of a run, or one of another version"));
     }
     let end = file.seek(SeekFrom::End(0))?;
     let damaged = || bytes::wrong("the file is damaged: its end is missing");
