@@ -1,6 +1,8 @@
 //! How a command ends and what it prints: results to stdout, everything else to stderr.
 
 use fredholm::math::names::{hides, printable};
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// An error that ends a command.
 pub enum Failure {
@@ -17,6 +19,11 @@ impl<E: std::error::Error> From<E> for Failure {
 }
 
 impl Failure {
+    /// Something is wrong with a file or a folder: what, where, and what to do.
+    pub fn at(path: &Path, what: &str, help: &str) -> Self {
+        Self::Input(format!("error: {what}\n  --> {}\nhelp: {help}", path.display()))
+    }
+
     /// Something is wrong with the scene or a file. Adds `error: ` to the text unless it is there.
     pub fn input(text: &str) -> Self {
         Self::Input(if text.starts_with("error: ") { text.into() } else { format!("error: {text}") })
@@ -26,6 +33,11 @@ impl Failure {
 /// The error for arguments that do not make sense together: what is wrong, and what to do.
 pub fn usage(what: &str, help: &str) -> Failure {
     Failure::Usage(format!("error: {what}\nhelp: {help}"))
+}
+
+/// Locks a value that no panic can leave half-changed.
+pub fn lock<T>(m: &Mutex<T>) -> MutexGuard<'_, T> {
+    m.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// How a command ends if nothing prevents its work.

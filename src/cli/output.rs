@@ -24,18 +24,18 @@ pub fn folder(asked: Option<&Path>, name: &str, owner: &Owner<'_>) -> Result<(Pa
     let Owner { command, force, inputs, resumes } = owner;
     if let Some(dir) = asked {
         if dir.exists() && !dir.is_dir() {
-            return Err(refused("the output folder is a file", dir, "choose another with -o"));
+            return Err(Failure::at(dir, "the output folder is a file", "choose another with -o"));
         }
         if let Some(input) = inputs.iter().find(|input| is_in(input, dir)) {
             let what = format!("the output folder holds an input, {}", input.display());
-            return Err(refused(&what, dir, "choose another with -o"));
+            return Err(Failure::at(dir, &what, "choose another with -o"));
         }
         if claim::stays_taken(dir) {
             return Err(taken(dir));
         }
         if !force && !ours(dir, command) && !resumes(dir) {
             let help = "choose another with -o, or replace it with --force";
-            return Err(refused("the output folder holds another run's output", dir, help));
+            return Err(Failure::at(dir, "the output folder holds another run's output", help));
         }
         return match claimed(dir, command)? {
             Some(claim) => Ok((dir.to_path_buf(), claim)),
@@ -55,7 +55,7 @@ pub fn folder(asked: Option<&Path>, name: &str, owner: &Owner<'_>) -> Result<(Pa
             return Ok((dir, claim));
         }
     }
-    Err(refused("no folder is free", &base, "choose one with -o"))
+    Err(Failure::at(&base, "no folder is free", "choose one with -o"))
 }
 
 /// Makes and claims a folder. None if another run has it. Finds a folder that cannot be written before the render, not after it.
@@ -65,7 +65,7 @@ fn claimed(dir: &Path, command: &str) -> Result<Option<Claim>, Failure> {
         Ok(claim) => Ok(Some(claim)),
         Err(Denied::Taken) => Ok(None),
         Err(Denied::Failed(e)) => {
-            Err(refused(&format!("cannot write into the output folder: {e}"), dir, "choose another with -o"))
+            Err(Failure::at(dir, &format!("cannot write into the output folder: {e}"), "choose another with -o"))
         }
     }
 }
@@ -78,11 +78,7 @@ fn is_in(input: &Path, dir: &Path) -> bool {
 
 fn taken(dir: &Path) -> Failure {
     let help = "wait until it ends, or choose another with -o";
-    refused("another run is writing into the output folder", dir, help)
-}
-
-fn refused(what: &str, dir: &Path, help: &str) -> Failure {
-    Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", dir.display()))
+    Failure::at(dir, "another run is writing into the output folder", help)
 }
 
 /// Returns true if a folder is empty, absent, the output of the same command, or where the same command was killed.

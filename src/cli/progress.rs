@@ -1,6 +1,6 @@
 //! Progress on stderr with the estimated time left.
 
-use super::base::note;
+use super::base::{lock, note};
 use super::signals::stop_flag;
 use fredholm::math::names::visible;
 use fredholm::progress::{Listener, Progress};
@@ -49,10 +49,6 @@ impl Bar {
             bar.finish_and_clear();
         }
     }
-}
-
-fn lock<T>(m: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    m.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
 impl Listener for Bar {

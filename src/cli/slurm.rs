@@ -3,9 +3,9 @@
 use super::base::{Ending, Failure, print, usage};
 use super::keep::interval;
 use super::open;
-use super::options::{Changes, Frame, HOW, OUTPUT};
+use super::options::{Changes, HOW, OUTPUT};
 use super::output::{command_of, kept_words, quoted, without};
-use super::solve::{Light, Mesh, Pictures, Pixels, Terms, Worlds};
+use super::solve::Solving;
 use clap::Args;
 use std::path::Path;
 
@@ -20,29 +20,10 @@ queued again; it goes on where it was stopped. A task that is finished is skippe
 
 /// Arguments of `slurm`: those of `series`, which the parts get as they are, but for what the script chooses itself.
 #[derive(Clone, Debug, Args)]
-#[allow(dead_code, reason = "the options are checked here, and read by the parts")]
 pub struct Slurm {
-    /// Scene, samples, size, K, seed.
+    /// What the parts solve, and how.
     #[command(flatten)]
-    pub frame: Frame,
-    /// The ways to solve the scene.
-    #[command(flatten)]
-    pub worlds: Worlds,
-    /// The estimator of the terms.
-    #[command(flatten)]
-    pub terms: Terms,
-    /// How paths find light and when they end.
-    #[command(flatten)]
-    pub light: Light,
-    /// How samples are drawn.
-    #[command(flatten)]
-    pub pixels: Pixels,
-    /// The matrix.
-    #[command(flatten)]
-    pub mesh: Mesh,
-    /// The pictures of the terms.
-    #[command(flatten)]
-    pub pictures: Pictures,
+    pub solving: Solving,
     /// Changes to the scene.
     #[command(flatten)]
     pub changes: Changes,
@@ -71,7 +52,7 @@ fn checkpoint(text: &str) -> Result<String, String> {
 
 /// Prints the script.
 pub fn run(args: &Slurm) -> Result<Ending, Failure> {
-    if args.pixels.time.is_some() {
+    if args.solving.pixels.time.is_some() {
         return Err(usage("parts need the same number of samples, and --time does not fix it", "use --spp"));
     }
     let own = ["--shards", "--cpus", "--limit", "--folder"];
@@ -79,7 +60,7 @@ pub fn run(args: &Slurm) -> Result<Ending, Failure> {
     if let Some(command) = words.iter_mut().find(|w| *w == "slurm") {
         *command = "series".into();
     }
-    let stem = Path::new(&args.frame.scene).file_stem().map_or("run".into(), |s| s.to_string_lossy());
+    let stem = Path::new(&args.solving.frame.scene).file_stem().map_or("run".into(), |s| s.to_string_lossy());
     let name: String = stem.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect();
     let folder = args.folder.clone().unwrap_or_else(|| format!("{name}-parts"));
     if folder.contains(['\'', '\n', ',', '%'])
@@ -91,7 +72,7 @@ pub fn run(args: &Slurm) -> Result<Ending, Failure> {
         ));
     }
     // a scene that is not there would be found by every task
-    open::description(&args.frame.scene, &args.changes, args.frame.size)?;
+    open::description(&args.solving.frame.scene, &args.changes, args.solving.frame.size)?;
     print(&script(args, &name, &folder, &words))?;
     Ok(Ending::Ok)
 }

@@ -1,7 +1,7 @@
 //! The continuous world: terms and path tracer by rays, from the scene to series and images.
 
 use crate::engine::Settings;
-pub use crate::engine::estimator::{Begins, Estimator};
+pub use crate::engine::estimator::{Begins, Estimator, stream};
 use crate::engine::known::coplanar::undecided;
 use crate::engine::known::doubts::doubts;
 use crate::engine::known::growth::{self, Growth};
@@ -37,7 +37,7 @@ pub fn watched(
 ) -> Sampled {
     let t = SceneTransport { scene, sampling: settings.sampling };
     let (camera, points) = (&scene.camera, spread(settings));
-    let stream = estimator.map_or("path".into(), |e| e.to_string());
+    let stream = stream(estimator, false);
     let (amount, clock) = (amount(settings, &stream), settings.time.map(Clock::start));
     let what = estimator.map_or("path".into(), |e| format!("terms, {e}"));
     let mut passes = Passes::begin((&what, &stream), camera.size, settings, progress, clock.as_ref(), watch);

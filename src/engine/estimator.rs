@@ -22,6 +22,12 @@ pub enum Estimator {
     },
 }
 
+/// Name of the random stream of an estimator, or of the path tracer if there is none, with a guide or without.
+pub fn stream(estimator: Option<Estimator>, guided: bool) -> String {
+    let name = estimator.map_or("path".into(), |e| e.to_string());
+    if guided { format!("guided {name}") } else { name }
+}
+
 /// The end at which the walks of an estimator begin. It decides what the estimator can find, what it finds rarely, and which
 /// settings it accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -95,7 +95,7 @@ pub(super) fn pass<T: Transport>(
     // samples that are done together; on a large film only one, so that a stop does not take long
     let together = (JOB * AT_ONCE as u32 / pixels).max(1);
     let samples = film.samples[0]..until;
-    // the first pass is never stopped, because replicates without samples would give errors of 0
+    // the first pass of a whole film is never stopped, because replicates without samples would give errors of 0
     let may_stop = samples.start > 0 || !part.is_whole();
     for first in samples.clone().step_by(together as usize) {
         if may_stop && progress.stopped() || due() {

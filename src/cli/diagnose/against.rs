@@ -121,7 +121,7 @@ fn scene_of(command: &str) -> Option<Description> {
     let (frame, shared) = match command {
         None => (tour.frame, tour.shared),
         Some(Renders::Tour(args)) => (args.frame, args.shared),
-        Some(Renders::Series(args)) => (args.frame, args.shared),
+        Some(Renders::Series(args)) => (args.solving.frame, args.shared),
         Some(Renders::Render(args)) => (args.frame, args.shared),
     };
     Some(load::scene(&frame.scene, &shared.changes.options(None)).ok()?.description)

@@ -2,7 +2,7 @@
 
 use crate::cli::output::kept_words;
 use crate::cli::solve::Request;
-use fredholm::engine::guided::Guiding;
+use fredholm::engine::by_rays::stream;
 use fredholm::report::state::Header;
 use fredholm::study::run::Run;
 use fredholm::terms::{Part, World};
@@ -31,16 +31,15 @@ pub fn header(args: &Request, run: &Run, hash: &str, roulette: &impl ToString, p
     // an optimal schedule follows from everything else
     let asked = args.light.roulette.as_ref();
     header.fact("--roulette", asked.map_or_else(|| roulette.to_string(), ToString::to_string));
-    let guide = run.asked.guide.filter(|_| args.light.guide == Guiding::Radiosity);
-    header.fact("--guide", guide.map_or("bsdf".into(), |patches| format!("radiosity, {patches} patches")));
+    header.fact("--guide", run.asked.guide.map_or("bsdf".into(), |patches| format!("radiosity, {patches} patches")));
     header.fact("contents of the scene", hash);
     header
 }
 
 /// The random streams of the films of a run.
 pub fn streams(run: &Run) -> Vec<String> {
-    let guided = if run.asked.guide.is_some() { "guided " } else { "" };
+    let guided = run.asked.guide.is_some();
     let terms = if run.wants(World::Terms) { run.asked.estimators.as_slice() } else { &[] };
-    let path = run.wants(World::Path).then(|| format!("{guided}path"));
-    terms.iter().map(|e| format!("{guided}{e}")).chain(path).collect()
+    let path = run.wants(World::Path).then(|| stream(None, guided));
+    terms.iter().map(|e| stream(Some(*e), guided)).chain(path).collect()
 }

@@ -1,7 +1,7 @@
 //! Keeps the films of a run in a file, and gives them back.
 
 use super::{Interval, streams};
-use crate::cli::base::{Failure, note};
+use crate::cli::base::{Failure, lock, note};
 use crate::cli::signals;
 use fredholm::engine::passes::Keep;
 use fredholm::estimator::render::ends_a_group;
@@ -10,8 +10,8 @@ use fredholm::study::run::Run;
 use fredholm::terms::history::History;
 use fredholm::terms::{Part, TermFilm};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Name of the file in an output folder.
@@ -70,11 +70,11 @@ impl Keeper {
         let mut header = lock(&self.header);
         if let Some((name, [kept, now])) = state.header.difference(&header) {
             let what = format!("{name}: {kept} in the state, {now} now");
-            return Err(refused(&what, &self.path, "repeat the earlier command; only --spp may grow"));
+            return Err(Failure::at(&self.path, &what, "repeat the earlier command; only --spp may grow"));
         }
         let known = streams(run);
         for entry in state.header.films.iter().filter(|f| known.contains(&f.stream)) {
-            fits(entry, run).map_err(|(what, help)| refused(&what, &self.path, &help))?;
+            fits(entry, run).map_err(|(what, help)| Failure::at(&self.path, &what, &help))?;
         }
         state.check()?;
         // films that this run does not need stay in the file
@@ -90,20 +90,20 @@ impl Keeper {
     }
 
     /// True if the file holds all samples.
-    pub fn finished(&self, run: &Run, spp: u32) -> bool {
+    pub fn finished(&self, run: &Run) -> bool {
         let header = lock(&self.header);
-        streams(run).iter().all(|stream| header.film(stream).is_some_and(|f| f.samples[0] == spp))
+        streams(run).iter().all(|stream| header.film(stream).is_some_and(|f| f.samples[0] == header.spp))
     }
 
     /// How far the state has come, in words.
-    pub fn stand(&self, run: &Run, spp: u32) -> String {
+    pub fn stand(&self, run: &Run) -> String {
         let header = lock(&self.header);
         let one = |stream: &String| match header.film(stream).map_or([0; 2], |f| f.samples) {
             [a, b] if a == b => format!("{stream} {a}"),
             [a, b] => format!("{stream} {a} to {b}"),
         };
         let all: Vec<String> = streams(run).iter().map(one).collect();
-        let of = if run.settings.time.is_some() { String::new() } else { format!(" of {spp}") };
+        let of = if run.settings.time.is_some() { String::new() } else { format!(" of {}", header.spp) };
         format!("going on with {}{of} samples per pixel", all.join(", "))
     }
 
@@ -194,12 +194,4 @@ fn fits(entry: &Entry, run: &Run) -> Result<(), (String, String)> {
 pub fn kept_in(folder: &Path) -> Option<Result<State, Failure>> {
     let path = folder.join(NAME);
     path.exists().then(|| State::open(&path).map_err(Failure::from))
-}
-
-fn refused(what: &str, path: &Path, help: &str) -> Failure {
-    Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", path.display()))
-}
-
-fn lock<T>(m: &Mutex<T>) -> MutexGuard<'_, T> {
-    m.lock().unwrap_or_else(PoisonError::into_inner)
 }

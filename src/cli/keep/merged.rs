@@ -1,15 +1,15 @@
 //! The films of several parts, put together.
 
 use super::{Shard, streams};
-use crate::cli::base::{Failure, note};
+use crate::cli::base::{Failure, lock, note};
 use crate::cli::output::command_of;
 use fredholm::engine::passes::Keep;
 use fredholm::report::state::{Header, State};
 use fredholm::study::run::Run;
 use fredholm::terms::history::History;
 use fredholm::terms::{Part, TermFilm};
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::path::PathBuf;
+use std::sync::Mutex;
 
 /// All parts of a run.
 pub struct Merged {
@@ -40,7 +40,7 @@ impl Merged {
                 differs.or((sorted(&header.words) != sorted(&other.words)).then_some(("the command", commands)));
             if let Some((name, [a, b])) = differs {
                 let what = format!("these are parts of two runs: {name} is {a} in {}, {b} here", first.display());
-                return Err(refused(&what, path, "merge the parts of one run"));
+                return Err(Failure::at(path, &what, "merge the parts of one run"));
             }
         }
         parts.sort_by_key(|(_, state)| state.header.part().index);
@@ -50,7 +50,7 @@ impl Merged {
             (a.1.header.part == b.1.header.part).then_some([a, b])
         }) {
             let what = format!("part {} is given twice, also in {}", number(&a.1), a.0.display());
-            return Err(refused(&what, &b.0, "give every part once"));
+            return Err(Failure::at(&b.0, &what, "give every part once"));
         }
         let missing: Vec<String> = (0..of)
             .filter(|i| !parts.iter().any(|(_, s)| s.header.part().index == *i))
@@ -73,28 +73,24 @@ impl Merged {
                 "error: {what}\nhelp: merge where the parts were rendered, with the same scene"
             )));
         }
-        for (path, state) in self.parts.lock().unwrap_or_else(PoisonError::into_inner).iter_mut() {
+        for (path, state) in lock(&self.parts).iter() {
             for stream in streams(run) {
                 let samples = state.header.film(&stream).map_or(0, |f| f.samples[0]);
                 if samples < self.header.spp {
                     let part = Shard(state.header.part());
                     let what =
                         format!("part {part} is not finished: {stream} has {samples} of {} samples", self.header.spp);
-                    return Err(refused(
-                        &what,
-                        path,
-                        "repeat the command of this part; it goes on where it was stopped",
-                    ));
+                    let help = "repeat the command of this part; it goes on where it was stopped";
+                    return Err(Failure::at(path, &what, help));
                 }
             }
-            state.check()?;
         }
-        // what cannot be put together is an error here, and not rendered later
+        // what is damaged or cannot be put together is an error here, and not rendered later
         streams(run).iter().try_for_each(|stream| self.film(stream).map(drop))
     }
 
     fn film(&self, stream: &str) -> Result<Option<(TermFilm, History)>, Failure> {
-        let mut parts = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut parts = lock(&self.parts);
         let (mut all, mut histories) = (None::<TermFilm>, vec![]);
         for (path, state) in parts.iter_mut() {
             let part = state.header.part();
@@ -103,7 +99,9 @@ impl Merged {
             match &mut all {
                 None => all = Some(film),
                 Some(all) if all.shape == film.shape => all.take(part, &film),
-                Some(_) => return Err(refused("the parts have films of different shapes", path, "render them again")),
+                Some(_) => {
+                    return Err(Failure::at(path, "the parts have films of different shapes", "render them again"));
+                }
             }
             histories.push((part, history));
         }
@@ -136,8 +134,4 @@ fn sorted(words: &[String]) -> Vec<&String> {
     let mut words: Vec<_> = words.iter().collect();
     words.sort();
     words
-}
-
-fn refused(what: &str, path: &Path, help: &str) -> Failure {
-    Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", path.display()))
 }

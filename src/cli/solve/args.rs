@@ -59,9 +59,9 @@ pub struct Tour {
     pub shared: Shared,
 }
 
-/// Arguments of `series`: all groups.
+/// What `series` solves, and how: on this machine, or in the tasks of a cluster.
 #[derive(Clone, Debug, Args)]
-pub struct Series {
+pub struct Solving {
     /// Scene, samples, size, K, seed.
     #[command(flatten)]
     pub frame: Frame,
@@ -83,6 +83,14 @@ pub struct Series {
     /// The pictures of the terms.
     #[command(flatten)]
     pub pictures: Pictures,
+}
+
+/// Arguments of `series`: all groups.
+#[derive(Clone, Debug, Args)]
+pub struct Series {
+    /// What is solved, and how.
+    #[command(flatten)]
+    pub solving: Solving,
     /// One part of the run.
     #[command(flatten)]
     pub sharding: Sharding,
@@ -328,8 +336,8 @@ impl From<&Tour> for Request {
 
 impl From<&Series> for Request {
     fn from(s: &Series) -> Self {
-        let Series { frame, worlds: Worlds { worlds }, terms, light, pixels, mesh, pictures, .. } = s.clone();
-        let (sharding, keeping, shared) = (s.sharding.clone(), s.keeping.clone(), s.shared.clone());
+        let Series { solving, sharding, keeping, shared } = s.clone();
+        let Solving { frame, worlds: Worlds { worlds }, terms, light, pixels, mesh, pictures } = solving;
         Self { frame, worlds, terms, light, pixels, mesh, pictures, sharding, keeping, shared }
     }
 }

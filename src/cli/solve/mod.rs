@@ -13,7 +13,7 @@ use super::output::command_of;
 use super::session::Session;
 use super::write::{self, Export};
 use super::{notes, preflight};
-pub use args::{Light, Mesh, Pictures, Pixels, Render, Request, Series, Terms, Tour, Worlds};
+pub use args::{Mesh, Pictures, Pixels, Render, Request, Series, Solving, Tour};
 use fredholm::engine::by_rays::{Begins, Estimator};
 use fredholm::engine::discretisation::{Factors, Form};
 use fredholm::engine::guided::{self, Guiding};

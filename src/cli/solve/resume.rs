@@ -13,14 +13,13 @@ use std::path::Path;
 /// True if a folder holds the state of this run, perhaps with fewer samples. A folder that the user has named may hold any state:
 /// what does not fit is then an error that says so.
 pub fn is_of_this_run(folder: &Path, named: bool) -> bool {
-    let but = |words: &[String]| but_for_samples(words);
     match kept_in(folder) {
         // a folder that another command has written since then is not taken
         Some(Ok(state)) => {
-            let of_state = but(&state.header.words);
+            let of_state = but_for_samples(&state.header.words);
             let written = summary::read(&folder.join("summary.json")).ok().and_then(|s| shlex::split(&s.command));
-            let same = written.is_none_or(|words| but(&words[1..]) == of_state);
-            same && named || of_state == but(&kept_words())
+            let same = written.is_none_or(|words| but_for_samples(words.get(1..).unwrap_or_default()) == of_state);
+            same && named || of_state == but_for_samples(&kept_words())
         }
         Some(Err(_)) => named,
         None => false,
@@ -31,13 +30,12 @@ pub fn is_of_this_run(folder: &Path, named: bool) -> bool {
 /// is refused.
 pub fn keeper(args: &Request, run: &Run, session: &Session, header: Header) -> Result<Keeper, Failure> {
     let interval = args.keeping.checkpoint.unwrap_or(Interval::USUAL);
-    let spp = header.spp;
     let mut keeper = Keeper::new(session.folder.join(NAME), header, interval);
     match kept_in(&session.folder) {
         Some(state) if args.keeping.resume => {
             keeper.go_on(state?, run)?;
             if !session.quiet() {
-                note(&keeper.stand(run, spp));
+                note(&keeper.stand(run));
             }
         }
         None if args.keeping.resume && !session.quiet() => {
@@ -50,11 +48,8 @@ pub fn keeper(args: &Request, run: &Run, session: &Session, header: Header) -> R
                 && state.header.films.iter().any(|f| f.samples[0] < state.header.spp) =>
         {
             let path = session.folder.join(NAME);
-            return Err(Failure::Input(format!(
-                "error: the output folder holds the state of this run, which was stopped\n  --> {}\nhelp: go on with --resume, or begin \
-                 anew with --force",
-                path.display()
-            )));
+            let what = "the output folder holds the state of this run, which was stopped";
+            return Err(Failure::at(&path, what, "go on with --resume, or begin anew with --force"));
         }
         _ => {}
     }

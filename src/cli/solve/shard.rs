@@ -39,30 +39,32 @@ pub fn render(args: &Request, default: &Default, shard: Shard) -> Result<Ending,
     }
     let _claim = Claim::file(&path, session.command()).map_err(|denied| match denied {
         Denied::Taken => {
-            refused(&path, "another run is writing this part", "wait until it ends, or choose another file with -o")
+            Failure::at(&path, "another run is writing this part", "wait until it ends, or choose another file with -o")
         }
-        Denied::Failed(e) => refused(&path, &format!("the part cannot be written: {e}"), "choose another file with -o"),
+        Denied::Failed(e) => {
+            Failure::at(&path, &format!("the part cannot be written: {e}"), "choose another file with -o")
+        }
     })?;
     let header = keep::header(args, &run, &hash, &default.roulette, shard.0);
     let spp = header.spp;
     let mut keeper = Keeper::of_part(path.clone(), header, args.keeping.checkpoint.unwrap_or(Interval::USUAL));
     if path.exists() && !args.shared.force {
         const OTHER: &str = "choose another file with -o, or replace it with --force";
-        let state = State::open(&path).map_err(|e| refused(&path, &e.cause, OTHER))?;
+        let state = State::open(&path).map_err(|e| Failure::at(&path, &e.cause, OTHER))?;
         if state.header.part() != shard.0 {
             let what = format!("this is part {}, not {shard}", Shard(state.header.part()));
-            return Err(refused(&path, &what, OTHER));
+            return Err(Failure::at(&path, &what, OTHER));
         }
         keeper.go_on(state, &run)?;
         if !session.quiet() {
-            note(&keeper.stand(&run, spp));
+            note(&keeper.stand(&run));
         }
     }
-    if !keeper.finished(&run, spp) {
+    if !keeper.finished(&run) {
         run.films(session.progress(), &keeper)?;
     }
     session.clear();
-    let finished = keeper.finished(&run, spp);
+    let finished = keeper.finished(&run);
     if !finished && !session.stopped() {
         return Err(Failure::input(&format!(
             "error: part {shard} is not written\nhelp: check the disk of {}",
@@ -79,10 +81,6 @@ pub fn render(args: &Request, default: &Default, shard: Shard) -> Result<Ending,
         }
     })?;
     Ok(session.ending(false))
-}
-
-fn refused(path: &Path, what: &str, help: &str) -> Failure {
-    Failure::Input(format!("error: {what}\n  --> {}\nhelp: {help}", path.display()))
 }
 
 /// The usual name of the file of a part.
