@@ -18,8 +18,8 @@ pub const HELP: &str = "Examples:
   fredholm merge 1.fsh 2.fsh -o cornell-4096
 
 The pictures and numbers have the bits of `fredholm series cornell --spp 4096`. Parts of another run, of another scene or version, parts \
-that are missing, unfinished, damaged or given twice are refused by name. One exception: the variance of estimators that start at the lights \
-is known only for all samples, so that variance.svg has one point for them, and no early pictures.";
+that are missing, unfinished, damaged or given twice are refused by name. One exception: with the estimators light and \
+bidirectional, variance.svg has only its last point, and the page has no pictures of the first samples.";
 
 /// Arguments of `merge`.
 #[derive(Clone, Debug, Args)]
