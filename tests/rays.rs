@@ -9,11 +9,12 @@ use discrete::*;
 use fredholm::operator::form_factor::{FormFactors, Stopped};
 use fredholm::operator::matrix::{LinearOperator, PatchOperator, spectral_radius};
 use fredholm::operator::patches::Patches;
-use fredholm::operator::rays::{Coarse, Half, Hit, Light, Rays, record};
+use fredholm::operator::rays::{Coarse, Half, Hit, Light, Rays, Rows, record};
 use fredholm::progress::Progress;
 use fredholm::scene::{Scene, description::*, load};
 use fredholm::solver::Radiosity;
 use fredholm::stats::critical;
+use fredholm::terms::Part;
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 
@@ -359,4 +360,23 @@ fn a_mesh_of_many_triangles_loses_no_rays() {
         assert!(if inside(i) { met(i) >= 63 } else { met(i) == 0 }, "{i}: {}", met(i));
     }
     assert!(within > out && out > 2000, "{within} {out}");
+}
+
+#[test]
+fn parts_of_the_rows_are_the_rows() {
+    let scene = clutter();
+    let patches = Patches::new(&scene, 150).unwrap();
+    let (whole, built) = (shoot(&scene, &patches, 64, 4), Scene::new(&scene));
+    for of in [1, 2, 7, patches.len() as u32, patches.len() as u32 + 3] {
+        let mut all = Rays::empty(&patches, 64);
+        let mut own = 0;
+        for index in (0..of).rev() {
+            let part = Rows::trace(&patches, &built, 64, 4, Part { index, of }, Progress::NONE).unwrap();
+            assert_eq!(part.direct.len(), part.numbers().count());
+            own += part.direct.len();
+            all.take(&part);
+        }
+        assert_eq!(own, patches.len());
+        assert!(all == whole, "{of} parts");
+    }
 }

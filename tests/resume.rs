@@ -7,6 +7,7 @@
 #[allow(dead_code, unreachable_pub)]
 mod program;
 
+use fredholm::report::state::{self, State};
 use program::{Said, command, run};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -28,9 +29,9 @@ fn files(desk: &Path, folder: &str) -> BTreeMap<String, Vec<u8>> {
 
 fn without_seconds(json: &[u8]) -> Vec<u8> {
     let mut summary: serde_json::Value = serde_json::from_slice(json).unwrap();
-    let numbers = ["/seconds", "/threads", "/series/0/cost/seconds", "/series/1/cost/seconds"];
-    for place in numbers {
-        if let Some(value) = summary.pointer_mut(place) {
+    let costs = (0..3).map(|i| format!("/series/{i}/cost/seconds"));
+    for place in costs.chain(["/seconds".into(), "/threads".into()]) {
+        if let Some(value) = summary.pointer_mut(&place) {
             *value = 0.into();
         }
     }
@@ -288,6 +289,46 @@ fn parts_have_the_bits_of_one_run() {
         assert_eq!(names.collect::<Vec<_>>(), Vec::<&String>::new(), "{line}");
         assert_eq!(whole.len(), merged.len(), "{line}");
     }
+}
+
+#[test]
+fn rows_of_stored_rays_are_traced_in_parts() {
+    let desk = TempDir::new().unwrap();
+    let desk = desk.path();
+    let lines = [
+        "radiosity cornell --factors rays --rays 64 --patches 500 --size 32x24 --spp 16 --grading 2 --export mesh",
+        "series cornell --worlds terms,radiosity --factors rays --rays 64 --patches 300 --size 24x24 --spp 32 --seed 5",
+    ];
+    for (i, line) in lines.into_iter().enumerate() {
+        ok(desk, &format!("{line} -q -o whole{i}"));
+        for n in [1, 2, 3, 3, 4] {
+            ok(desk, &format!("{line} -q --shard {n}/4 -t {} -o parts{i}/{n}.fsh", n % 2 + 1));
+        }
+        let files = [4, 1, 3, 2].map(|n| format!("parts{i}/{n}.fsh")).join(" ");
+        ok(desk, &format!("merge {files} -q -o merged{i}"));
+        assert_same(desk, [&format!("whole{i}"), &format!("merged{i}")], line);
+    }
+    // the rows of the files are used: with other light in some of them, the result is another one
+    let path = desk.join("parts0/4.fsh");
+    let mut part = State::open(&path).unwrap();
+    let [coarse, fine] = [0, 1].map(|i| part.header.rows[i].clone());
+    let mut rows = part.rows(&fine.mesh, fine.patches, fine.per_row).unwrap().unwrap();
+    rows.direct.fill([[1.0; 3]; 2]);
+    state::write_rows(&path, &part.header, (&fine.mesh, &rows)).unwrap();
+    let merge = "merge parts0/1.fsh parts0/2.fsh parts0/3.fsh parts0/4.fsh -q -o";
+    ok(desk, &format!("{merge} other"));
+    assert!(files(desk, "other")["mesh.csv"] != files(desk, "whole0")["mesh.csv"]);
+    // a part that was stopped before its second mesh goes on with it
+    let rows = State::open(&path).unwrap().rows(&coarse.mesh, coarse.patches, coarse.per_row).unwrap().unwrap();
+    part.header.rows.pop();
+    state::write_rows(&path, &part.header, (&coarse.mesh, &rows)).unwrap();
+    refused(desk, &format!("{merge} x"), &["part 4/4 is not finished", "64 rays from each of 500 patches", "4.fsh"]);
+    ok(desk, &format!("{} -q --shard 4/4 -o parts0/4.fsh", lines[0]));
+    ok(desk, &format!("{merge} again"));
+    assert_same(desk, ["whole0", "again"], lines[0]);
+    refused(desk, "radiosity cornell --patches 300 --shard 1/2", &["dense matrix", "--factors rays"]);
+    refused(desk, "radiosity cornell --factors rays --patches 300 --modes 2 --shard 1/2", &["--shard", "--modes"]);
+    refused(desk, "radiosity cornell --factors rays --patches 300 --shard 1/301", &["too many", "300"]);
 }
 
 #[test]

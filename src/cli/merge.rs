@@ -1,14 +1,15 @@
 //! `fredholm merge FILES`: the parts of a run, made by `--shard`, as one result.
 //!
-//! The parts hold the films. Everything else, such as the matrix, norms and comparisons, is computed here, once, by the command that
+//! The parts hold the films, and the rows of stored rays. Everything else, such as the matrix, norms and comparisons, is computed here, once, by the command that
 //! the parts name.
 
 use super::base::{Ending, Failure};
 use super::keep::Merged;
 use super::options::{OUTPUT, WHAT};
 use super::output::without;
+use super::radiosity::Radiosity;
 use super::solve::{self, Request};
-use clap::{Args, Command, FromArgMatches, ValueHint};
+use clap::{ArgMatches, Args, Command, FromArgMatches, ValueHint};
 use std::path::PathBuf;
 
 /// Below `merge --help`.
@@ -50,16 +51,28 @@ pub struct Merge {
 /// Merges the parts; `all` describes the command line, by which the command of the parts is read.
 pub fn run(args: &Merge, all: &Command) -> Result<Ending, Failure> {
     let merged = Merged::open(&args.files)?;
-    let strange = || Failure::input("the parts name a command that this program does not know");
     let words = ["fredholm".to_string()].into_iter().chain(without(&merged.header.words, &["--shard"], &[]));
     let matches = all.clone().try_get_matches_from(words).map_err(|_| strange())?;
-    let (mut request, of_series) = match matches.subcommand() {
-        Some(("series", m)) => (Request::from(&solve::Series::from_arg_matches(m).map_err(|_| strange())?), true),
-        Some(("render", m)) => (Request::from(&solve::Render::from_arg_matches(m).map_err(|_| strange())?), false),
+    let (mut request, default) = match matches.subcommand() {
+        Some(("series", m)) => (Request::from(&parsed::<solve::Series>(m)?), solve::SERIES),
+        Some(("render", m)) => (Request::from(&parsed::<solve::Render>(m)?), solve::RENDER),
+        Some(("radiosity", m)) => {
+            let radiosity = parsed::<Radiosity>(m)?;
+            (Request::from(&radiosity), solve::of_radiosity(radiosity.export))
+        }
         _ => return Err(strange()),
     };
     let shared = &mut request.shared;
     (shared.out, shared.force, shared.threads) = (args.out.clone(), args.force, args.threads);
     (shared.json, shared.quiet, shared.verbose) = (args.json, args.quiet, args.verbose);
-    solve::merge(&request, of_series, &merged)
+    solve::merge(&request, &default, &merged)
+}
+
+/// The arguments of a command.
+fn parsed<A: FromArgMatches>(matches: &ArgMatches) -> Result<A, Failure> {
+    A::from_arg_matches(matches).map_err(|_| strange())
+}
+
+fn strange() -> Failure {
+    Failure::input("the parts name a command that this program does not know")
 }

@@ -231,7 +231,7 @@ fn reflecting(scene: &Scene) -> usize {
 }
 
 /// Refuses a matrix that needs more memory than is free: rows, patches, terms and solution are held at the same time.
-pub fn rows_fit_in_memory(scene: &Scene, settings: &Settings) -> Result<(), Failure> {
+pub fn rows_fit_in_memory(scene: &Scene, settings: &Settings, parts: u32) -> Result<(), Failure> {
     let sides = reflecting(scene);
     if sides > settings.patches {
         note(&format!(
@@ -243,7 +243,7 @@ pub fn rows_fit_in_memory(scene: &Scene, settings: &Settings) -> Result<(), Fail
     // measured: a patch of the mesh takes about 400 bytes, a vector over the patches 24, a stored ray 3
     let row = match settings.factors {
         Factors::Dense => 4 * n,
-        Factors::Rays(rays) => 3 * u64::from(rays),
+        Factors::Rays(rays) => 3 * u64::from(rays) / u64::from(parts),
     };
     let bytes = n * (row + 400 + 24 * (settings.max_bounces as u64 + 12));
     fits(bytes, &format!("the rows of {n} patches"), "choose fewer --patches or --rays")

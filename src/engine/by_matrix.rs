@@ -10,8 +10,9 @@ use crate::engine::by_rays::{self, Sampled, Title};
 use crate::engine::discretisation::{Difference, Discretisation, Factors, SampledRows, Stored};
 use crate::engine::known::coplanar::undecided;
 pub use crate::engine::matrix_error::MatrixError;
-use crate::engine::passes::Watch;
+use crate::engine::passes::{Keep, Watch};
 use crate::engine::radius::{Radius, radii, sampled_noise};
+use crate::engine::rows::{mesh, trace};
 pub use crate::engine::unlit::Unlit;
 use crate::engine::unlit::unlit;
 use crate::estimator::Gather;
@@ -21,7 +22,7 @@ use crate::operator::matrix::Spectral;
 use crate::operator::patches::Patches;
 use crate::operator::rays::{Half, Hit, Light, Rays, Record, Solved, record};
 use crate::progress::Progress;
-use crate::scene::{Description, Scene, SceneError};
+use crate::scene::{Description, Scene};
 use crate::solver::{Radiosity, Solution, residual, settle};
 use crate::terms::{TermImage, World};
 use glam::DVec3;
@@ -73,13 +74,31 @@ pub fn matrix(
     settings: &Settings,
     progress: Progress<'_>,
 ) -> Result<Matrix, MatrixError> {
+    kept_matrix(description, scene, patches, settings, progress, None)
+}
+
+/// Like [`matrix`], with the rows of rays that all parts of a run have traced, if `keep` has them.
+///
+/// # Errors
+/// See [`MatrixError`].
+pub fn kept_matrix(
+    description: &Description,
+    scene: &Scene,
+    patches: usize,
+    settings: &Settings,
+    progress: Progress<'_>,
+    keep: Option<&dyn Keep>,
+) -> Result<Matrix, MatrixError> {
     Ok(match settings.factors {
         Factors::Dense => {
             let (k, grading) = (settings.max_bounces, settings.grading);
             dense_matrix(description, scene, patches, grading, k, progress)?.held_as(Discretisation::from)
         }
         Factors::Rays(n) => {
-            sampled_matrix(description, scene, patches, n, settings, progress)?.held_as(Discretisation::from)
+            let (mesh, patches) = (mesh(settings, patches), Patches::graded(description, patches, settings.grading)?);
+            let kept = keep.and_then(|keep| keep.rows(&mesh, &patches, n as usize));
+            let rays = kept.map_or_else(|| trace(&patches, scene, n, settings.seed, progress), Ok)?;
+            by_rays(Stored { patches, rays }, settings.max_bounces)?.held_as(Discretisation::from)
         }
     })
 }
@@ -171,25 +190,6 @@ fn loses(patches: &Patches, spectral: &[Spectral; 3]) -> Result<(), MatrixError>
     let Some((c, s)) = spectral.iter().enumerate().find(|(_, s)| s.radius >= KEEPS_ALL) else { return Ok(()) };
     let albedo = patches.iter().map(|p| p.reflectance[c]).fold(0.0, f64::max);
     Err(if albedo < KEEPS_ALL { MatrixError::Coarse { radius: s.radius, albedo } } else { MatrixError::Singular })
-}
-
-fn trace(
-    patches: &Patches,
-    scene: &Scene,
-    per_row: u32,
-    seed: u64,
-    progress: Progress<'_>,
-) -> Result<Rays, MatrixError> {
-    if patches.len() > Hit::MOST {
-        let e = SceneError::new(format!(
-            "{} patches are too many: stored rays can hold {} at most",
-            patches.len(),
-            Hit::MOST
-        ));
-        return Err(e.help("use fewer --patches, or a scene with fewer triangles: each face of a triangle (front, back) needs one patch").into());
-    }
-    progress.begin(&format!("{per_row} rays from each of {} patches", patches.len()), patches.len() as u64);
-    Rays::new(patches, scene, per_row as usize, seed, progress).map_err(|_| MatrixError::Stopped)
 }
 
 fn by_rays(mut stored: Stored, max_bounces: usize) -> Result<Matrix<Stored>, MatrixError> {
@@ -355,7 +355,7 @@ pub struct Discrete {
     pub radii: Vec<Radius>,
 }
 
-/// Computes the whole discrete world: the fine and the coarse matrix, and their images.
+/// Computes the whole discrete world: the fine and the coarse matrix, and their images. Rows of rays that `keep` has are not traced.
 ///
 /// # Errors
 /// See [`MatrixError`].
@@ -364,9 +364,10 @@ pub fn radiosity(
     scene: &Scene,
     settings: &Settings,
     progress: Progress<'_>,
+    keep: Option<&dyn Keep>,
 ) -> Result<Discrete, MatrixError> {
     let one = |patches: usize| {
-        let matrix = matrix(description, scene, patches, settings, progress)?;
+        let matrix = kept_matrix(description, scene, patches, settings, progress, keep)?;
         let picture = matrix.through_camera(scene, settings, progress);
         Ok::<_, MatrixError>((matrix, picture))
     };

@@ -7,6 +7,7 @@
 //! | pass by pass | callbacks between the passes; states that are kept, and taken up again | [`passes::Watch`], [`passes::Keep`] |
 //! | guided | both, with a matrix as a guide for the directions of rays | [`guided`] |
 //! | by matrix | `T_h^k E` and the solution of the linear system, through the same camera | [`by_matrix::radiosity`] |
+//! | rows of stored rays, in parts | files that are put together | [`rows`] |
 //! | batches | by rays in batches, for comparisons that are updated with every batch | [`batches::Side`] |
 //! | timing | seconds per sample, from a short pilot | [`timing::seconds_per_sample`] |
 //!
@@ -23,6 +24,7 @@ mod matrix_error;
 mod options;
 pub mod passes;
 pub mod radius;
+pub mod rows;
 mod sampled;
 mod settings;
 pub mod timing;

@@ -14,6 +14,8 @@ use super::Settings;
 use super::sampled::Sampled;
 use crate::estimator::TermEstimator;
 use crate::estimator::render::{Amount, Between, Render};
+use crate::operator::patches::Patches;
+use crate::operator::rays::{Rays, Rows};
 use crate::operator::{Sensor, Transport};
 use crate::progress::{Clock, Progress};
 use crate::terms::history::{self, History};
@@ -26,7 +28,7 @@ use std::time::{Duration, Instant};
 /// addition to the usual ones.
 pub type Look<'a> = &'a mut dyn FnMut(&TermFilm) -> Option<u32>;
 
-/// Keeps the state of films, so that a later render can go on from it.
+/// Keeps the state of films, so that a later render can go on from it, and the rows of stored rays of a part.
 pub trait Keep: Sync {
     /// The part of the films that is rendered.
     fn part(&self) -> Part;
@@ -36,6 +38,16 @@ pub trait Keep: Sync {
     fn due(&self) -> bool;
     /// Keeps a state; `ended` tells that the render has come to its end, or was stopped.
     fn keep(&self, stream: &str, film: &TermFilm, history: &History, ended: bool);
+    /// The rows of rays that all parts have traced on a mesh, if they have.
+    fn rows(&self, _mesh: &str, _patches: &Patches, _per_row: usize) -> Option<Rays> {
+        None
+    }
+    /// True if the rows of this part on a mesh are kept already.
+    fn has_rows(&self, _mesh: &str) -> bool {
+        false
+    }
+    /// Keeps the rows of this part on a mesh.
+    fn keep_rows(&self, _mesh: &str, _rows: &Rows) {}
 }
 
 /// What accompanies a render.

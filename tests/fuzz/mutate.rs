@@ -123,11 +123,13 @@ fn repair_state(bytes: &mut Vec<u8>) {
     let length = u64::from_le_bytes(bytes[foot..foot + 8].try_into().unwrap()) as usize;
     let Some(start) = foot.checked_sub(length) else { return };
     let Ok(mut header) = serde_json::from_slice::<serde_json::Value>(&bytes[start..foot]) else { return };
-    for film in header["films"].as_array_mut().into_iter().flatten() {
-        let place = |name: &str| film[name].as_u64().map(|n| n as usize);
-        let of = place("start").zip(place("length"));
-        let Some(body) = of.and_then(|(a, n)| bytes.get(a..a.checked_add(n)?)) else { continue };
-        film["crc"] = crc(body).into();
+    for kind in ["films", "rows"] {
+        for section in header.get_mut(kind).and_then(|s| s.as_array_mut()).into_iter().flatten() {
+            let place = |name: &str| section[name].as_u64().map(|n| n as usize);
+            let of = place("start").zip(place("length"));
+            let Some(body) = of.and_then(|(a, n)| bytes.get(a..a.checked_add(n)?)) else { continue };
+            section["crc"] = crc(body).into();
+        }
     }
     let json = serde_json::to_vec(&header).unwrap();
     bytes.truncate(start);

@@ -190,7 +190,7 @@ fn image(desk: &Desk, ending: &str, bytes: &[u8]) -> bool {
     read > 0
 }
 
-/// A state, or a part of a run: its header, and its films if they have the shape of the corpus.
+/// A state, or a part of a run: its header, and its films and rows if they have the shape of the corpus.
 fn state(_: &Desk, bytes: &[u8]) -> bool {
     let mut file = std::io::Cursor::new(bytes);
     let header = match state::header(&mut file) {
@@ -208,7 +208,14 @@ fn state(_: &Desk, bytes: &[u8]) -> bool {
             false
         }
     };
-    header.films.iter().any(read)
+    let rows = |entry: &state::RowsEntry| match state::rows_of(&mut file.clone(), entry, header.part(), [12, 16]) {
+        Ok(rows) => rows.n == 12,
+        Err(e) => {
+            assert!(!e.to_string().is_empty());
+            false
+        }
+    };
+    header.films.iter().any(read) | header.rows.iter().any(rows)
 }
 
 /// A result, compared with itself as `fredholm compare` does.

@@ -1,8 +1,9 @@
-//! What the films of a run depend on.
+//! What the films and rows of a run depend on.
 
 use crate::cli::output::kept_words;
 use crate::cli::solve::Request;
 use fredholm::engine::by_rays::stream;
+use fredholm::engine::rows;
 use fredholm::report::state::Header;
 use fredholm::study::run::Run;
 use fredholm::terms::{Part, World};
@@ -42,4 +43,11 @@ pub fn streams(run: &Run) -> Vec<String> {
     let terms = if run.wants(World::Terms) { run.asked.estimators.as_slice() } else { &[] };
     let path = run.wants(World::Path).then(|| stream(None, guided));
     terms.iter().map(|e| stream(Some(*e), guided)).chain(path).collect()
+}
+
+/// The meshes on which a run traces rows of stored rays.
+pub fn meshes(run: &Run) -> Vec<String> {
+    let wanted = run.wants(World::Radiosity);
+    let all = if wanted { rows::meshes(&run.settings) } else { vec![] };
+    all.into_iter().map(|patches| rows::mesh(&run.settings, patches)).collect()
 }

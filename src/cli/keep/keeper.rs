@@ -1,10 +1,12 @@
-//! Keeps the films of a run in a file, and gives them back.
+//! Keeps the films and rows of a run in a file, and gives the films back.
 
-use super::{Interval, streams};
+use super::{Interval, meshes, streams};
 use crate::cli::base::{Failure, lock, note};
 use crate::cli::signals;
 use fredholm::engine::passes::Keep;
 use fredholm::estimator::render::ends_a_group;
+use fredholm::operator::rays::Rows;
+use fredholm::report::ReportError;
 use fredholm::report::state::{self, Entry, Header, State};
 use fredholm::study::run::Run;
 use fredholm::terms::history::History;
@@ -79,6 +81,7 @@ impl Keeper {
         state.check()?;
         // films that this run does not need stay in the file
         header.films = state.header.films.clone();
+        header.rows = state.header.rows.clone();
         drop(header);
         (self.left, self.kept) = (Mutex::new(Some(state)), true.into());
         Ok(())
@@ -89,10 +92,11 @@ impl Keeper {
         self.kept.load(Relaxed)
     }
 
-    /// True if the file holds all samples.
+    /// True if the file holds all samples and rows.
     pub fn finished(&self, run: &Run) -> bool {
         let header = lock(&self.header);
-        streams(run).iter().all(|stream| header.film(stream).is_some_and(|f| f.samples[0] == header.spp))
+        let traced = meshes(run).iter().all(|mesh| header.rows(mesh).is_some());
+        traced && streams(run).iter().all(|stream| header.film(stream).is_some_and(|f| f.samples[0] == header.spp))
     }
 
     /// How far the state has come, in words.
@@ -102,9 +106,12 @@ impl Keeper {
             [a, b] if a == b => format!("{stream} {a}"),
             [a, b] => format!("{stream} {a} to {b}"),
         };
-        let all: Vec<String> = streams(run).iter().map(one).collect();
+        let films: Vec<String> = streams(run).iter().map(one).collect();
         let of = if run.settings.time.is_some() { String::new() } else { format!(" of {}", header.spp) };
-        format!("going on with {}{of} samples per pixel", all.join(", "))
+        let films = (!films.is_empty()).then(|| format!("{}{of} samples per pixel", films.join(", ")));
+        let rows = meshes(run).into_iter().filter(|mesh| header.rows(mesh).is_some());
+        let all: Vec<String> = films.into_iter().chain(rows).collect();
+        format!("going on with {}", if all.is_empty() { "no rows yet".into() } else { all.join("; ") })
     }
 
     /// Removes the state of an earlier run which is not that of this one.
@@ -114,9 +121,9 @@ impl Keeper {
         }
     }
 
-    fn write(&self, stream: &str, film: &TermFilm, history: &History) {
+    fn write(&self, section: impl FnOnce(&Path, &Header) -> Result<Header, ReportError>) {
         let (begun, mut header) = (Instant::now(), lock(&self.header));
-        match state::write(&self.path, &header, (stream, film, history)) {
+        match section(&self.path, &header) {
             Ok(written) => {
                 *header = written;
                 self.kept.store(true, Relaxed);
@@ -164,8 +171,16 @@ impl Keep for Keeper {
             }
         };
         if wanted {
-            self.write(stream, film, history);
+            self.write(|path, header| state::write_film(path, header, (stream, film, history)));
         }
+    }
+
+    fn has_rows(&self, mesh: &str) -> bool {
+        lock(&self.header).rows(mesh).is_some()
+    }
+
+    fn keep_rows(&self, mesh: &str, rows: &Rows) {
+        self.write(|path, header| state::write_rows(path, header, (mesh, rows)));
     }
 }
 

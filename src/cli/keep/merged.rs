@@ -1,15 +1,20 @@
-//! The films of several parts, put together.
+//! The films and rows of several parts, put together.
 
-use super::{Shard, streams};
+use super::{Shard, meshes, streams};
 use crate::cli::base::{Failure, lock, note};
 use crate::cli::output::command_of;
 use fredholm::engine::passes::Keep;
+use fredholm::operator::patches::Patches;
+use fredholm::operator::rays::Rays;
 use fredholm::report::state::{Header, State};
 use fredholm::study::run::Run;
 use fredholm::terms::history::History;
 use fredholm::terms::{Part, TermFilm};
 use std::path::PathBuf;
 use std::sync::Mutex;
+
+/// What to do about a part that is not finished.
+const GO_ON: &str = "repeat the command of this part; it goes on where it was stopped";
 
 /// All parts of a run.
 pub struct Merged {
@@ -73,20 +78,39 @@ impl Merged {
                 "error: {what}\nhelp: merge where the parts were rendered, with the same scene"
             )));
         }
-        for (path, state) in lock(&self.parts).iter() {
+        let meshes = meshes(run);
+        for (path, state) in lock(&self.parts).iter_mut() {
             for stream in streams(run) {
                 let samples = state.header.film(&stream).map_or(0, |f| f.samples[0]);
                 if samples < self.header.spp {
                     let part = Shard(state.header.part());
                     let what =
                         format!("part {part} is not finished: {stream} has {samples} of {} samples", self.header.spp);
-                    let help = "repeat the command of this part; it goes on where it was stopped";
-                    return Err(Failure::at(path, &what, help));
+                    return Err(Failure::at(path, &what, GO_ON));
                 }
+            }
+            for mesh in &meshes {
+                if state.header.rows(mesh).is_none() {
+                    let part = Shard(state.header.part());
+                    let what = format!("part {part} is not finished: {mesh} are missing");
+                    return Err(Failure::at(path, &what, GO_ON));
+                }
+            }
+            if !meshes.is_empty() {
+                state.check()?;
             }
         }
         // what is damaged or cannot be put together is an error here, and not rendered later
         streams(run).iter().try_for_each(|stream| self.film(stream).map(drop))
+    }
+
+    fn rows_of(&self, mesh: &str, patches: &Patches, per_row: usize) -> Result<Option<Rays>, Failure> {
+        let mut all = Rays::empty(patches, per_row);
+        for (_, state) in lock(&self.parts).iter_mut() {
+            let Some(rows) = state.rows(mesh, patches.len(), all.per_row)? else { return Ok(None) };
+            all.take(&rows);
+        }
+        Ok(Some(all))
     }
 
     fn film(&self, stream: &str) -> Result<Option<(TermFilm, History)>, Failure> {
@@ -128,6 +152,12 @@ impl Keep for Merged {
         false
     }
     fn keep(&self, _: &str, _: &TermFilm, _: &History, _: bool) {}
+    fn rows(&self, mesh: &str, patches: &Patches, per_row: usize) -> Option<Rays> {
+        self.rows_of(mesh, patches, per_row).unwrap_or_else(|_| {
+            note(&format!("warning: the parts of {mesh} cannot be read any more; they are traced here"));
+            None
+        })
+    }
 }
 
 fn sorted(words: &[String]) -> Vec<&String> {

@@ -1,6 +1,7 @@
 //! Arguments of `radiosity`.
 
 use crate::cli::choices::{CHANNELS, SOLVERS};
+use crate::cli::keep::Sharding;
 use crate::cli::options::{Frame, MATRIX, Shared, WHAT, one_of};
 use crate::cli::solve::{Mesh, Pictures, Pixels, Request};
 use crate::cli::write::Export;
@@ -49,6 +50,9 @@ pub struct Radiosity {
     /// The pictures of the terms.
     #[command(flatten)]
     pub pictures: Pictures,
+    /// One part of the rows of stored rays.
+    #[command(flatten)]
+    pub sharding: Sharding,
     /// Changes to the scene, output, threads.
     #[command(flatten)]
     pub shared: Shared,
@@ -56,9 +60,9 @@ pub struct Radiosity {
 
 impl From<&Radiosity> for Request {
     fn from(r: &Radiosity) -> Self {
-        let Radiosity { frame, mesh, pixels, pictures, shared, .. } = r.clone();
+        let Radiosity { frame, mesh, pixels, pictures, sharding, shared, .. } = r.clone();
         let (terms, light) = (Default::default(), Default::default());
-        let (sharding, keeping) = (Default::default(), Default::default());
+        let keeping = Default::default();
         Self { frame, worlds: vec![], terms, light, pixels, mesh, pictures, sharding, keeping, shared }
     }
 }

@@ -58,7 +58,7 @@ impl<R> Laboratory<R> {
         preflight::has_a_matrix(&opened.description, &opened.scene, factors)?;
         let (patches, grading, seed) = (args.mesh.patches.unwrap_or(600) as usize, args.mesh.grading, args.frame.seed);
         let settings = Settings { patches, factors, grading, max_bounces: 0, seed, ..Settings::default() };
-        preflight::rows_fit_in_memory(&opened.scene, &settings)?;
+        preflight::rows_fit_in_memory(&opened.scene, &settings, 1)?;
         session.make_folder(&format!("{}-{what}", opened.description.name))?;
         let made = make(&opened, &settings, session.progress());
         session.clear();

@@ -17,6 +17,10 @@ pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
         let what = "--exposure is for pictures of terms, and --solver and --modes make none";
         return Err(usage(what, "leave it out"));
     }
+    if args.sharding.shard.is_some() && (args.solver.is_some() || args.modes.is_some()) {
+        let what = "--shard is for the picture, and --solver and --modes make none";
+        return Err(usage(what, "leave it out"));
+    }
     match (args.solver, args.modes) {
         (Some(name), _) => solvers::run(args, name),
         (None, Some(count)) => modes::run(args, count.into()),

@@ -33,6 +33,7 @@ pub const RADIOSITY: &str = "Examples:
   fredholm radiosity cornell --patches 2400 --orders
   fredholm radiosity cornell --patches 2400 --factors both --rays 1024
   fredholm radiosity cornell --patches 130000 --rays 256
+  fredholm radiosity cornell --patches 130000 --rays 256 --shard 1/8 -o 1.fsh
   fredholm radiosity cornell --patches 2000 --solver all --history history.csv
   fredholm radiosity cornell --patches 130000 --solver gmres
   fredholm radiosity cornell --solver southwell --channel green --json

@@ -24,8 +24,8 @@ use fredholm::study::run::{Asked, Run};
 use fredholm::terms::{Part, World};
 use std::path::Path;
 
-/// What a command computes by default.
-struct Default {
+/// What a command computes, and how, if its options do not say so.
+pub struct Default {
     /// The command's name in the default output folder; empty for the tour.
     name: &'static str,
     worlds: &'static [World],
@@ -39,7 +39,7 @@ struct Default {
 }
 
 /// The defaults of `series`: all three results.
-const SERIES: Default = Default {
+pub const SERIES: Default = Default {
     name: "-series",
     worlds: &World::ALL,
     both_estimators: false,
@@ -54,7 +54,7 @@ const SERIES: Default = Default {
 const NEXT: &str = "Next: fredholm chapter 1, series veach-ajar, diagnose YOURS.exr --against cornell";
 
 /// The defaults of `render`.
-const RENDER: Default = Default { name: "-render", worlds: &[World::Path], roulette: Roulette::LECTURE, ..SERIES };
+pub const RENDER: Default = Default { name: "-render", worlds: &[World::Path], roulette: Roulette::LECTURE, ..SERIES };
 
 /// `tour`: all three results, the terms by two estimators.
 pub fn tour(args: &Tour) -> Result<Ending, Failure> {
@@ -72,9 +72,8 @@ pub fn render(args: &Render) -> Result<Ending, Failure> {
     solve_or_shard(&args.into(), &RENDER)
 }
 
-/// `series` or `render` from the films of all parts.
-pub fn merge(args: &Request, of_series: bool, parts: &Merged) -> Result<Ending, Failure> {
-    let default = if of_series { &SERIES } else { &RENDER };
+/// `series`, `render` or `radiosity` from the films and rows of all parts.
+pub fn merge(args: &Request, default: &Default, parts: &Merged) -> Result<Ending, Failure> {
     let mut session = Session::of(&args.shared, command_of(&parts.header.words), args.frame.seed)?;
     let (mut run, hash) = opened(args, default, &mut session)?;
     parts.check(&run, &keep::header(args, &run, &hash, &default.roulette, Part::WHOLE))?;
@@ -93,7 +92,12 @@ fn solve_or_shard(args: &Request, default: &Default) -> Result<Ending, Failure> 
 
 /// `radiosity`: the matrix.
 pub fn radiosity(args: &Request, export: Option<Export>) -> Result<Ending, Failure> {
-    solve(args, &Default { name: "-radiosity", worlds: &[World::Radiosity], export, ..SERIES })
+    solve_or_shard(args, &of_radiosity(export))
+}
+
+/// The defaults of `radiosity`.
+pub fn of_radiosity(export: Option<Export>) -> Default {
+    Default { name: "-radiosity", worlds: &[World::Radiosity], export, ..SERIES }
 }
 
 fn solve(args: &Request, default: &Default) -> Result<Ending, Failure> {
@@ -166,7 +170,7 @@ fn plan(args: &Request, default: &Default, opened: Opened) -> Result<Run, Failur
     let parts = args.sharding.shard.filter(|_| !splats).map_or(1, |s| s.0.of);
     preflight::part_fits_in_memory(&settings, description.camera.size, parts)?;
     if worlds.contains(&World::Radiosity) {
-        preflight::rows_fit_in_memory(&scene, &settings)?;
+        preflight::rows_fit_in_memory(&scene, &settings, args.sharding.shard.map_or(1, |s| s.0.of))?;
     }
     preflight::light_is_lost(&scene, &settings, &worlds)?;
     if default.export == Some(Export::Matrix) && factors != Factors::Dense {

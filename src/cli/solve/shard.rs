@@ -1,4 +1,4 @@
-//! `--shard I/N`: renders one part of a run into a file.
+//! `--shard I/N`: renders one part of a run, or traces its rows of stored rays, into a file.
 
 use super::{Default, Request, opened};
 use crate::cli::base::{Ending, Failure, note, usage};
@@ -6,6 +6,7 @@ use crate::cli::claim::{Claim, Denied};
 use crate::cli::keep::{self, Interval, Keeper, Shard};
 use crate::cli::session::Session;
 use fredholm::engine::by_rays::{Begins, Estimator};
+use fredholm::engine::discretisation::Factors;
 use fredholm::report::state::State;
 use fredholm::study::run::Run;
 use fredholm::terms::{Shape, World};
@@ -23,6 +24,9 @@ struct Record<'a> {
 
 /// Renders a part, goes on with one that was stopped, or finds it finished.
 pub fn render(args: &Request, default: &Default, shard: Shard) -> Result<Ending, Failure> {
+    if args.keeping.resume {
+        return Err(usage("a part goes on by itself where it was stopped", "leave --resume out"));
+    }
     let mut session = Session::new(&args.shared, args.frame.seed)?;
     let (mut run, hash) = opened(args, default, &mut session)?;
     can_be_divided(&run, shard)?;
@@ -61,7 +65,7 @@ pub fn render(args: &Request, default: &Default, shard: Shard) -> Result<Ending,
         }
     }
     if !keeper.finished(&run) {
-        run.films(session.progress(), &keeper)?;
+        run.part(session.progress(), &keeper)?;
     }
     session.clear();
     let finished = keeper.finished(&run);
@@ -88,11 +92,17 @@ fn file(name: &str, shard: Shard) -> PathBuf {
     PathBuf::from("fredholm-out").join(format!("{name}-{}.fsh", shard.to_string().replace('/', "-of-")))
 }
 
-/// Refuses more parts than there is work for, and a run without films.
+/// Refuses more parts than there is work for, and a run with neither films nor stored rays.
 fn can_be_divided(run: &Run, shard: Shard) -> Result<(), Failure> {
     let of = shard.0.of;
-    if !run.wants(World::Terms) && !run.wants(World::Path) {
-        return Err(usage("--shard is for paths, and --worlds radiosity traces none", "leave --shard out"));
+    let traces = run.wants(World::Terms) || run.wants(World::Path);
+    if !traces && run.settings.factors == Factors::Dense {
+        let help = "use --factors rays, whose rows can be divided, or leave --shard out";
+        return Err(usage("a dense matrix is not made in parts", help));
+    }
+    if !traces && of as usize > run.settings.patches {
+        let what = format!("{of} parts are too many: the mesh has about {} patches", run.settings.patches);
+        return Err(usage(&what, "choose fewer parts"));
     }
     let shape = Shape { size: run.description.camera.size, slots: 1, replicates: 1 };
     let blocks = shape.blocks();

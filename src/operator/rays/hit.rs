@@ -17,6 +17,17 @@ impl Hit {
         Self([a, b, c])
     }
 
+    /// The three bytes in which it is stored, the lowest first.
+    pub fn bytes(self) -> [u8; 3] {
+        self.0
+    }
+
+    /// A hit from its bytes; `None` if that is no hit on a mesh of `n` patches.
+    pub fn from_bytes(bytes: [u8; 3], n: usize) -> Option<Self> {
+        let hit = Self(bytes);
+        (hit == Self::NOTHING || hit.patch() < n).then_some(hit)
+    }
+
     /// The number of the patch; [`Hit::MOST`] for [`Hit::NOTHING`].
     #[inline(always)]
     pub fn patch(self) -> usize {

@@ -10,6 +10,7 @@
 //! | N | number of rays of a row; each has the weight 1/N | [`Rays::per_row`] |
 //! | hit(i, s) | the patch that ray s of patch i hits, or [`Hit::NOTHING`] | [`Rays::row`] |
 //! | T = diag(ρ) F | the operator of one colour channel | [`RayOperator`] |
+//! | | rows of one part, traced on one of several machines | [`Rows`] |
 //! | D | direct light T E; for distant emitters it is sampled with pairs of points | `direct` |
 //!
 //! The four numbers that define a ray are a point of a lattice (`lattice`), which has a separate random shift in every row.
@@ -32,6 +33,7 @@ mod lamps;
 mod lattice;
 mod operator;
 mod origin;
+mod rows;
 mod solution;
 mod spectrum;
 
@@ -39,20 +41,12 @@ pub use checks::RayChecks;
 pub use entries::RayColumns;
 pub use hit::Hit;
 pub use operator::{Coarse, Half, RayOperator};
+pub use rows::Rows;
 pub use solution::{Light, Record, Solved, record};
 
-use super::form_factor::Stopped;
-use super::patches::Patches;
-use crate::math::Key;
-use crate::progress::Progress;
-use crate::scene::Scene;
-use caster::{Caster, Scratch};
 use glam::DVec3;
-use lamps::Lamps;
-use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// The rows of F, stored as rays.
+/// The rows of F, stored as rays, which [`Rays::new`] traces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rays {
     /// Number of patches.
@@ -69,54 +63,7 @@ pub struct Rays {
     pub lost: u64,
 }
 
-/// Number of rows per progress report, because a row takes little time.
-const ROWS: u64 = 64;
-
 impl Rays {
-    /// Traces `per_row` rays from every patch. The number is rounded up to an even number; powers of two are best. The
-    /// result does not depend on the number of threads.
-    ///
-    /// # Errors
-    /// [`Stopped`] if `progress` asks to stop.
-    ///
-    /// # Panics
-    /// If the mesh has more than [`Hit::MOST`] patches.
-    pub fn new(
-        patches: &Patches,
-        scene: &Scene,
-        per_row: usize,
-        seed: u64,
-        progress: Progress<'_>,
-    ) -> Result<Self, Stopped> {
-        let (n, per_row) = (patches.len(), per_row.max(2).next_multiple_of(2));
-        assert!(n <= Hit::MOST, "patches are numbered in three bytes");
-        let caster = Caster { patches, scene, lamps: Lamps::new(patches), key: Key::new(seed, "form factors") };
-        let (done, lost) = (AtomicU64::new(0), AtomicU64::new(0));
-        let (mut hits, mut direct) = (vec![Hit::NOTHING; n * per_row], vec![[[0.0f32; 3]; 2]; n]);
-        hits.par_chunks_mut(per_row).zip(&mut direct).enumerate().with_min_len(16).for_each_init(
-            || Scratch::new(per_row),
-            |scratch, (i, (row, direct))| {
-                if progress.stopped() {
-                    return;
-                }
-                let mut met = std::mem::take(&mut scratch.row);
-                lost.fetch_add(caster.row(i, scratch, &mut met), Relaxed);
-                *direct = caster.direct(i, &met, scratch);
-                met.chunks_mut(per_row / 2).for_each(<[u32]>::sort_unstable);
-                row.iter_mut().zip(&met).for_each(|(hit, patch)| *hit = Hit::new(*patch));
-                scratch.row = met;
-                let done = done.fetch_add(1, Relaxed) + 1;
-                if done % ROWS == 0 || done == n as u64 {
-                    progress.advance(if done % ROWS == 0 { ROWS } else { done % ROWS });
-                }
-            },
-        );
-        if progress.stopped() {
-            return Err(Stopped);
-        }
-        Ok(Self { n, per_row, area: patches.areas(), hits, direct, lost: lost.into_inner() })
-    }
-
     /// The hits of the rays of patch `i`, as two halves. Each half is ascending, with [`Hit::NOTHING`] last.
     pub fn row(&self, i: usize) -> [&[Hit]; 2] {
         self.hits[i * self.per_row..(i + 1) * self.per_row].split_at(self.per_row / 2).into()

@@ -24,6 +24,7 @@ use crate::engine::by_rays::{self, Estimator, Sampled};
 use crate::engine::discretisation::Difference;
 use crate::engine::guided::{self, Prepared};
 use crate::engine::passes::{Keep, Watch};
+use crate::engine::rows;
 use crate::progress::Progress;
 use crate::scene::bsdf::Sampling;
 use crate::scene::{Description, Scene};
@@ -172,7 +173,8 @@ impl Run {
         self.solve_kept(progress, None)
     }
 
-    /// The same; the states of the films of terms and path tracer are kept, and go on from those in which they were left.
+    /// The same; the states of the films of terms and path tracer are kept, and go on from those in which they were left. Rows of
+    /// stored rays that `keep` has are not traced.
     ///
     /// # Errors
     /// As of [`Run::solve`].
@@ -182,7 +184,7 @@ impl Run {
         }
         self.by_rays(progress, keep);
         if self.wants(World::Radiosity) && !progress.stopped() {
-            self.by_matrix(progress)?;
+            self.by_matrix(progress, keep)?;
         }
         self.aside(progress);
         if !self.is_empty() {
@@ -191,11 +193,18 @@ impl Run {
         Ok(())
     }
 
-    /// Renders only the films, or a part of them: what `keep` then holds.
+    /// Renders only the films and traces only the rows of stored rays, or a part of them: what `keep` then holds.
     ///
     /// # Errors
-    /// If the scene has no mesh for a guide.
-    pub fn films(&mut self, progress: Progress<'_>, keep: &dyn Keep) -> Result<(), MatrixError> {
+    /// If the scene has no matrix, or no mesh for a guide.
+    pub fn part(&mut self, progress: Progress<'_>, keep: &dyn Keep) -> Result<(), MatrixError> {
+        if self.wants(World::Radiosity) {
+            let Self { description, scene, settings, .. } = &*self;
+            unless_stopped(rows::keep_rows(description, scene, settings, progress, keep))?;
+        }
+        if progress.stopped() {
+            return Ok(());
+        }
         if self.prepare(progress)? {
             self.by_rays(progress, Some(keep));
         }
@@ -255,9 +264,9 @@ impl Run {
     }
 
     /// Computes the matrix, stored rays on its patches, and a coarser mesh.
-    fn by_matrix(&mut self, progress: Progress<'_>) -> Result<(), MatrixError> {
+    fn by_matrix(&mut self, progress: Progress<'_>, keep: Option<&dyn Keep>) -> Result<(), MatrixError> {
         let (description, scene, settings) = (&self.description, &self.scene, &self.settings);
-        let Some(found) = unless_stopped(by_matrix::radiosity(description, scene, settings, progress))? else {
+        let Some(found) = unless_stopped(by_matrix::radiosity(description, scene, settings, progress, keep))? else {
             return Ok(());
         };
         if let (Some(rays), false) = (self.asked.against_rays, progress.stopped()) {
