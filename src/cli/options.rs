@@ -198,6 +198,15 @@ pub fn size(s: &str) -> Result<[u32; 2], String> {
     Ok([side(w)?, side(h)?])
 }
 
+/// Parses the corners of a rectangle of pixels: x0,y0,x1,y1.
+pub fn corners(s: &str) -> Result<[u32; 4], String> {
+    let numbers: Option<Vec<u32>> = s.split(',').map(|n| n.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok([x0, y0, x1, y1]),
+        _ => Err(format!("`{s}` is not a rectangle x0,y0,x1,y1 with x0 < x1 and y0 < y1, such as 32,32,64,64")),
+    }
+}
+
 /// Parses a grading: a number from 1 to 8.
 pub fn grading(s: &str) -> Result<f64, String> {
     let g: f64 = s.parse().map_err(|_| format!("`{s}` is not a number"))?;

@@ -9,7 +9,7 @@ use fredholm::engine::known::length::{Length, length};
 use fredholm::engine::known::trap::trapped;
 use fredholm::engine::known::unsampled::unsampled;
 use fredholm::estimator::{Roulette, Technique};
-use fredholm::scene::{Description, Scene, bsdf::Sampling};
+use fredholm::scene::{Crop, Description, Scene, bsdf::Sampling};
 use fredholm::study::roulette::Schedule;
 use fredholm::terms::World;
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
@@ -26,6 +26,15 @@ pub fn part_fits_in_memory(settings: &Settings, [w, h]: [u32; 2], parts: u32) ->
     let bytes = bytes / u64::from(parts);
     let what = format!("{w}×{h} pixels with terms up to k = {}", settings.max_bounces);
     fits(bytes, &what, "choose a smaller --size or --max-bounces")
+}
+
+/// The rectangle between two corners of a picture: x0,y0,x1,y1.
+pub fn crop([x0, y0, x1, y1]: [u32; 4], [w, h]: [u32; 2]) -> Result<Crop, Failure> {
+    if x1 > w || y1 > h {
+        let what = format!("--crop {x0},{y0},{x1},{y1} is not inside the picture of {w}×{h} pixels");
+        return Err(usage(&what, &format!("choose corners from 0,0 to {w},{h}")));
+    }
+    Ok(Crop { from: [x0, y0], size: [x1 - x0, y1 - y0] })
 }
 
 /// Refuses a guide that has no effect: it guides walks from the eye, at surfaces where directions are drawn by the cosine.

@@ -294,7 +294,8 @@ impl Matrix {
             if settings.read_patches { ", read" } else { "" }
         );
         let title = Title { stream: "radiosity", world: World::Radiosity, label };
-        let mut seen = by_rays::sample(&t, &scene.camera, &gather, title, settings, progress, Watch::NONE);
+        let mut seen =
+            by_rays::sample(&t, &scene.camera.cropped(settings.crop), &gather, title, settings, progress, Watch::NONE);
         seen.series.undecided = undecided(scene);
         seen
     }

@@ -36,11 +36,11 @@ pub fn watched(
     watch: Watch<'_>,
 ) -> Sampled {
     let t = SceneTransport { scene, sampling: settings.sampling };
-    let (camera, points) = (&scene.camera, spread(settings));
+    let (camera, points) = (&scene.camera.cropped(settings.crop), spread(settings));
     let stream = stream(estimator, false);
     let (amount, clock) = (amount(settings, &stream), settings.time.map(Clock::start));
     let what = estimator.map_or("path".into(), |e| format!("terms, {e}"));
-    let mut passes = Passes::begin((&what, &stream), camera.size, settings, progress, clock.as_ref(), watch);
+    let mut passes = Passes::begin((&what, &stream), camera.crop.size, settings, progress, clock.as_ref(), watch);
     let Settings { technique, path_roulette, .. } = settings;
     let result = match estimator {
         Some(estimator) => {
@@ -157,7 +157,7 @@ pub(crate) fn sample<T: Transport>(
     watch: Watch<'_>,
 ) -> Sampled {
     let clock = settings.time.map(Clock::start);
-    let mut passes = Passes::begin((stream, stream), sensor.size(), settings, progress, clock.as_ref(), watch);
+    let mut passes = Passes::begin((stream, stream), sensor.crop().size, settings, progress, clock.as_ref(), watch);
     let film = passes.render(t, sensor, estimator, amount(settings, stream));
     passes.finish(&film, world, label)
 }

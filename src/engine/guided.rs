@@ -106,7 +106,8 @@ impl Prepared {
         watch: Watch<'_>,
     ) -> Option<Sampled> {
         let (t, settings) = (self.transport(scene, settings), &self.rest(settings));
-        let (plan, camera, stream) = (settings.plan(), &scene.camera, by_rays::stream(Some(estimator), true));
+        let (plan, camera, stream) =
+            (settings.plan(), &scene.camera.cropped(settings.crop), by_rays::stream(Some(estimator), true));
         let label = self.label(&estimator.to_string(), settings);
         let title = Title { stream: &stream, world: World::Terms, label };
         let end = settings.by_expectation.filter(|_| estimator == Estimator::Prefix);
@@ -137,7 +138,7 @@ impl Prepared {
         let label = self.label("path tracer", settings) + &format!(", roulette {how}");
         let title = Title { stream: &by_rays::stream(None, true), world: World::Path, label };
         let path = guide::PathTracer { plan: Plan { roulette: roulette.clone(), ..settings.plan() }, end };
-        let result = by_rays::sample(&t, &scene.camera, &path, title, settings, progress, watch);
+        let result = by_rays::sample(&t, &scene.camera.cropped(settings.crop), &path, title, settings, progress, watch);
         let doubt = doubt(&t, end, roulette, settings);
         annotated(result, scene, None, settings).judged(doubt)
     }

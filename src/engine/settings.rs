@@ -5,6 +5,7 @@ use crate::estimator::render::Amount;
 use crate::estimator::{Plan, Roulette, Technique};
 use crate::guide::ByExpectation;
 use crate::math::{Key, Points};
+use crate::scene::Crop;
 use crate::scene::bsdf::Sampling;
 use std::time::Duration;
 
@@ -47,6 +48,8 @@ pub struct Settings {
     pub factors: Factors,
     /// If true, a pixel shows the patch under it, without gathering.
     pub read_patches: bool,
+    /// If present, only these pixels of the picture are rendered.
+    pub crop: Option<Crop>,
 }
 
 impl Default for Settings {
@@ -69,6 +72,7 @@ impl Default for Settings {
             grading: 1.0,
             factors: Factors::Dense,
             read_patches: false,
+            crop: None,
         }
     }
 }

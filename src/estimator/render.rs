@@ -111,7 +111,7 @@ impl Between for Looking<'_> {
 impl Amount {
     /// An empty film for these samples.
     pub fn film<T: Transport>(&self, _: &T, sensor: &impl Sensor<T>, estimator: &impl TermEstimator<T>) -> TermFilm {
-        let shape = Shape { size: sensor.size(), slots: estimator.slots(), replicates: self.replicates };
+        let shape = Shape { size: sensor.crop().size, slots: estimator.slots(), replicates: self.replicates };
         TermFilm::empty(shape, estimator.splats())
     }
 
@@ -126,20 +126,16 @@ impl Amount {
 }
 
 /// True if a render that has ended after `done` samples can go on to the same bits as one that never ended. Paths are computed in
-/// groups, and the order of a group decides in which order numbers are added; so no group may be cut.
-pub fn ends_a_group(done: u32, shape: Shape, shared: bool) -> bool {
+/// groups, and the order of a group decides in which order numbers are added; so no group may be cut. `pixels` are those of the whole
+/// picture.
+pub fn ends_a_group(done: u32, pixels: u32, replicates: usize, shared: bool) -> bool {
     // the pass within which it ended
-    let mut start = shape.replicates as u32;
+    let mut start = replicates as u32;
     while start <= done / 2 {
         start *= 2;
     }
     let start = if start > done { 0 } else { start };
-    let whole = |group: u32| (done - start).is_multiple_of(group);
-    if shared {
-        return whole(splats::deep(shape.pixels() as u32));
-    }
-    let last = shape.blocks() - 1;
-    [0, last].into_iter().all(|block| whole(at_once(shape.block(block))))
+    (done - start).is_multiple_of(if shared { splats::deep(pixels) } else { at_once(pixels) })
 }
 
 /// A film, and how its render goes on.
@@ -200,9 +196,11 @@ impl Render<'_> {
 /// The part of the film that one job fills: sums, squares, sample counts.
 type Block<'a> = ((&'a mut [f64], &'a mut [f64]), &'a mut [u32]);
 
-/// Number of samples of a block of so many pixels that are computed together.
-fn at_once(pixels: usize) -> u32 {
-    WAVE / BLOCK as u32 * (BLOCK / pixels) as u32
+/// Number of samples of a pixel that are computed together, in a picture of so many pixels. It is the same for each pixel, in every
+/// block and every crop, so that they get the same bits.
+fn at_once(pixels: u32) -> u32 {
+    let block = BLOCK as u32;
+    WAVE / block * (block / pixels).max(1)
 }
 
 /// Brings all blocks of a part to the number of samples of the pass, unless it is stopped or pauses.
@@ -222,6 +220,8 @@ fn pass<T: Transport>(
     let squares = film.squares.par_chunks_mut(BLOCK * shape.slots);
     let counts = film.samples.par_chunks_mut(BLOCK);
     let Pass { key, until, part, due } = pass;
+    let ([width, height], crop) = (sensor.size(), sensor.crop());
+    let at_once = at_once(width * height);
     // only contributions above these floors are kept; every finished block raises the floors for the others
     let floors = Largest::floors(&film.largest);
     let job = |paths: &mut Paths<T::Wave>, (i, ((sums, squares), counts)): (usize, Block)| {
@@ -249,10 +249,12 @@ fn pass<T: Transport>(
             non_finite: 0,
             rays,
         };
-        let at_once = at_once(pixels.len());
-        for s in samples.clone().step_by(at_once as usize) {
-            let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + at_once).min(samples.end) };
-            estimator.sample(&Job { t, sensor, batch: &batch }, paths, &mut block);
+        for (own, pixels) in crop.rows(pixels.clone(), width) {
+            block.first = pixels.start - (own - first);
+            for s in samples.clone().step_by(at_once as usize) {
+                let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + at_once).min(samples.end) };
+                estimator.sample(&Job { t, sensor, batch: &batch }, paths, &mut block);
+            }
         }
         counts.iter_mut().for_each(|n| *n += samples.len() as u32);
         progress.advance(samples.len() as u64 * u64::from(pixels.end - pixels.start));

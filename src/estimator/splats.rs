@@ -89,6 +89,7 @@ pub(super) fn pass<T: Transport>(
     film: &mut TermFilm,
     progress: Progress<'_>,
 ) {
+    assert_eq!(film.shape.size, sensor.size(), "paths that add to any pixel need the whole picture");
     let (pixels, replicates) = (film.shape.pixels() as u32, film.shape.replicates);
     let Pass { key, until, part, due } = pass;
     let (wide, deep) = (JOB.min(pixels), if part.is_whole() { deep(pixels) } else { 1 });

@@ -51,7 +51,7 @@ use crate::operator::patches::Patches;
 use crate::operator::transport::{self, Samples, Seen, Sensor, Step, Transport};
 use crate::progress::Progress;
 use crate::scene::bsdf::{Bsdf, Sampling, diffuse, diffuse::Diffuse};
-use crate::scene::{Camera, Rays, Scene, SceneError, Side, Vertex, VertexWave, numbers, offset_origin, stand_in};
+use crate::scene::{Camera, Crop, Rays, Scene, SceneError, Side, Vertex, VertexWave, numbers, offset_origin, stand_in};
 use glam::Vec3;
 use incident::{Fineness, Incident};
 use lamps::Lamps;
@@ -358,6 +358,9 @@ fn warped_with_simd<'a, S: pulp::Simd>(
 impl Sensor<GuidedTransport<'_>> for Camera {
     fn size(&self) -> [u32; 2] {
         self.size
+    }
+    fn crop(&self) -> Crop {
+        self.crop
     }
     fn start(&self, t: &GuidedTransport, pixel: u32, rng: &mut Rng) -> Option<Vertex> {
         self.start(&t.scene, pixel, rng)

@@ -10,6 +10,7 @@
 use super::expected::Expecting;
 use crate::math::{Columns, Rgb, Rng, Streams, columns};
 use crate::operator::{Samples, Sensor, Step, Transport, Wave};
+use crate::scene::Crop;
 
 /// A state together with facts about its path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -114,6 +115,9 @@ pub struct TrackedSensor<'a, S>(pub &'a S);
 impl<'a, T: Expecting, S: Sensor<T>> Sensor<Tracked<'a, T>> for TrackedSensor<'_, S> {
     fn size(&self) -> [u32; 2] {
         self.0.size()
+    }
+    fn crop(&self) -> Crop {
+        self.0.crop()
     }
     fn start(&self, t: &Tracked<'a, T>, pixel: u32, rng: &mut Rng) -> Option<Track<T::State>> {
         self.0.start(t.0, pixel, rng).map(|x| Track::begin(t.0, x))

@@ -19,7 +19,7 @@ use super::transport::{self, Samples, Seen, Sensor, Step, Transport, Wave};
 use crate::math::direction::Frame;
 use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::scene::bsdf::{Bsdf, Departure, Sampling, Towards, TransportMode, diffuse::Diffuse};
-use crate::scene::{Camera, Scene, Vertex, VertexWave, connection, offset_origin};
+use crate::scene::{Camera, Crop, Scene, Vertex, VertexWave, connection, offset_origin};
 use glam::Vec3;
 
 /// A scene with the method of sampling directions in it.
@@ -176,6 +176,9 @@ impl Wave<Vertex> for VertexWave {
 impl Sensor<SceneTransport<'_>> for Camera {
     fn size(&self) -> [u32; 2] {
         self.size
+    }
+    fn crop(&self) -> Crop {
+        self.crop
     }
     #[inline(always)]
     fn start(&self, t: &SceneTransport, pixel: u32, rng: &mut Rng) -> Option<Vertex> {

@@ -16,6 +16,7 @@
 //! Monte Carlo Methods* (1997), ch. 4.
 
 use crate::math::{Columns, Rgb, Rng, Streams, columns};
+use crate::scene::Crop;
 
 /// One sample of the kernel of T: the new state, its weight and its densities.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -196,6 +197,10 @@ pub struct Seen<S> {
 pub trait Sensor<T: Transport>: Sync {
     /// Width and height in pixels; pixels are numbered row by row.
     fn size(&self) -> [u32; 2];
+    /// The pixels that a film holds.
+    fn crop(&self) -> Crop {
+        Crop::whole(self.size())
+    }
     /// Samples the first state of one path of `pixel`.
     fn start(&self, t: &T, pixel: u32, rng: &mut Rng) -> Option<T::State>;
     /// The pixel that sees a state if nothing blocks the view. `None` if no pixel does, or if paths from the light cannot be

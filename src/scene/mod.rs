@@ -20,6 +20,7 @@ mod by_path;
 mod cast;
 pub mod centre;
 pub mod coplanar;
+mod crop;
 pub mod description;
 mod emitted;
 pub mod emitter;
@@ -47,6 +48,7 @@ pub mod vertex;
 mod wide;
 
 pub(crate) use by_path::{Received, by_path};
+pub use crop::Crop;
 pub use description::{Description, Expect};
 pub use error::SceneError;
 pub use lighting::LightSample;

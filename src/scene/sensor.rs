@@ -6,7 +6,7 @@
 //! | [`SurfaceSensor`] | radiance that leaves a uniform surface point in a cosine-distributed direction | `∫ L cos θ dω dA / (πA)`: the L1 norm in the throughput measure, divided by πA |
 
 use super::sixteen::{LANES, ZERO3, load, put, store3};
-use super::{Rays, Scene, Vertex, description::CameraDescription};
+use super::{Crop, Rays, Scene, Vertex, description::CameraDescription};
 use crate::math::{Rng, direction::cosine_hemisphere};
 use glam::{DVec3, Vec3};
 
@@ -26,8 +26,10 @@ pub struct Camera {
     axes: [DVec3; 3],
     /// Width of a pixel at distance 1.
     width: f64,
-    /// Width and height in pixels.
+    /// Width and height of the picture in pixels.
     pub size: [u32; 2],
+    /// The pixels of the picture that a film holds.
+    pub crop: Crop,
     /// Centre and radius of a sphere that encloses the shapes.
     center: DVec3,
     radius: f64,
@@ -51,11 +53,17 @@ impl Camera {
             axes: [right, -up, forward],
             width,
             size: c.size,
+            crop: Crop::whole(c.size),
             center,
             // slightly enlarged, so that no surface lies in front of the start of a ray
             radius: radius * 1.001,
             near: c.origin.distance(center) <= 3.0 * radius,
         }
+    }
+
+    /// The same camera, for a film with some pixels of the picture.
+    pub fn cropped(self, crop: Option<Crop>) -> Self {
+        Self { crop: crop.unwrap_or(self.crop), ..self }
     }
 
     /// The pixel that sees the direction `d` (of any length), and the density per solid angle with which its paths take that

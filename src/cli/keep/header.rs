@@ -5,6 +5,7 @@ use crate::cli::solve::Request;
 use fredholm::engine::by_rays::stream;
 use fredholm::engine::rows;
 use fredholm::report::state::Header;
+use fredholm::scene::Crop;
 use fredholm::study::run::Run;
 use fredholm::terms::{Part, World};
 
@@ -22,6 +23,9 @@ pub fn header(args: &Request, run: &Run, hash: &str, roulette: &impl ToString, p
     };
     header.fact("scene", &run.description.name);
     header.fact("--size", format!("{w}x{h}"));
+    if let Some(Crop { from: [x, y], size: [w, h] }) = settings.crop {
+        header.fact("--crop", format!("{x},{y},{},{}", x + w, y + h));
+    }
     header.fact("--seed", settings.seed);
     header.fact("--max-bounces", settings.max_bounces);
     header.fact("--technique", settings.technique);

@@ -186,7 +186,7 @@ impl Keep for Keeper {
 
 /// Refuses a film with which the run cannot go on to the same bits: what is wrong, and what to do.
 fn fits(entry: &Entry, run: &Run) -> Result<(), (String, String)> {
-    let (settings, [_, most]) = (&run.settings, entry.samples);
+    let (settings, [_, most], [w, h]) = (&run.settings, entry.samples, run.scene.camera.size);
     if most > settings.spp {
         let what = format!("the state has {most} samples per pixel already, and --spp asks for {}", settings.spp);
         return Err((what, format!("use --spp {most} or more")));
@@ -197,7 +197,7 @@ fn fits(entry: &Entry, run: &Run) -> Result<(), (String, String)> {
         return Err((what, format!("only a run that began with --spp {replicates} or more can grow; start anew")));
     }
     // within a pass, the smaller number is where the pass before it ended
-    if most < settings.spp && !ends_a_group(most, entry.shape(), entry.shared) {
+    if most < settings.spp && !ends_a_group(most, w * h, entry.replicates, entry.shared) {
         let what = format!("after {most} samples per pixel, a run cannot grow to the bits of a longer one");
         let [a, b, c] = [1, 2, 4].map(|n| n * replicates);
         return Err((what, format!("start anew; runs can always grow from {a}, {b}, {c}, … samples")));

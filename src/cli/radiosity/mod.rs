@@ -21,6 +21,10 @@ pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
         let what = "--shard is for the picture, and --solver and --modes make none";
         return Err(usage(what, "leave it out"));
     }
+    if args.pixels.crop.is_some() && (args.solver.is_some() || args.modes.is_some()) {
+        let what = "--crop is for the picture, and --solver and --modes make none of the scene";
+        return Err(usage(what, "leave it out"));
+    }
     match (args.solver, args.modes) {
         (Some(name), _) => solvers::run(args, name),
         (None, Some(count)) => modes::run(args, count.into()),

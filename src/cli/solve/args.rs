@@ -14,7 +14,7 @@
 
 use crate::cli::choices::{ESTIMATORS, FORMS, GUIDES, LIGHTS, POINTS, SAMPLINGS, TECHNIQUES, WORLDS};
 use crate::cli::keep::{Keeping, Sharding};
-use crate::cli::options::{Frame, HOW, MATRIX, OUTPUT, Shared, WHAT, duration, grading, one_of};
+use crate::cli::options::{Frame, HOW, MATRIX, OUTPUT, Shared, WHAT, corners, duration, grading, one_of};
 use clap::Args;
 use fredholm::engine::Settings;
 use fredholm::engine::by_rays::Estimator;
@@ -224,6 +224,13 @@ pub struct Pixels {
     /// variance may fall faster than 1/N, and the moments of single samples do not predict it. Standard errors come from 8 numbers.
     #[arg(long, conflicts_with = "points")]
     pub fast: bool,
+    /// Render only the pixels x0 ≤ x < x1, y0 ≤ y < y1
+    ///
+    /// x0,y0,x1,y1 count from the top left corner of the picture. These pixels have the bits that they have in the whole picture, and all
+    /// means are means over them. In terms.exr they are the data window. Measurements on the whole picture, such as how many bounces are enough,
+    /// are left out.
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = corners, hide_short_help = true)]
+    pub crop: Option<[u32; 4]>,
     /// Time per way to solve, in place of --spp: 30s, 5m
     ///
     /// Passes are added while they are expected to end in time; the preparation of a guide counts. The first pass of 16 samples per pixel
@@ -351,7 +358,7 @@ impl From<&Render> for Request {
 }
 
 impl Request {
-    /// The settings of a run. Without `--roulette`, paths of the path tracer end by `fallback`, and paths of the terms by
+    /// The settings of a run, of the whole picture. Without `--roulette`, paths of the path tracer end by `fallback`, and paths of the terms by
     /// `fallback` after K.
     pub fn settings(&self, fallback: Roulette, patches: u32, factors: Factors) -> Settings {
         let Self { frame, light, pixels, mesh, .. } = self;
@@ -377,6 +384,7 @@ impl Request {
             factors,
             read_patches: mesh.read_patches,
             grading: mesh.grading,
+            crop: None,
         }
     }
 

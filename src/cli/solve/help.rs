@@ -15,6 +15,7 @@ pub const SERIES: &str = "Examples:
   fredholm series furnace --technique scatter --sampling cosine --spp 64 --json
   fredholm series scene.obj --emit lamp=17,12,4
   fredholm series veach-ajar --guide radiosity --time 30s --worlds terms
+  fredholm series cornell --spp 4096 --crop 96,96,160,160
 
 How k counts: k is the number of applications of T, so k = 0 is emission seen directly, k = 1 direct light, and k = 2 one \
 bounce of indirect light. --max-bounces K keeps k = 0..=K; everything longer is the tail. Mitsuba renders the same images with \

@@ -14,6 +14,7 @@ use super::session::Session;
 use super::write::{self, Export};
 use super::{notes, preflight};
 pub use args::{Mesh, Pictures, Pixels, Render, Request, Series, Solving, Tour};
+use fredholm::engine::Settings;
 use fredholm::engine::by_rays::{Begins, Estimator};
 use fredholm::engine::discretisation::{Factors, Form};
 use fredholm::engine::guided::{self, Guiding};
@@ -125,7 +126,9 @@ fn opened(args: &Request, default: &Default, session: &mut Session) -> Result<(R
     let built_in_size = if args.frame.scene == "cornell" { default.size } else { None };
     let opened = session.open(&args.frame.scene, &args.shared.changes, args.frame.size.or(built_in_size))?;
     let hash = opened.hash.clone();
-    Ok((plan(args, default, opened)?, hash))
+    let run = plan(args, default, opened)?;
+    session.sized(run.size());
+    Ok((run, hash))
 }
 
 /// Writes and prints what a run has found.
@@ -147,7 +150,9 @@ fn plan(args: &Request, default: &Default, opened: Opened) -> Result<Run, Failur
     let scene = scene.select_lights(args.pixels.lights);
     let patches = args.mesh.patches.unwrap_or(default.patches);
     let factors = preflight::factors(args.mesh.factors, args.mesh.rays, patches)?;
-    let settings = args.settings(default.roulette.clone(), patches, factors);
+    let crop = args.pixels.crop.map(|corners| preflight::crop(corners, description.camera.size)).transpose()?;
+    let settings = Settings { crop, ..args.settings(default.roulette.clone(), patches, factors) };
+    let size = crop.map_or(description.camera.size, |crop| crop.size);
     let mut worlds = if args.worlds.is_empty() { default.worlds.to_vec() } else { args.worlds.clone() };
     let by_name = !args.worlds.is_empty() || default.worlds.len() == 1;
     preflight::suits_a_matrix(&description, &mut worlds, by_name)?;
@@ -155,7 +160,7 @@ fn plan(args: &Request, default: &Default, opened: Opened) -> Result<Run, Failur
     let estimators = estimators(args, default, &worlds)?;
     can_be_exposed(args.pictures.exposure, settings.max_bounces, &worlds)?;
     for &estimator in &estimators {
-        preflight::tree_can_be_walked(estimator, &settings, description.camera.size)?;
+        preflight::tree_can_be_walked(estimator, &settings, size)?;
     }
     if args.terms.strategies && estimators != [Estimator::Bidirectional] {
         return Err(usage("only the bidirectional estimator has strategies", "add --estimator bidirectional"));
@@ -167,8 +172,13 @@ fn plan(args: &Request, default: &Default, opened: Opened) -> Result<Run, Failur
     preflight::light_is_seen(&scene, &estimators, &settings, &worlds)?;
     // where paths start at the lights, every part touches the whole film
     let splats = estimators.iter().any(|e| e.begins() != Begins::AtEye);
+    if splats && crop.is_some() {
+        let what =
+            format!("--crop saves nothing with {}: its paths from the lights add to the whole picture", estimators[0]);
+        return Err(usage(&what, "leave --crop out, or use --estimator prefix"));
+    }
     let parts = args.sharding.shard.filter(|_| !splats).map_or(1, |s| s.0.of);
-    preflight::part_fits_in_memory(&settings, description.camera.size, parts)?;
+    preflight::part_fits_in_memory(&settings, size, parts)?;
     if worlds.contains(&World::Radiosity) {
         preflight::rows_fit_in_memory(&scene, &settings, args.sharding.shard.map_or(1, |s| s.0.of))?;
     }
@@ -220,7 +230,7 @@ fn asked(args: &Request, worlds: Vec<World>, estimators: Vec<Estimator>) -> Aske
         against_rays: (mesh.factors == Some(Form::Both)).then(|| preflight::rays(mesh.rays)),
         orders: mesh.orders,
         surface: if terms.pictures_only { vec![] } else { Asked::default().surface },
-        bounces: !terms.pictures_only,
-        moments: !terms.pictures_only,
+        bounces: !terms.pictures_only && args.pixels.crop.is_none(),
+        moments: !terms.pictures_only && args.pixels.crop.is_none(),
     }
 }

@@ -104,7 +104,7 @@ fn can_be_divided(run: &Run, shard: Shard) -> Result<(), Failure> {
         let what = format!("{of} parts are too many: the mesh has about {} patches", run.settings.patches);
         return Err(usage(&what, "choose fewer parts"));
     }
-    let shape = Shape { size: run.description.camera.size, slots: 1, replicates: 1 };
+    let shape = Shape { size: run.size(), slots: 1, replicates: 1 };
     let blocks = shape.blocks();
     let gathers = run.wants(World::Path) || run.asked.estimators.iter().any(|e| e.begins() == Begins::AtEye);
     if gathers && of as usize > blocks {

@@ -15,7 +15,7 @@ use fredholm::terms::{TermImage, Variance, World};
 
 /// The images and numbers of a run.
 pub(super) fn data<'a>(run: &'a Run, out: &Files, exposure: Exposure, summary: &Summary) -> Data {
-    let mut data = Data::new(run.description.camera.size.map(|s| s as usize));
+    let mut data = Data::new(run.size().map(|s| s as usize));
     data.scene = run.description.name.clone();
     data.command = out.record.command.clone();
     data.gain = if exposure == Exposure::Auto { "each" } else { "one" };

@@ -68,9 +68,9 @@ pub fn all(
     let Summary { command, seed, scene, .. } = record();
     let caption = Caption { command, seed, scene };
     let mut out = Files { folder: folder.to_path_buf(), names: vec![], record: record(), jobs: vec![] };
-    let size = run.description.camera.size;
+    let size = run.size();
     let trust = pictures::pixel_errors(run);
-    pictures::write_exr(run, &trust, &mut out, size);
+    pictures::write_exr(run, &trust, &mut out);
     pictures::write_pictures(run, &mut out, size, exposure, &caption);
     if !run.strategies.is_empty() {
         out.names.extend(strategies::FILES.map(str::to_owned));

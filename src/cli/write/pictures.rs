@@ -11,6 +11,7 @@ use fredholm::report::image::typeset::{Caption, superscript};
 use fredholm::report::image::zmap;
 use fredholm::report::page::data::Slot;
 use fredholm::report::text::pixel_errors::{self, PixelErrors};
+use fredholm::scene::Crop;
 use fredholm::study::run::Run;
 use fredholm::terms::{Estimate, TermImage};
 
@@ -69,7 +70,7 @@ pub(super) fn pixel_errors(run: &Run) -> Vec<PixelErrors> {
     layers(run).into_iter().map(|l| l.errors).collect()
 }
 
-pub(super) fn write_exr<'a>(run: &'a Run, trust: &[PixelErrors], out: &mut Files<'a>, size: [u32; 2]) {
+pub(super) fn write_exr<'a>(run: &'a Run, trust: &[PixelErrors], out: &mut Files<'a>) {
     let beauty = run.path.as_ref().or(run.terms.first()).map(|s| &s.total);
     let beauty = beauty.or(run.radiosity.as_ref().map(|r| &r.fine.total));
     if beauty.is_none() {
@@ -89,7 +90,9 @@ pub(super) fn write_exr<'a>(run: &'a Run, trust: &[PixelErrors], out: &mut Files
         }
         let mut attributes = attributes.to_vec();
         attributes.extend(flags.iter().map(|(name, why)| (name.as_str(), why.clone())));
-        exr::write(path, size[0] as usize, size[1] as usize, &layers, &attributes)?;
+        let whole = run.scene.camera.size;
+        let crop = run.settings.crop.unwrap_or(Crop::whole(whole));
+        exr::write_crop(path, crop, whole, &layers, &attributes)?;
         Ok(())
     });
 }

@@ -16,10 +16,11 @@ use std::{
 
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, ImageAttributes,
-    Layer as Part, LayerAttributes, LineOrder, ReadChannels, ReadLayers, Text, WritableImage, f16,
+    IntegerBounds, Layer as Part, LayerAttributes, LineOrder, ReadChannels, ReadLayers, Text, Vec2, WritableImage, f16,
 };
 
 use crate::report::{ReportError, files, write_atomically};
+use crate::scene::Crop;
 use crate::scene::image_header::{FEW_BYTES, suits};
 
 /// One image to be written.
@@ -66,6 +67,22 @@ pub fn write(
     layers: &[Layer],
     attributes: &[(&str, String)],
 ) -> Result<(), ReportError> {
+    let whole = [width as u32, height as u32];
+    write_crop(path, Crop::whole(whole), whole, layers, attributes)
+}
+
+/// Writes some pixels of a picture of size `whole`: they are the data window of the file, and the picture is its display window.
+///
+/// # Errors
+/// As of [`write()`].
+pub fn write_crop(
+    path: &Path,
+    crop: Crop,
+    whole: [u32; 2],
+    layers: &[Layer],
+    attributes: &[(&str, String)],
+) -> Result<(), ReportError> {
+    let [width, height] = crop.size.map(|n| n as usize);
     let wrong = |cause: String| ReportError::new(path, cause, "this is a defect of the program: please report it");
     if width == 0 || height == 0 || layers.is_empty() {
         return Err(wrong(format!("an image of {width}×{height} pixels with {} layers is empty", layers.len())));
@@ -91,12 +108,17 @@ pub fn write(
     let channels = layers.iter().flat_map(|layer| (0..3).map(move |c| channel(layer, c))).collect();
 
     let mut own = LayerAttributes::named("fredholm");
+    let [x, y] = crop.from.map(|n| n as i32);
+    own.layer_position = Vec2(x, y);
     for (name, value) in attributes {
         own.other.insert(text(name), AttributeValue::Text(text(value)));
     }
     let encoding =
         Encoding { compression: Compression::RLE, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
-    let image = exr::prelude::Image::from_layer(Part::new((width, height), own, encoding, AnyChannels::sort(channels)));
+    let mut image =
+        exr::prelude::Image::from_layer(Part::new((width, height), own, encoding, AnyChannels::sort(channels)));
+    let [width, height] = whole.map(|n| n as usize);
+    image.attributes.display_window = IntegerBounds::new(Vec2(0, 0), Vec2(width, height));
     let mut bytes = Cursor::new(Vec::new());
     image.write().non_parallel().to_buffered(&mut bytes).map_err(|e| wrong(e.to_string()))?;
     let bytes = sort_attributes(&bytes.into_inner()).ok_or_else(|| wrong("the header cannot be parsed".into()))?;

@@ -226,6 +226,11 @@ impl Run {
         Ok(true)
     }
 
+    /// Width and height of the pictures in pixels: of the camera's, or of the part of it that is rendered.
+    pub fn size(&self) -> [u32; 2] {
+        self.settings.crop.map_or(self.scene.camera.size, |crop| crop.size)
+    }
+
     /// Images of the first samples of the first result in [`Run::terms`].
     pub fn early(&self) -> &[Early] {
         self.terms.first().map_or(&[], |t| &t.early)
@@ -290,7 +295,7 @@ impl Run {
         }
         let (description, scene, settings) = (&self.description, &self.scene, &self.settings);
         let reached = self.terms.iter().map(|t| t.spp).min().unwrap_or(0).clamp(1, settings.spp.max(1));
-        let share = Share::of(scene.camera.size, reached);
+        let share = Share::of(self.size(), reached);
         // where the paths of the run never end by roulette, the scene may keep all its light, and these paths would not end either
         let longer = self.asked.bounces && settings.roulette.ends();
         let prefixes = self.asked.moments && self.asked.estimators.contains(&Estimator::Prefix);
