@@ -123,6 +123,21 @@ fn means_are_those_of_the_rectangle() {
 }
 
 #[test]
+fn equal_rectangles_can_be_compared() {
+    let desk = TempDir::new().unwrap();
+    let desk = desk.path();
+    for (folder, options) in
+        [("a", "--seed 1 --crop 8,8,24,24"), ("b", "--seed 2 --crop 8,8,24,24"), ("c", "--crop 9,8,25,24")]
+    {
+        ok(desk, &format!("series cornell --worlds terms --size 32x32 --spp 64 {options} -q -o {folder}"));
+    }
+    let said = run(desk, "compare a b -o ab");
+    assert!(said.code <= 1 && desk.join("ab/z.png").exists(), "{}{}", said.out, said.err);
+    let said = run(desk, "compare a c -o ac");
+    assert!(said.code == 3 && said.err.contains("begin at pixel (8, 8) and (9, 8)"), "{} {}", said.code, said.err);
+}
+
+#[test]
 fn what_cannot_be_cropped_is_refused() {
     let desk = TempDir::new().unwrap();
     let desk = desk.path();

@@ -81,6 +81,16 @@ pub fn run(args: &Compare) -> Result<Ending, Failure> {
     let verdicts = summary::verdicts("", &comparison);
 
     let pictures = (images(&a)?, images(&b)?);
+    if let (Some(a), Some(b)) = &pictures
+        && a.from != b.from
+    {
+        let place = |i: &exr::Image| format!("({}, {})", i.from[0], i.from[1]);
+        return Err(Failure::Input(format!(
+            "error: the images are different parts of a picture: they begin at pixel {} and {}\nhelp: render both with the same --crop",
+            place(a),
+            place(b)
+        )));
+    }
     let manner = Manner { out: args.out.clone(), force: args.force, json: args.json, ..Manner::default() };
     let mut session = Session::new(manner, 0)?;
     session.about(&format!("{} | {}", a.1.scene, b.1.scene), &a.1.scene_hash);
@@ -202,7 +212,7 @@ fn images((folder, record): &Result2) -> Result<Option<exr::Image>, Failure> {
     if !file.exists() {
         return Ok(None);
     }
-    let image = exr::read(&file)?;
+    let image = exr::read_crop(&file)?;
     if (image.width, image.height) == (record.width, record.height) {
         return Ok(Some(image));
     }

@@ -39,6 +39,8 @@ pub struct Image {
     pub width: usize,
     /// Rows.
     pub height: usize,
+    /// The pixel of the picture, from the top left, that is the first one here: (0, 0) but for a crop.
+    pub from: [i32; 2],
     /// Name and pixels of each layer, sorted by name; the unnamed layer has an empty name.
     pub layers: Vec<(String, Vec<[f32; 3]>)>,
     /// Names of the layers that have one channel, `Y`, which stands for all three.
@@ -136,8 +138,25 @@ pub fn read(path: &Path) -> Result<Image, ReportError> {
     decode(path, &files::read(path)?)
 }
 
+/// The same for a file that may hold only a part of the picture (crop).
+///
+/// # Errors
+/// As of [`read`], but for crops.
+pub fn read_crop(path: &Path) -> Result<Image, ReportError> {
+    Ok(decode_any(path, &files::read(path)?)?.0)
+}
+
 /// The layers of a file that was read into memory; errors name `path`.
 pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<Image, ReportError> {
+    const HELP: &str = "write the whole picture and nothing else: data window and display window must be equal";
+    match decode_any(path, bytes)? {
+        (_, Some(cause)) => Err(ReportError::new(path, cause, HELP)),
+        (image, None) => Ok(image),
+    }
+}
+
+/// The layers of a file, and in which way its pixels are not those of the picture, if they are not.
+fn decode_any(path: &Path, bytes: &[u8]) -> Result<(Image, Option<String>), ReportError> {
     let wrong = |cause: String, help: &str| ReportError::new(path, cause, help);
     suits(bytes).map_err(|unfit| wrong(unfit.what, unfit.help))?;
     let reader =
@@ -147,7 +166,7 @@ pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<Image, ReportError> {
         .from_buffered(Cursor::new(bytes))
         .map_err(|e| wrong(format!("not a readable OpenEXR file: {e}"), "give a flat (not deep) OpenEXR image"))?;
 
-    let mut size = None;
+    let (mut size, mut unlike, mut from) = (None, None, [0; 2]);
     let mut planes: BTreeMap<String, BTreeMap<char, Vec<f32>>> = BTreeMap::new();
     let mut seen = Vec::new();
     let several = found.layer_data.len() > 1;
@@ -156,9 +175,9 @@ pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<Image, ReportError> {
         if *size.get_or_insert(here) != here {
             return Err(wrong("its parts differ in size".into(), "give parts of one size, or one part"));
         }
-        whole(part, &found.attributes).map_err(|cause| {
-            wrong(cause, "write the whole picture and nothing else: data window and display window must be equal")
-        })?;
+        unlike = unlike.or(whole(part, &found.attributes).err());
+        let (own, display) = (part.absolute_bounds().position, found.attributes.display_window.position);
+        from = [own.0 - display.0, own.1 - display.1];
         let part_name = part.attributes.layer_name.as_ref().filter(|_| several).map(plain).unwrap_or_default();
         for channel in &part.channel_data.list {
             let name = plain(&channel.name);
@@ -208,7 +227,7 @@ pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<Image, ReportError> {
         .collect();
     attributes.sort();
     attributes.dedup();
-    Ok(Image { width, height, layers, grey, incomplete, attributes })
+    Ok((Image { width, height, from, layers, grey, incomplete, attributes }, unlike))
 }
 
 /// Returns an error if the pixels of a part are not those of the picture: its data window is not its display window.

@@ -47,7 +47,14 @@ impl Wide {
             return Self { nodes: vec![Node::EMPTY], blocks: vec![], waiting: 0 };
         }
         let boxes: Vec<Aabb> = bounds.into_iter().map(|b| Aabb::new(b[0].into(), b[1].into())).collect();
-        let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
+        // pairs are searched for among many neighbours at every depth, and more of them are moved afterwards than usual: building takes a
+        // fifth longer, and rays 4 to 12 % less time
+        let params = BvhBuildParams {
+            max_prims_per_leaf: 1,
+            search_depth_threshold: 0,
+            reinsertion_batch_ratio: 0.1,
+            ..BvhBuildParams::medium_build()
+        };
         let bvh = obvhs::bvh2::builder::build_bvh2(&boxes, params, &mut std::time::Duration::default());
         drop(boxes);
         Collapse { shapes, bvh: &bvh, parts: vec![] }.collapse()

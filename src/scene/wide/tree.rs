@@ -3,7 +3,7 @@
 //! | question | order | stops |
 //! |---|---|---|
 //! | [`Wide::closest`]: the first hit | by the distance of the boxes | when all boxes that are left begin behind the best hit |
-//! | [`Wide::occluded`]: any hit with t < 1 | as stored | at the first hit |
+//! | [`Wide::occluded`]: any hit with t < 1 | as stored: the largest box first | at the first hit |
 //!
 //! Each stack entry of the first question is one number: the distance of the box above the number of the child. Distances are
 //! not negative, so the entries sort as integers.
@@ -32,6 +32,13 @@ fn entry(t: f32, child: u32) -> u64 {
 #[inline(always)]
 fn first(set: u32) -> (usize, u32) {
     (set.trailing_zeros() as usize % N, set & (set - 1))
+}
+
+/// The highest bit of a set, which must not be empty, and the rest.
+#[inline(always)]
+fn last(set: u32) -> (usize, u32) {
+    let i = 31 - set.leading_zeros();
+    (i as usize % N, set ^ (1 << i))
 }
 
 impl Wide {
@@ -110,7 +117,7 @@ impl Wide {
                 if met != 0 {
                     let (i, mut met) = first(met);
                     while met != 0 {
-                        let (i, rest) = first(met);
+                        let (i, rest) = last(met);
                         met = rest;
                         stack[top] = u64::from(node.child[i]);
                         top += 1;
