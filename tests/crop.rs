@@ -133,8 +133,16 @@ fn equal_rectangles_can_be_compared() {
     }
     let said = run(desk, "compare a b -o ab");
     assert!(said.code <= 1 && desk.join("ab/z.png").exists(), "{}{}", said.out, said.err);
+    ok(desk, "series cornell --worlds terms --size 16x16 --spp 64 -q -o small");
+    ok(desk, "series cornell --worlds terms --size 32x32 --crop 0,0,16,16 --spp 64 -q -o corner");
+    assert_eq!(run(desk, "compare small corner -o sc").code, 3, "a picture and a crop of its size");
     let said = run(desk, "compare a c -o ac");
-    assert!(said.code == 3 && said.err.contains("begin at pixel (8, 8) and (9, 8)"), "{} {}", said.code, said.err);
+    assert!(
+        said.code == 3 && said.err.contains("begin at pixel (8, 8) of 32×32 and (9, 8) of 32×32"),
+        "{} {}",
+        said.code,
+        said.err
+    );
 }
 
 #[test]

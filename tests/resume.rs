@@ -326,6 +326,16 @@ fn rows_of_stored_rays_are_traced_in_parts() {
     ok(desk, &format!("{} -q --shard 4/4 -o parts0/4.fsh", lines[0]));
     ok(desk, &format!("{merge} again"));
     assert_same(desk, ["whole0", "again"], lines[0]);
+    // another number of samples needs no other rows, but another mesh does
+    let fewer = lines[0].replace("--spp 16", "--spp 8");
+    ok(desk, &format!("{fewer} -q -o whole8"));
+    for n in 1..=4 {
+        ok(desk, &format!("{fewer} -q --shard {n}/4 -o parts0/{n}.fsh"));
+    }
+    ok(desk, &format!("{merge} merged8"));
+    assert_same(desk, ["whole8", "merged8"], &fewer);
+    let other = lines[0].replace("--patches 500", "--patches 400");
+    refused(desk, &format!("{other} --shard 1/4 -o parts0/1.fsh"), &["another command", "--patches 500", "--force"]);
     refused(desk, "radiosity cornell --patches 300 --shard 1/2", &["dense matrix", "--factors rays"]);
     refused(desk, "radiosity cornell --factors rays --patches 300 --modes 2 --shard 1/2", &["--shard", "--modes"]);
     refused(desk, "radiosity cornell --factors rays --patches 300 --shard 1/301", &["too many", "300"]);

@@ -82,11 +82,11 @@ pub fn run(args: &Compare) -> Result<Ending, Failure> {
 
     let pictures = (images(&a)?, images(&b)?);
     if let (Some(a), Some(b)) = &pictures
-        && a.from != b.from
+        && (a.from, a.of) != (b.from, b.of)
     {
-        let place = |i: &exr::Image| format!("({}, {})", i.from[0], i.from[1]);
+        let place = |i: &exr::Image| format!("({}, {}) of {}×{}", i.from[0], i.from[1], i.of[0], i.of[1]);
         return Err(Failure::Input(format!(
-            "error: the images are different parts of a picture: they begin at pixel {} and {}\nhelp: render both with the same --crop",
+            "error: these are different parts of pictures: they begin at pixel {} and {}\nhelp: render both with the same --size and --crop",
             place(a),
             place(b)
         )));

@@ -14,7 +14,7 @@ use crate::operator::rays::{Hit, Rays, Rows};
 use crate::progress::Progress;
 use crate::scene::{Description, Scene, SceneError};
 
-/// The meshes on which the discrete world traces rays: their numbers of patches, as asked for. The second is the finer one.
+/// The meshes on which the discrete world traces rays: their numbers of patches, as asked for, the finest one last.
 pub fn meshes(settings: &Settings) -> Vec<usize> {
     match settings.factors {
         Factors::Dense => vec![],
@@ -33,7 +33,7 @@ pub fn mesh(settings: &Settings, patches: usize) -> String {
     format!("{per_row} rays from each of {patches} patches{graded}")
 }
 
-/// Traces the rows of the part of `keep` on all [`meshes`], but for those that are kept already.
+/// Traces the rows of the part of `keep` on all [`meshes`], except those that are kept already.
 ///
 /// # Errors
 /// See [`MatrixError`].

@@ -28,8 +28,8 @@ impl Crop {
         Self { from: [0, 0], size }
     }
 
-    /// The pixels of some of its own pixels, row by row: for each row the number of the first of its own pixels, and the numbers in a
-    /// picture of width `width`.
+    /// Translates a range of the rectangle's pixel numbers into those of a picture of width `width`. For each row: the first number in the
+    /// rectangle, and the range in the picture.
     ///
     /// ```
     /// use fredholm::scene::Crop;

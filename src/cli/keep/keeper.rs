@@ -109,9 +109,19 @@ impl Keeper {
         let films: Vec<String> = streams(run).iter().map(one).collect();
         let of = if run.settings.time.is_some() { String::new() } else { format!(" of {}", header.spp) };
         let films = (!films.is_empty()).then(|| format!("{}{of} samples per pixel", films.join(", ")));
-        let rows = meshes(run).into_iter().filter(|mesh| header.rows(mesh).is_some());
+        let meshes = meshes(run);
+        let rows = meshes.iter().filter(|mesh| header.rows(mesh).is_some()).cloned();
         let all: Vec<String> = films.into_iter().chain(rows).collect();
-        format!("going on with {}", if all.is_empty() { "no rows yet".into() } else { all.join("; ") })
+        let lacks: Vec<_> = meshes.iter().filter(|mesh| header.rows(mesh).is_none()).cloned().collect();
+        let lacks = if lacks.is_empty() { String::new() } else { format!("; still to trace: {}", lacks.join("; ")) };
+        format!("going on with {}{lacks}", if all.is_empty() { "nothing".into() } else { all.join("; ") })
+    }
+
+    /// Writes the file again with the header of this run, and the films and rows that it has.
+    pub fn renew(&self) -> Result<(), Failure> {
+        let mut header = lock(&self.header);
+        *header = state::write_header(&self.path, &header)?;
+        Ok(())
     }
 
     /// Removes the state of an earlier run which is not that of this one.

@@ -2,7 +2,7 @@
 
 use super::{Shard, meshes, streams};
 use crate::cli::base::{Failure, lock, note};
-use crate::cli::output::command_of;
+use crate::cli::output::{but_for_samples, command_of};
 use fredholm::engine::passes::Keep;
 use fredholm::operator::patches::Patches;
 use fredholm::operator::rays::Rays;
@@ -158,6 +158,12 @@ impl Keep for Merged {
             None
         })
     }
+}
+
+/// True if two commands differ in their numbers of samples and the order of their words only.
+pub fn same_command(a: &[String], b: &[String]) -> bool {
+    let [a, b] = [a, b].map(but_for_samples);
+    sorted(&a) == sorted(&b)
 }
 
 fn sorted(words: &[String]) -> Vec<&String> {

@@ -14,7 +14,7 @@ use crate::cli::options::{HOW, OUTPUT, duration};
 use clap::Args;
 pub use header::{header, meshes, streams};
 pub use keeper::{Keeper, NAME, kept_in};
-pub use merged::Merged;
+pub use merged::{Merged, same_command};
 pub use shard::Shard;
 use std::time::Duration;
 
@@ -42,8 +42,8 @@ pub struct Keeping {
 pub struct Sharding {
     /// Render part I of N, for `fredholm merge`
     ///
-    /// For example 3/8. Writes one file [default: fredholm-out/SCENE-COMMAND-3-of-8.fsh], which -o names. A part has every N-th block of 64 pixels, every N-th replicate if paths start at the lights, and every N-th patch of --factors rays.
-    /// A part that was stopped goes on when its command is repeated, and a finished part is skipped. The merged result has the bits of
+    /// For example 3/8. Writes one file [default: fredholm-out/SCENE-COMMAND-3-of-8.fsh], which -o names. A part has every N-th block of 64 pixels, every N-th replicate if paths start at the lights, and every N-th patch of --factors rays; everything else is made by merge, such as the picture of radiosity.
+    /// A part that was stopped goes on when its command is repeated, and a finished part is skipped. The rays of a mesh are traced as a whole, or again. The merged result has the bits of
     /// one run.
     #[arg(long, value_name = "I/N", conflicts_with = "time", hide_short_help = true)]
     pub shard: Option<Shard>,

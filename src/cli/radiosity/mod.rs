@@ -18,7 +18,7 @@ pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
         return Err(usage(what, "leave it out"));
     }
     if args.sharding.shard.is_some() && (args.solver.is_some() || args.modes.is_some()) {
-        let what = "--shard is for the picture, and --solver and --modes make none";
+        let what = "--shard divides the stored rays of a picture, and --solver and --modes need all of them";
         return Err(usage(what, "leave it out"));
     }
     if args.pixels.crop.is_some() && (args.solver.is_some() || args.modes.is_some()) {

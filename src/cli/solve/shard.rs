@@ -4,6 +4,7 @@ use super::{Default, Request, opened};
 use crate::cli::base::{Ending, Failure, note, usage};
 use crate::cli::claim::{Claim, Denied};
 use crate::cli::keep::{self, Interval, Keeper, Shard};
+use crate::cli::output::{command_of, kept_words};
 use crate::cli::session::Session;
 use fredholm::engine::by_rays::{Begins, Estimator};
 use fredholm::engine::discretisation::Factors;
@@ -59,7 +60,16 @@ pub fn render(args: &Request, default: &Default, shard: Shard) -> Result<Ending,
             let what = format!("this is part {}, not {shard}", Shard(state.header.part()));
             return Err(Failure::at(&path, &what, OTHER));
         }
+        let (words, before) = (state.header.words.clone(), state.header.spp);
         keeper.go_on(state, &run)?;
+        if !keep::same_command(&words, &kept_words()) {
+            let what = format!("this is a part of another command: {}", command_of(&words));
+            return Err(Failure::at(&path, &what, OTHER));
+        }
+        // rows do not depend on the samples, but `merge` looks for their number
+        if before != spp && keep::streams(&run).is_empty() {
+            keeper.renew()?;
+        }
         if !session.quiet() {
             note(&keeper.stand(&run));
         }
@@ -80,6 +90,9 @@ pub fn render(args: &Request, default: &Default, shard: Shard) -> Result<Ending,
         true => {
             format!("part {shard} is finished: {}\nwhen all parts are: fredholm merge FILES -o FOLDER", path.display())
         }
+        false if !keeper.kept() => {
+            format!("part {shard} was stopped, and nothing is kept\nrepeat the command to begin again")
+        }
         false => {
             format!("part {shard} was stopped, and its state is kept: {}\nrepeat the command to go on", path.display())
         }
@@ -98,7 +111,8 @@ fn can_be_divided(run: &Run, shard: Shard) -> Result<(), Failure> {
     let traces = run.wants(World::Terms) || run.wants(World::Path);
     if !traces && run.settings.factors == Factors::Dense {
         let help = "use --factors rays, whose rows can be divided, or leave --shard out";
-        return Err(usage("a dense matrix is not made in parts", help));
+        let both = if run.asked.against_rays.is_some() { ", and --factors both needs one" } else { "" };
+        return Err(usage(&format!("a dense matrix is not made in parts{both}"), help));
     }
     if !traces && of as usize > run.settings.patches {
         let what = format!("{of} parts are too many: the mesh has about {} patches", run.settings.patches);
@@ -110,7 +124,8 @@ fn can_be_divided(run: &Run, shard: Shard) -> Result<(), Failure> {
     if gathers && of as usize > blocks {
         return Err(usage(
             &format!(
-                "{of} parts are too many: the picture has {blocks} block{} of 64 pixels",
+                "{of} parts are too many: the {} has {blocks} block{} of 64 pixels",
+                if run.settings.crop.is_some() { "crop" } else { "picture" },
                 if blocks == 1 { "" } else { "s" }
             ),
             "choose fewer parts",

@@ -25,7 +25,11 @@ pub fn people(run: &Run, summary: &Summary, session: &Session, next: &str) -> St
     let files = format!("{} files in {:.0} s; open {}", summary.files.len(), summary.seconds, page.display());
     let last = if next.is_empty() { files } else { format!("{next}\n{files}") };
     let stopped = stopped_early(run, summary).map_or(String::new(), |at| format!("\nStopped early, at {at} spp."));
-    let answer = format!("{}{stopped}\n{}", wrapped(&answer::head(run)), answer::comparisons(run));
+    let crop = run.settings.crop.map_or(String::new(), |c| {
+        let ([x, y], [w, h], [of_w, of_h]) = (c.from, c.size, run.scene.camera.size);
+        format!("\nA crop of {w}×{h} pixels at ({x}, {y}) of {of_w}×{of_h}: means of pictures are over it.")
+    });
+    let answer = format!("{}{stopped}{crop}\n{}", wrapped(&answer::head(run)), answer::comparisons(run));
     session.text_ending(&answer, &tables, &details(run, summary), &last)
 }
 

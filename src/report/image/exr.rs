@@ -41,6 +41,8 @@ pub struct Image {
     pub height: usize,
     /// The pixel of the picture, from the top left, that is the first one here: (0, 0) but for a crop.
     pub from: [i32; 2],
+    /// Width and height of the picture.
+    pub of: [usize; 2],
     /// Name and pixels of each layer, sorted by name; the unnamed layer has an empty name.
     pub layers: Vec<(String, Vec<[f32; 3]>)>,
     /// Names of the layers that have one channel, `Y`, which stands for all three.
@@ -148,7 +150,7 @@ pub fn read_crop(path: &Path) -> Result<Image, ReportError> {
 
 /// The layers of a file that was read into memory; errors name `path`.
 pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<Image, ReportError> {
-    const HELP: &str = "write the whole picture and nothing else: data window and display window must be equal";
+    const HELP: &str = "write the whole picture and nothing else (fredholm: without --crop): data window and display window must be equal";
     match decode_any(path, bytes)? {
         (_, Some(cause)) => Err(ReportError::new(path, cause, HELP)),
         (image, None) => Ok(image),
@@ -166,6 +168,8 @@ fn decode_any(path: &Path, bytes: &[u8]) -> Result<(Image, Option<String>), Repo
         .from_buffered(Cursor::new(bytes))
         .map_err(|e| wrong(format!("not a readable OpenEXR file: {e}"), "give a flat (not deep) OpenEXR image"))?;
 
+    let display = found.attributes.display_window;
+    let of = [display.size.0, display.size.1];
     let (mut size, mut unlike, mut from) = (None, None, [0; 2]);
     let mut planes: BTreeMap<String, BTreeMap<char, Vec<f32>>> = BTreeMap::new();
     let mut seen = Vec::new();
@@ -176,8 +180,8 @@ fn decode_any(path: &Path, bytes: &[u8]) -> Result<(Image, Option<String>), Repo
             return Err(wrong("its parts differ in size".into(), "give parts of one size, or one part"));
         }
         unlike = unlike.or(whole(part, &found.attributes).err());
-        let (own, display) = (part.absolute_bounds().position, found.attributes.display_window.position);
-        from = [own.0 - display.0, own.1 - display.1];
+        let own = part.absolute_bounds().position;
+        from = [own.0 - display.position.0, own.1 - display.position.1];
         let part_name = part.attributes.layer_name.as_ref().filter(|_| several).map(plain).unwrap_or_default();
         for channel in &part.channel_data.list {
             let name = plain(&channel.name);
@@ -227,7 +231,7 @@ fn decode_any(path: &Path, bytes: &[u8]) -> Result<(Image, Option<String>), Repo
         .collect();
     attributes.sort();
     attributes.dedup();
-    Ok((Image { width, height, from, layers, grey, incomplete, attributes }, unlike))
+    Ok((Image { width, height, from, of, layers, grey, incomplete, attributes }, unlike))
 }
 
 /// Returns an error if the pixels of a part are not those of the picture: its data window is not its display window.

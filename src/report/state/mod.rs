@@ -186,6 +186,14 @@ pub fn write_rows(path: &Path, header: &Header, (mesh, rows): (&str, &Rows)) -> 
     replace(path, next, |out| rows::write(rows, out), |next, place| next.rows.push(entry(place)))
 }
 
+/// Writes a state again with another header, which names sections of the old file.
+///
+/// # Errors
+/// As of [`write_film`].
+pub fn write_header(path: &Path, header: &Header) -> Result<Header, ReportError> {
+    replace(path, header.clone(), |_| Ok(()), |_, _| {})
+}
+
 /// A file in which a section is written.
 type Section<'a> = Hashed<&'a mut BufWriter<File>>;
 
