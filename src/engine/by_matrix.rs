@@ -95,10 +95,10 @@ pub fn kept_matrix(
             dense_matrix(description, scene, patches, grading, k, progress)?.held_as(Discretisation::from)
         }
         Factors::Rays(n) => {
-            let (mesh, patches) = (mesh(settings, patches), Patches::graded(description, patches, settings.grading)?);
+            let mesh = mesh(settings, patches);
+            let patches = Patches::graded(description, patches, settings.grading)?;
             let kept = keep.and_then(|keep| keep.rows(&mesh, &patches, n as usize));
-            let rays = kept.map_or_else(|| trace(&patches, scene, n, settings.seed, progress), Ok)?;
-            by_rays(Stored { patches, rays }, settings.max_bounces)?.held_as(Discretisation::from)
+            stored(patches, kept, scene, n, settings, progress)?.held_as(Discretisation::from)
         }
     })
 }
@@ -139,7 +139,19 @@ pub fn sampled_matrix(
     progress: Progress<'_>,
 ) -> Result<Matrix<Stored>, MatrixError> {
     let patches = Patches::graded(description, patches, settings.grading)?;
-    let rays = trace(&patches, scene, per_row, settings.seed, progress)?;
+    stored(patches, None, scene, per_row, settings, progress)
+}
+
+/// The matrix of stored rays on a mesh: of those that are kept, or else of rays that are traced now.
+fn stored(
+    patches: Patches,
+    kept: Option<Rays>,
+    scene: &Scene,
+    per_row: u32,
+    settings: &Settings,
+    progress: Progress<'_>,
+) -> Result<Matrix<Stored>, MatrixError> {
+    let rays = kept.map_or_else(|| trace(&patches, scene, per_row, settings.seed, progress), Ok)?;
     by_rays(Stored { patches, rays }, settings.max_bounces)
 }
 

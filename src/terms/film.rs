@@ -92,7 +92,7 @@ fn place(slot: usize, replicate: usize, pixel: usize, replicates: usize, pixels:
 /// The part of a film that one thread works on: some neighbouring pixels.
 pub(crate) struct FilmBlock<'a> {
     pub(crate) shape: Shape,
-    /// Number of the first pixel, if the pixels that are added now were neighbours of it.
+    /// The number of a pixel minus its place in the block; in a crop it changes from row to row.
     pub(crate) first: u32,
     pub(crate) pixels: usize,
     pub(crate) shared: bool,

@@ -79,7 +79,7 @@ impl Keeper {
             fits(entry, run).map_err(|(what, help)| Failure::at(&self.path, &what, &help))?;
         }
         state.check()?;
-        // films that this run does not need stay in the file
+        // films and rows that this run does not need stay in the file
         header.films = state.header.films.clone();
         header.rows = state.header.rows.clone();
         drop(header);
@@ -109,10 +109,8 @@ impl Keeper {
         let films: Vec<String> = streams(run).iter().map(one).collect();
         let of = if run.settings.time.is_some() { String::new() } else { format!(" of {}", header.spp) };
         let films = (!films.is_empty()).then(|| format!("{}{of} samples per pixel", films.join(", ")));
-        let meshes = meshes(run);
-        let rows = meshes.iter().filter(|mesh| header.rows(mesh).is_some()).cloned();
+        let (rows, lacks): (Vec<_>, Vec<_>) = meshes(run).into_iter().partition(|mesh| header.rows(mesh).is_some());
         let all: Vec<String> = films.into_iter().chain(rows).collect();
-        let lacks: Vec<_> = meshes.iter().filter(|mesh| header.rows(mesh).is_none()).cloned().collect();
         let lacks = if lacks.is_empty() { String::new() } else { format!("; still to trace: {}", lacks.join("; ")) };
         format!("going on with {}{lacks}", if all.is_empty() { "nothing".into() } else { all.join("; ") })
     }

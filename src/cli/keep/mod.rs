@@ -43,7 +43,7 @@ pub struct Sharding {
     /// Render part I of N, for `fredholm merge`
     ///
     /// For example 3/8. Writes one file [default: fredholm-out/SCENE-COMMAND-3-of-8.fsh], which -o names. A part has every N-th block of 64 pixels, every N-th replicate if paths start at the lights, and every N-th patch of --factors rays; everything else is made by merge, such as the picture of radiosity.
-    /// A part that was stopped goes on when its command is repeated, and a finished part is skipped. The rays of a mesh are traced as a whole, or again. The merged result has the bits of
+    /// A part that was stopped goes on when its command is repeated, and a finished part is skipped. Stored rays are kept only when all of a mesh are traced; if they are stopped before, the mesh begins again. The merged result has the bits of
     /// one run.
     #[arg(long, value_name = "I/N", conflicts_with = "time", hide_short_help = true)]
     pub shard: Option<Shard>,

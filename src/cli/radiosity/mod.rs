@@ -13,16 +13,20 @@ use fredholm::report::image::exposure::Exposure;
 
 /// Renders the radiosity solution, compares solvers, or finds the spectrum of T.
 pub fn run(args: &Radiosity) -> Result<Ending, Failure> {
-    if args.pictures.exposure != Exposure::Auto && (args.solver.is_some() || args.modes.is_some()) {
-        let what = "--exposure is for pictures of terms, and --solver and --modes make none";
-        return Err(usage(what, "leave it out"));
-    }
-    if args.sharding.shard.is_some() && (args.solver.is_some() || args.modes.is_some()) {
-        let what = "--shard divides the stored rays of a picture, and --solver and --modes need all of them";
-        return Err(usage(what, "leave it out"));
-    }
-    if args.pixels.crop.is_some() && (args.solver.is_some() || args.modes.is_some()) {
-        let what = "--crop is for the picture, and --solver and --modes make none of the scene";
+    let picture_only = [
+        (
+            args.pictures.exposure != Exposure::Auto,
+            "--exposure is for pictures of terms, and --solver and --modes make none",
+        ),
+        (
+            args.sharding.shard.is_some(),
+            "--shard divides the stored rays of a picture, and --solver and --modes need all of them",
+        ),
+        (args.pixels.crop.is_some(), "--crop is for the picture, and --solver and --modes make none of the scene"),
+    ];
+    if (args.solver.is_some() || args.modes.is_some())
+        && let Some((_, what)) = picture_only.into_iter().find(|(given, _)| *given)
+    {
         return Err(usage(what, "leave it out"));
     }
     match (args.solver, args.modes) {

@@ -193,7 +193,7 @@ impl Run {
         Ok(())
     }
 
-    /// Renders only the films and traces only the rows of stored rays, or a part of them: what `keep` then holds.
+    /// Renders the films and traces the stored rays of the part of `keep`, which then holds them, and does nothing else.
     ///
     /// # Errors
     /// If the scene has no matrix, or no mesh for a guide.
