@@ -18,10 +18,11 @@ use crate::operator::patches::Patches;
 use crate::operator::rays::{Rays, Rows};
 use crate::operator::{Sensor, Transport};
 use crate::progress::{Clock, Progress};
-use crate::terms::history::{self, History};
+use crate::terms::history::{self, Early, History};
 use crate::terms::statistics::Statistics;
 use crate::terms::variance::{Snapshot, Stand};
 use crate::terms::{Cost, Part, Series, TermFilm, Variance, World};
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// A callback that gets the film after a pass. It returns the next number of samples per pixel at which to be called, in
@@ -262,17 +263,13 @@ impl Between for Passes<'_, '_> {
         }
         // a replicate alone is no image, and has no variance
         let apart = film.shared && !part.is_whole();
-        if self.watch.early && !apart {
-            history::early(film, self.spp, &mut self.history.early);
-        }
+        let early = if self.watch.early && !apart { history::kept(film, self.spp) } else { None };
         if until <= done && part.is_whole() {
             self.last = Some((self.seconds(), Statistics::of(film)));
         }
         // the bits of a run that is kept must not depend on where it was stopped
         let exists = self.watch.keep.is_none() || until <= done || is_usual(done, film);
-        if film.shape.replicates > 1 && !apart && exists {
-            self.variances(film, part);
-        }
+        self.store(film, part, film.shape.replicates > 1 && !apart && exists, early);
         until
     }
 
@@ -282,12 +279,23 @@ impl Between for Passes<'_, '_> {
 }
 
 impl Passes<'_, '_> {
-    /// Stores the variances of the film after a pass.
-    fn variances(&mut self, film: &TermFilm, part: Part) {
-        if let Some((_, read)) = &self.last {
-            return self.snapshots.push(read.snapshot.clone());
+    /// Stores the variances of the film after a pass, and early images of some slots. The film is read once for both.
+    fn store(&mut self, film: &TermFilm, part: Part, mut variances: bool, early: Option<Range<usize>>) {
+        if let (Some((_, read)), true) = (&self.last, variances) {
+            self.snapshots.push(read.snapshot.clone());
+            variances = false;
         }
-        let stand = Stand::of(film, part);
+        if !variances && early.is_none() {
+            return;
+        }
+        let keeps_early = early.is_some();
+        let (stand, images) = Stand::with_images(film, part, early);
+        if keeps_early {
+            self.history.early.push(Early::new(film.samples_of(Part::WHOLE).end, images));
+        }
+        if !variances {
+            return;
+        }
         if part.is_whole() {
             self.snapshots.push(stand.snapshot(film.shape));
         }

@@ -50,9 +50,6 @@ impl Amount {
     }
 }
 
-/// Sums in a page of memory.
-const PAGE: usize = 4096 / size_of::<f64>();
-
 /// Number of paths of a wave.
 const WAVE: u32 = 1024;
 
@@ -230,10 +227,6 @@ fn pass<T: Transport>(
         if samples.is_empty() || !part.has(i) || stops() {
             return Totals::new(shape.slots);
         }
-        if samples.start == 0 {
-            // memory is written before it is read, or every page is brought in twice
-            sums.iter_mut().step_by(PAGE).for_each(|s| *s = 0.0);
-        }
         let first = (i * BLOCK) as u32;
         let pixels = first..first + counts.len() as u32;
         let largest = floors.iter().map(Largest::above).collect();
@@ -248,6 +241,7 @@ fn pass<T: Transport>(
             largest,
             non_finite: 0,
             rays,
+            fresh: vec![samples.start == 0; shape.slots],
         };
         for (own, pixels) in crop.rows(pixels.clone(), width) {
             block.first = pixels.start - (own - first);

@@ -154,8 +154,9 @@ fn add(jobs: &[Splats], film: &mut TermFilm) {
             let largest = std::mem::take(&mut totals.largest);
             let rays = std::mem::take(&mut totals.rays);
             let (first, pixels) = ((first + block * BLOCK) as u32, squares.len() / each);
+            let fresh = vec![false; shape.slots];
             let mut block =
-                FilmBlock { shape, first, pixels, shared: true, sums, squares, largest, non_finite: 0, rays };
+                FilmBlock { shape, first, pixels, shared: true, sums, squares, largest, non_finite: 0, rays, fresh };
             for slot in 0..shape.slots {
                 let list = &list[starts[slot] as usize..starts[slot + 1] as usize];
                 pixel.clear();

@@ -36,6 +36,11 @@ impl<'a> Piece<'a> {
         pieces(pixels).map(move |pixels| Self { film, pixels })
     }
 
+    /// The shape of the film.
+    pub(super) fn shape(&self) -> Shape {
+        self.film.shape
+    }
+
     /// True if the piece belongs to a part of the film.
     pub(super) fn is_in(&self, part: Part) -> bool {
         part.has(self.pixels.start / BLOCK)
@@ -46,9 +51,9 @@ impl<'a> Piece<'a> {
         self.pixels.clone().map(move |p| self.film.square(p, slot))
     }
 
-    /// Number of samples of each pixel.
-    pub(super) fn samples(&self) -> &'a [u32] {
-        &self.film.samples[self.pixels.clone()]
+    /// Number of samples of a pixel. All pixels of a block have the same.
+    pub(super) fn samples(&self) -> u32 {
+        self.film.samples[self.pixels.start]
     }
 }
 
@@ -73,11 +78,9 @@ pub(super) struct Deviations {
     /// Number of replicates.
     pub replicates: usize,
     /// N.
-    samples: Vec<f64>,
-    /// n_r, replicate by replicate.
+    samples: f64,
+    /// n_r.
     counts: Vec<f64>,
-    /// N/n_r.
-    scales: Vec<f64>,
     /// The sums S_r of the slots that were added.
     added: Vec<f64>,
     /// Σ_r S_r.
@@ -94,17 +97,11 @@ impl Deviations {
     /// Begins with a piece, and with no slot.
     pub(super) fn begin(&mut self, piece: &Piece<'_>) {
         let (r, samples) = (piece.film.shape.replicates, piece.samples());
-        let width = 3 * samples.len();
+        let width = 3 * piece.pixels.len();
         self.replicates = r;
-        self.samples.clear();
-        self.samples.extend(samples.iter().flat_map(|&n| [f64::from(n); 3]));
-        self.counts.resize(r * width, 0.0);
-        for (i, counts) in self.counts.chunks_mut(width).enumerate() {
-            let each = samples.iter().map(|&n| n / r as u32 + u32::from(i < (n % r as u32) as usize));
-            counts.as_chunks_mut().0.iter_mut().zip(each).for_each(|(c, n)| *c = [f64::from(n); 3]);
-        }
-        self.scales.clear();
-        self.scales.extend(self.counts.iter().zip(self.samples.iter().cycle()).map(|(c, n)| n / c));
+        self.samples = f64::from(samples);
+        self.counts.clear();
+        self.counts.extend((0..r as u32).map(|i| f64::from(samples / r as u32 + u32::from(i < samples % r as u32))));
         for v in [&mut self.all, &mut self.mean, &mut self.square] {
             v.resize(width, 0.0);
         }
@@ -138,7 +135,7 @@ impl Deviations {
     /// Computes mean and deviations of the sums `rows[r]`.
     fn spread(&mut self, rows: &[&[f64]]) {
         let Self { samples, counts, all, mean, of, square, .. } = self;
-        spread(Spread { rows, samples, counts, all, mean, of, square });
+        spread(Spread { rows, samples: *samples, counts, all, mean, of, square });
     }
 
     /// The same for some neighbouring slots.
@@ -157,8 +154,13 @@ impl Deviations {
     }
 
     /// N/n_r.
-    pub(super) fn scale(&self, r: usize) -> &[f64] {
-        &self.scales[r * self.mean.len()..][..self.mean.len()]
+    pub(super) fn scale(&self, r: usize) -> f64 {
+        self.samples / self.counts[r]
+    }
+
+    /// Copies the mean of each pixel.
+    pub(super) fn copy_means(&self, to: &mut [[f32; 3]]) {
+        to.iter_mut().zip(self.mean.as_chunks::<3>().0).for_each(|(to, m)| *to = m.map(|v| v as f32));
     }
 
     /// Mean and standard error of each pixel.
@@ -173,7 +175,7 @@ impl Deviations {
 /// What [`spread`] reads and writes.
 struct Spread<'a> {
     rows: &'a [&'a [f64]],
-    samples: &'a [f64],
+    samples: f64,
     counts: &'a [f64],
     all: &'a mut [f64],
     mean: &'a mut [f64],
@@ -185,20 +187,22 @@ struct Spread<'a> {
 #[inline(always)]
 fn spread_with_simd<'a, S: Simd>(_simd: S, job: Spread<'a>) {
     let Spread { rows, samples, counts, all, mean, of, square } = job;
-    let width = samples.len();
-    let (all, mean, square) = (&mut all[..width], &mut mean[..width], &mut square[..width]);
+    let width = all.len();
+    let (mean, square) = (&mut mean[..width], &mut square[..width]);
     all.fill(0.0);
     for row in rows {
         all.iter_mut().zip(*row).for_each(|(a, s)| *a += s);
     }
     for i in 0..width {
-        mean[i] = all[i] / samples[i];
+        mean[i] = all[i] / samples;
     }
     square.fill(0.0);
-    for ((row, counts), of) in rows.iter().zip(counts.chunks_exact(width)).zip(of.chunks_exact_mut(width)) {
-        let row = &row[..width];
+    // a product for every replicate takes less time than a division
+    let each = 1.0 / samples;
+    for ((row, count), of) in rows.iter().zip(counts).zip(of.chunks_exact_mut(width)) {
+        let (row, of) = (&row[..width], &mut of[..width]);
         for i in 0..width {
-            let d = (row[i] - mean[i] * counts[i]) / samples[i];
+            let d = (row[i] - mean[i] * count) * each;
             of[i] = d;
             square[i] += d * d;
         }

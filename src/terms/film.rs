@@ -63,7 +63,7 @@ impl Shape {
 pub struct TermFilm {
     /// Size of the film.
     pub shape: Shape,
-    /// Number of samples of each pixel so far.
+    /// Number of samples of each pixel so far. Pixels of one block have the same number.
     pub samples: Vec<u32>,
     /// Rays requested, by slot.
     pub rays: Vec<u64>,
@@ -101,7 +101,12 @@ pub(crate) struct FilmBlock<'a> {
     pub(crate) largest: Vec<Largest>,
     pub(crate) non_finite: u64,
     pub(crate) rays: Vec<u64>,
+    /// The slots whose memory has never been written.
+    pub(crate) fresh: Vec<bool>,
 }
+
+/// Sums in a page of memory.
+const PAGE: usize = 4096 / size_of::<f64>();
 
 impl FilmBlock<'_> {
     #[inline(always)]
@@ -112,6 +117,9 @@ impl FilmBlock<'_> {
             let last = (first + RUN).min(n);
             let some = some_of([&value.x[first..last], &value.y[first..last], &value.z[first..last]]);
             added += u64::from(some);
+            if some > 0 && self.fresh[slot] {
+                self.touch(slot);
+            }
             // most hits emit nothing, so that a run has few contributions or none. Where there are many, zeros are added too:
             // they change no sum, and a branch that depends on chance costs more
             if some > FEW {
@@ -123,6 +131,15 @@ impl FilmBlock<'_> {
             }
         }
         self.largest[slot].count(added);
+    }
+
+    /// Writes to every page of a slot. If pages are read before they are written, the system brings in each of them twice. A slot
+    /// without light, which many blocks have, needs no memory.
+    #[cold]
+    fn touch(&mut self, slot: usize) {
+        let each = self.shape.replicates * self.pixels * 3;
+        self.sums[slot * each..][..each].iter_mut().step_by(PAGE).for_each(|s| *s = 0.0);
+        self.fresh[slot] = false;
     }
 
     #[inline(always)]
@@ -325,8 +342,9 @@ mod tests {
         let (mut sums, mut squares) = (vec![0.0; 3], vec![0.0]);
         let (largest, rays) = (vec![Largest::default()], vec![0]);
         let (sums, squares) = (&mut sums[..], &mut squares[..]);
+        let fresh = vec![true];
         let mut block =
-            FilmBlock { shape, first: 0, pixels: 1, shared: false, sums, squares, largest, non_finite: 0, rays };
+            FilmBlock { shape, first: 0, pixels: 1, shared: false, sums, squares, largest, non_finite: 0, rays, fresh };
         // whole multiples of 2⁻⁴⁰, most of them small and a few of them large, so that the exact sum is a whole number
         let mut exact = 0_u128;
         let mut value = Columns::default();

@@ -8,9 +8,9 @@
 //! are made of the first n samples of the final image.
 
 use super::film::{BLOCK, Shape, TermFilm};
-use super::image;
 use super::part::Part;
 use super::variance::Stand;
+use std::ops::Range;
 
 /// What is remembered of a render.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -66,27 +66,24 @@ const TERMS: usize = 2;
 /// Larger films keep no early images: they would fill the memory.
 const PIXELS: usize = 1 << 18;
 
-/// Copies the film of a pass, if its number of samples is 16 times a power of 4 and a later pass will follow.
-pub fn early(film: &TermFilm, planned: u32, all: &mut Vec<Early>) {
+/// The slots of which images are kept after a pass: none unless the number of samples is 16 times a power of 4, and a later pass
+/// will follow.
+pub fn kept(film: &TermFilm, planned: u32) -> Option<Range<usize>> {
     let spp = film.samples_of(Part::WHOLE).end;
     let is_one = spp >= 16 && spp.is_power_of_two() && spp.trailing_zeros().is_multiple_of(2);
-    let slots = film.shape.slots;
-    if !is_one || spp >= planned || slots < 2 || film.shape.pixels() > PIXELS {
-        return;
-    }
-    let mut slots = image::means(film, 0..slots);
-    let mut whole = vec![[0.0; 3]; film.shape.pixels()];
-    for slot in &slots {
-        whole.iter_mut().zip(slot).for_each(|(sum, v)| (0..3).for_each(|c| sum[c] += v[c]));
-    }
+    let Shape { slots, .. } = film.shape;
     // the last slot is the tail
-    slots.pop();
-    slots.truncate(1 + TERMS);
-    slots.remove(0);
-    all.push(Early { spp, terms: slots, whole });
+    let kept = is_one && spp < planned && slots > 1 && film.shape.pixels() <= PIXELS;
+    kept.then(|| 1..(1 + TERMS).min(slots - 1))
 }
 
 impl Early {
+    /// Images after so many samples: of the terms that are [`kept`], and of all terms and the tail.
+    pub fn new(spp: u32, mut terms: Vec<Vec<[f32; 3]>>) -> Self {
+        let whole = terms.pop().unwrap_or_default();
+        Self { spp, terms, whole }
+    }
+
     /// All its images.
     pub fn images(&self) -> impl Iterator<Item = &Vec<[f32; 3]>> {
         self.terms.iter().chain([&self.whole])

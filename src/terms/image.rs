@@ -56,8 +56,8 @@ pub fn means(film: &TermFilm, slots: Range<usize>) -> Vec<Vec<[f32; 3]>> {
             for r in 0..film.shape.replicates {
                 sums.iter_mut().zip(film.row(&piece.pixels, r, slot)).for_each(|(sum, s)| *sum += s);
             }
-            let each = sums.as_chunks::<3>().0.iter().zip(piece.samples());
-            means.extend(each.map(|(sum, &n)| sum.map(|s| (s / f64::from(n)) as f32)));
+            let n = f64::from(piece.samples());
+            means.extend(sums.as_chunks::<3>().0.iter().map(|sum| sum.map(|s| (s / n) as f32)));
         }
         means
     };

@@ -83,9 +83,9 @@ fn products_with_simd<'a, S: Simd>(_simd: S, d: &'a Deviations, memory: &'a mut 
     let (sum, means) = memory.split_at_mut(width);
     sum.fill(0.0);
     for (r, means) in means.chunks_exact_mut(width).enumerate() {
-        let (of, scale) = (&d.replicate(r)[..width], &d.scale(r)[..width]);
+        let (of, scale) = (&d.replicate(r)[..width], d.scale(r));
         for i in 0..width {
-            means[i] = d.mean[i] + of[i] * scale[i];
+            means[i] = d.mean[i] + of[i] * scale;
             sum[i] += means[i];
         }
     }

@@ -95,11 +95,12 @@ impl TileRow {
 
     /// Adds one slot of a piece.
     pub(super) fn slot(&mut self, piece: &Piece<'_>, places: &[usize], slot: usize, d: &Deviations) {
-        let each = places.iter().zip(d.mean.as_chunks().0).zip(piece.samples()).zip(piece.squares(slot));
-        for (((&t, &mean), &n), square) in each {
+        let n = f64::from(piece.samples());
+        let each = places.iter().zip(d.mean.as_chunks().0).zip(piece.squares(slot));
+        for ((&t, &mean), square) in each {
             let (tile, mean) = (&mut self.tiles[t], DVec3::from_array(mean));
             tile.mean[slot] += mean;
-            tile.sum[slot] += mean.element_sum() * f64::from(n);
+            tile.sum[slot] += mean.element_sum() * n;
             tile.square[slot] += square;
         }
         // neighbouring pixels of one tile are added to a sum that stays in registers

@@ -69,31 +69,73 @@ pub struct Stand {
     pub(crate) largest: Vec<Largest>,
 }
 
+/// The means of the pixels.
+type Image = Vec<[f32; 3]>;
+
+/// What is read of one band of a film.
+struct Band {
+    rows: Vec<f64>,
+    images: Vec<Image>,
+}
+
+impl Band {
+    /// Reads a piece, and copies to their places the means of some slots and of the sum of all slots.
+    fn piece(
+        &mut self,
+        piece: &Piece<'_>,
+        d: &mut Deviations,
+        row: &mut Row,
+        images: Option<(&Range<usize>, Range<usize>)>,
+    ) {
+        let Shape { slots, replicates, .. } = piece.shape();
+        let (length, start) = (row_length(replicates), self.rows.len());
+        self.rows.resize(start + (slots + 1) * length, 0.0);
+        let mut to = self.rows[start..].chunks_mut(length);
+        d.begin(piece);
+        let mut all = 0.0;
+        for (s, to) in to.by_ref().take(slots).enumerate() {
+            d.slot(piece, s);
+            let added = piece.squares(s).sum();
+            row.write(d, added, to);
+            d.add(piece, s);
+            all += added;
+            if let Some((kept, places)) = images.as_ref().filter(|(kept, _)| kept.contains(&s)) {
+                d.copy_means(&mut self.images[s - kept.start][places.clone()]);
+            }
+        }
+        d.sum();
+        to.for_each(|to| row.write(d, all, to));
+        if let Some((kept, places)) = images {
+            d.copy_means(&mut self.images[kept.len()][places]);
+        }
+    }
+}
+
 impl Stand {
     /// Reads a part of a film.
     pub fn of(film: &TermFilm, part: Part) -> Self {
-        let (slots, length) = (film.shape.slots, row_length(film.shape.replicates));
+        Self::with_images(film, part, None).0
+    }
+
+    /// The same, and from the same reading the means of some slots and of the sum of all slots, by pixel; pixels outside the part are
+    /// zero.
+    pub fn with_images(film: &TermFilm, part: Part, slots: Option<Range<usize>>) -> (Self, Vec<Image>) {
+        let shape = film.shape;
+        let images = slots.as_ref().map_or(0, |s| s.len() + 1);
         let band = |pixels: Range<usize>| {
-            let (mut d, mut row, mut rows) = (Deviations::default(), Row::default(), vec![]);
-            for piece in Piece::all(film, pixels).filter(|piece| piece.is_in(part)) {
-                d.begin(&piece);
-                let (mut all, start) = (0.0, rows.len());
-                rows.resize(start + (slots + 1) * length, 0.0);
-                let mut to = rows[start..].chunks_mut(length);
-                for (s, to) in to.by_ref().take(slots).enumerate() {
-                    d.slot(&piece, s);
-                    let added = piece.squares(s).sum();
-                    row.write(&d, added, to);
-                    d.add(&piece, s);
-                    all += added;
-                }
-                d.sum();
-                to.for_each(|to| row.write(&d, all, to));
+            let mut band = Band { images: vec![vec![[0.0; 3]; pixels.len()]; images], rows: vec![] };
+            let (mut d, mut row) = (Deviations::default(), Row::default());
+            for piece in Piece::all(film, pixels.clone()).filter(|piece| piece.is_in(part)) {
+                let places = piece.pixels.start - pixels.start..piece.pixels.end - pixels.start;
+                band.piece(&piece, &mut d, &mut row, slots.as_ref().map(|s| (s, places)));
             }
-            rows
+            band
         };
-        let rows: Vec<Vec<f64>> = bands(film.shape).into_par_iter().map(band).collect();
-        Self { spp: film.samples_of(part).start, rows: rows.concat(), largest: film.largest.clone() }
+        let bands: Vec<Band> = bands(shape).into_par_iter().map(band).collect();
+        let rows = bands.iter().flat_map(|b| &b.rows).copied().collect();
+        let image = |i: usize| bands.iter().flat_map(|b| &b.images[i]).copied().collect();
+        let stand = Self { spp: film.samples_of(part).start, rows, largest: film.largest.clone() };
+        (stand, (0..images).map(image).collect())
     }
 
     /// Number of numbers of the rows of a part of a film.

@@ -30,8 +30,8 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// A preview is drawn if the start, or the last one, is at least this long ago. A sheet takes some hundredths of a second to draw,
-/// so that previews cost a few percent of the run, and a run that ends at once draws none.
-const BETWEEN: Duration = Duration::from_millis(500);
+/// so that previews cost about a percent of the run, and a run that ends soon draws none.
+const BETWEEN: Duration = Duration::from_secs(2);
 
 /// Writes a preview after a pass: the contact sheet of the terms so far.
 pub fn preview(folder: &Path, caption: Caption, exposure: Exposure) -> impl Fn(&TermFilm) + Sync + Send + use<> {

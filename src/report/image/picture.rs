@@ -207,9 +207,18 @@ impl Picture {
     /// Repeats every pixel `factor` times in both directions.
     #[must_use]
     pub fn enlarged(&self, factor: usize) -> Self {
+        if factor == 1 {
+            return self.clone();
+        }
         let (width, height) = (self.width * factor, self.height * factor);
-        let pixel = |i: usize| self.pixels[i / width / factor * self.width + i % width / factor];
-        Self { width, height, pixels: (0..width * height).map(pixel).collect() }
+        let mut pixels = Vec::with_capacity(width * height);
+        for row in self.pixels.chunks(self.width.max(1)) {
+            let start = pixels.len();
+            row.iter().for_each(|&p| pixels.extend(std::iter::repeat_n(p, factor)));
+            let end = pixels.len();
+            (1..factor).for_each(|_| pixels.extend_from_within(start..end));
+        }
+        Self { width, height, pixels }
     }
 
     /// Copies `other` onto this picture with its upper left corner at `(x, y)`; it must fit.

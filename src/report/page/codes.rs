@@ -39,8 +39,11 @@ impl Means {
         let exponent = if largest > 0.0 { f64::from(largest).log2().floor() as i32 - 14 } else { 0 };
         let scale = f64::from(-exponent).exp2();
         let half = |v: f32| f16::from_f64(f64::from(v) * scale).to_bits().to_be_bytes();
-        let plane = |byte: usize, c: usize| pixels.iter().map(move |p| half(p[c])[byte]);
-        let bytes = (0..2).flat_map(|byte| (0..3).flat_map(move |c| plane(byte, c))).collect();
+        let halves: Vec<[[u8; 2]; 3]> = pixels.iter().map(|p| p.map(half)).collect();
+        let mut bytes = Vec::with_capacity(6 * pixels.len());
+        for byte in 0..2 {
+            (0..3).for_each(|c| bytes.extend(halves.iter().map(|p| p[c][byte])));
+        }
         Self { exponent, bytes }
     }
 }
@@ -65,8 +68,10 @@ impl Logarithms {
     /// The codes of an image. Values more than `octaves` powers of two below the largest get the smallest code.
     /// Steps are not smaller than `finest`: digits that are noise do not compress.
     pub fn of(pixels: &[[f32; 3]], octaves: f64, finest: f64) -> Self {
-        let logs = pixels.iter().flatten().filter(|v| v.is_finite() && **v > 0.0).map(|v| f64::from(*v).log2());
-        let (low, high) = logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        let positive = pixels.iter().flatten().filter(|v| v.is_finite() && **v > 0.0);
+        let ends = positive.fold((f32::INFINITY, 0.0f32), |(a, b), &v| (a.min(v), b.max(v)));
+        // without a positive value the lower end is infinite and the upper one −∞
+        let (low, high) = (f64::from(ends.0).log2(), f64::from(ends.1).log2());
         // an image without a positive value has only the codes of zero and of what is not finite
         let lowest = if high >= low { low.max(high - octaves) } else { 0.0 };
         let step = if high > lowest { ((high - lowest) / (LAST - 1.0)).max(finest) } else { 0.0 };
@@ -78,8 +83,9 @@ impl Logarithms {
             v => (1.0 + ((f64::from(v).log2() - lowest) / step).round()).clamp(1.0, LAST) as u8,
         };
         let codes: Vec<[u8; 3]> = pixels.iter().map(|p| p.map(code)).collect();
-        let plane = |c: usize| codes.iter().map(move |p| if c == 0 { p[0] } else { p[c].wrapping_sub(p[0]) });
-        Self { lowest, step, bytes: (0..3).flat_map(plane).collect() }
+        let mut bytes: Vec<u8> = codes.iter().map(|p| p[0]).collect();
+        (1..3).for_each(|c| bytes.extend(codes.iter().map(|p| p[c].wrapping_sub(p[0]))));
+        Self { lowest, step, bytes }
     }
 }
 

@@ -282,6 +282,9 @@ impl Data {
         end: impl Fn(f64, f64) -> f64,
     ) -> Vec<[f32; 3]> {
         let (n, [w, h]) = (self.reduced, self.full);
+        if n == 1 {
+            return pixels.to_vec();
+        }
         let block = |x: usize, y: usize| {
             let (mut sum, mut count) = ([0.0; 3], 0.0);
             for (v, u) in (y * n..((y + 1) * n).min(h)).flat_map(|v| (x * n..((x + 1) * n).min(w)).map(move |u| (v, u)))
