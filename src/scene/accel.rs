@@ -5,23 +5,21 @@
 //! rays in very small scenes go without the tree: [`few`](super::few).
 
 use super::few::Few;
+use super::front::Front;
 use super::rounding::{EPSILON, WIDER};
 use super::shape::{Hit, Shape};
 use super::vertex::Rays;
-use super::wide::{InstructionSet, Lanes, Task, Wide};
+use super::wide::{Closest, InstructionSet, Lanes, Occluded, Task, Wide};
 use glam::{DVec3, Vec3};
+use std::cell::Cell;
 
 pub(crate) struct Accel {
     pub(crate) shapes: Vec<Shape>,
     wide: Wide,
     few: Option<Few>,
+    front: Option<Front>,
     best: InstructionSet,
 }
-
-/// Room for the stack of a single ray on the stack of the program: enough for trees of millions of primitives, and enough for
-/// those of small scenes, for which clearing more would take as long as a part of the ray.
-const ROOM: usize = 96;
-const SMALL_ROOM: usize = 32;
 
 /// The bounding box of a primitive, enlarged so that the rounding of the box test never loses a hit. The margin is 4 ε times
 /// the largest coordinate from which a ray may start, plus the distance by which hits may lie beyond the edges of the
@@ -36,18 +34,20 @@ pub(crate) fn widened([low, high]: [DVec3; 2], farthest: f64, touch: f64) -> [Ve
 impl Accel {
     /// Builds the tree; `bounds` are the [`widened`] boxes of the shapes.
     pub(crate) fn new(shapes: Vec<Shape>, bounds: Vec<[Vec3; 2]>) -> Self {
-        let (wide, few) = (Wide::new(&shapes, bounds), Few::new(&shapes));
-        Self { shapes, wide, few, best: InstructionSet::best() }
+        let few = Few::new(&shapes);
+        let front = if few.is_none() { Front::of(&shapes, &bounds) } else { None };
+        let wide = Wide::new(&shapes, bounds, front.as_ref().map_or(&[], Front::prims));
+        Self { shapes, wide, few, front, best: InstructionSet::best() }
     }
 
     /// The nearest hit with t > 0 on the ray `o + t·d`.
     pub(crate) fn closest(&self, o: Vec3, d: Vec3) -> Hit {
-        self.best.run(Closest { accel: self, o, d })
+        self.best.run(ClosestOne { accel: self, o, d })
     }
 
     /// Returns true if a primitive lies on `o + t·d` with 0 < t < 1.
     pub(crate) fn occluded(&self, o: Vec3, d: Vec3) -> bool {
-        self.best.run(Occluded { accel: self, o, d })
+        self.best.run(OccludedOne { accel: self, o, d })
     }
 
     /// The nearest hits of the first `n` rays: writes `rays.t` and `rays.prim`, which is `u32::MAX` if there is none.
@@ -72,51 +72,45 @@ impl Accel {
     }
 }
 
-struct Closest<'a> {
+struct ClosestOne<'a> {
     accel: &'a Accel,
     o: Vec3,
     d: Vec3,
 }
 
-impl Task for Closest<'_> {
+impl Task for ClosestOne<'_> {
     type Output = Hit;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> Hit {
-        let Self { accel: Accel { shapes, wide, few, .. }, o, d } = self;
+        let Self { accel: Accel { shapes, wide, few, front, .. }, o, d } = self;
         if let Some(few) = few {
             return few.closest(shapes, o, d);
         }
-        if wide.waiting <= SMALL_ROOM {
-            return wide.closest(l, shapes, o, d, &mut [0; SMALL_ROOM]);
-        }
-        if wide.waiting <= ROOM {
-            return wide.closest(l, shapes, o, d, &mut [0; ROOM]);
-        }
-        wide.closest(l, shapes, o, d, &mut vec![0; wide.waiting])
+        let best = if let Some(front) = front { front.closest(shapes, o, d) } else { Hit::NONE };
+        wide.search_one(l, shapes, Closest::new(o, d, best))
     }
 }
 
-struct Occluded<'a> {
+struct OccludedOne<'a> {
     accel: &'a Accel,
     o: Vec3,
     d: Vec3,
 }
 
-impl Task for Occluded<'_> {
+impl Task for OccludedOne<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> bool {
-        let Self { accel: Accel { shapes, wide, few, .. }, o, d } = self;
+        let Self { accel: Accel { shapes, wide, few, front, .. }, o, d } = self;
         if let Some(few) = few {
             return few.occluded(shapes, o, d);
         }
-        if wide.waiting <= SMALL_ROOM {
-            return wide.occluded(l, shapes, o, d, &mut [0; SMALL_ROOM]);
+        if let Some(front) = front
+            && front.occluded(shapes, o, d)
+        {
+            return true;
         }
-        if wide.waiting <= ROOM {
-            return wide.occluded(l, shapes, o, d, &mut [0; ROOM]);
-        }
-        wide.occluded(l, shapes, o, d, &mut vec![0; wide.waiting])
+        wide.search_one(l, shapes, Occluded::new(o, d))
     }
 }
 
@@ -130,12 +124,30 @@ impl Task for ClosestWave<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
-        let Self { accel: Accel { shapes, wide, .. }, rays, n } = self;
-        let mut stack = vec![0; wide.waiting];
-        for i in 0..n {
-            let hit = wide.closest(l, shapes, rays.o.get(i), rays.d.get(i), &mut stack);
-            (rays.t[i], rays.prim[i]) = (hit.t, hit.prim);
+        let Self { accel: Accel { shapes, wide, front, .. }, rays, n } = self;
+        match front {
+            Some(front) => front.closest_wave(rays, n),
+            None => rays.prim[..n].fill(u32::MAX),
         }
+        let Rays { o, d, t, prim, .. } = rays;
+        let (t, prim) =
+            (Cell::from_mut(&mut t[..n]).as_slice_of_cells(), Cell::from_mut(&mut prim[..n]).as_slice_of_cells());
+        wide.search_all(
+            l,
+            shapes,
+            n,
+            #[inline(always)]
+            |i| {
+                let prim = prim[i].get();
+                let best = if prim == u32::MAX { Hit::NONE } else { Hit { t: t[i].get(), prim } };
+                Closest::new(o.get(i), d.get(i), best)
+            },
+            #[inline(always)]
+            |i, hit| {
+                t[i].set(hit.t);
+                prim[i].set(hit.prim);
+            },
+        );
     }
 }
 
@@ -149,11 +161,21 @@ impl Task for OccludedWave<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
-        let Self { accel: Accel { shapes, wide, .. }, rays, n } = self;
-        let mut stack = vec![0; wide.waiting];
-        for &ray in &rays.list[..n] {
-            let ray = ray as usize;
-            rays.prim[ray] = u32::from(wide.occluded(l, shapes, rays.o.get(ray), rays.d.get(ray), &mut stack));
+        let Self { accel: Accel { shapes, wide, front, .. }, rays, n } = self;
+        let mut free = rays.list[..n].to_vec();
+        if let Some(front) = front {
+            front.occluded_wave(rays, n);
+            free.retain(|&ray| rays.prim[ray as usize] == 0);
         }
+        let Rays { o, d, prim, .. } = rays;
+        wide.search_all(
+            l,
+            shapes,
+            free.len(),
+            #[inline(always)]
+            |i| Occluded::new(o.get(free[i] as usize), d.get(free[i] as usize)),
+            #[inline(always)]
+            |i, blocked| prim[free[i] as usize] = u32::from(blocked),
+        );
     }
 }

@@ -10,7 +10,7 @@ use glam::Vec3;
 
 /// The most parallelograms, and the most other shapes, for which this is faster than the tree.
 const MOST_FLATS: usize = 2 * LANES;
-const MOST_OTHERS: usize = 4;
+pub(super) const MOST_OTHERS: usize = 4;
 
 /// Sixteen parallelograms.
 #[derive(Clone, Debug)]
@@ -34,15 +34,23 @@ struct Look {
 }
 
 impl Few {
-    /// The shapes, if they are few and no triangles.
+    /// All shapes, if they are few and no triangles.
     pub(crate) fn new(shapes: &[Shape]) -> Option<Self> {
+        let few = Self::of(shapes, (0..shapes.len() as u32).take(MOST_FLATS + MOST_OTHERS + 1));
+        let flats = few.blocks.iter().flat_map(|b| &b.prim).filter(|&&prim| prim != u32::MAX).count();
+        let all = flats + few.others.len() == shapes.len();
+        (all && flats <= MOST_FLATS && few.others.len() <= MOST_OTHERS).then_some(few)
+    }
+
+    /// Some of the shapes; triangles among them are left out.
+    pub(crate) fn of(shapes: &[Shape], prims: impl Iterator<Item = u32>) -> Self {
         let mut few = Self::default();
         let mut flats = vec![];
-        for (prim, shape) in shapes.iter().enumerate() {
-            match shape {
-                Shape::Flat(s) => flats.push((prim as u32, s)),
-                Shape::Ball(_) | Shape::Disc(_) => few.others.push(prim as u32),
-                Shape::Triangle(_) => return None,
+        for prim in prims {
+            match &shapes[prim as usize] {
+                Shape::Flat(s) => flats.push((prim, s)),
+                Shape::Ball(_) | Shape::Disc(_) => few.others.push(prim),
+                Shape::Triangle(_) => {}
             }
         }
         for flats in flats.chunks(LANES) {
@@ -54,7 +62,7 @@ impl Few {
             }
             few.blocks.push(block);
         }
-        (flats.len() <= MOST_FLATS && few.others.len() <= MOST_OTHERS).then_some(few)
+        few
     }
 
     /// The nearest hit with t > 0; of two at the same distance the one with the lower number.

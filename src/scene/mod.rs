@@ -29,6 +29,7 @@ pub mod export;
 mod faces;
 mod few;
 mod flat;
+mod front;
 mod groups;
 pub mod image_header;
 mod light_lanes;

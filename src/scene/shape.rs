@@ -252,12 +252,13 @@ impl Disc {
     }
 }
 
-/// A primitive, ready for rays.
-#[derive(Clone, Copy, Debug)]
+/// A primitive, ready for rays. There may be millions of triangles, and the other kinds need more memory than they: a reference
+/// keeps all of them as small as a triangle.
+#[derive(Clone, Debug)]
 pub(crate) enum Shape {
-    Flat(Flat),
+    Flat(Box<Flat>),
     Triangle(Triangle),
-    Ball(Ball),
+    Ball(Box<Ball>),
     Disc(Disc),
 }
 
@@ -265,9 +266,9 @@ impl Shape {
     /// Prepares a primitive for rays. `touch` is the largest difference of two corners that are meant to be the same, m.
     pub(crate) fn new(p: &Primitive, touch: f64) -> Self {
         match *p {
-            Primitive::Parallelogram { origin, edge_u, edge_v } => Self::Flat(Flat::new(origin, edge_u, edge_v, touch)),
+            Primitive::Parallelogram { origin, edge_u, edge_v } => Self::Flat(Box::new(Flat::new(origin, edge_u, edge_v, touch))),
             Primitive::Triangle(p) => Self::Triangle(Triangle::new(p)),
-            Primitive::Sphere { center, radius, z, inward } => Self::Ball(Ball::new(center, radius, z, inward)),
+            Primitive::Sphere { center, radius, z, inward } => Self::Ball(Box::new(Ball::new(center, radius, z, inward))),
             Primitive::Disk { center, normal, radius } => Self::Disc(Disc {
                 center: center.as_vec3(),
                 n: normal.as_vec3(),

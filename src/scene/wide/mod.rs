@@ -6,6 +6,7 @@
 //! | a node: eight boxes | `node` |
 //! | a leaf: eight triangles | `block` |
 //! | how a ray goes through the tree | `tree` |
+//! | how two rays take turns | `two` |
 //! | building | `build` |
 //!
 //! Shapes that are not triangles are leaves of their own, tested by [`Shape::meet`](super::shape::Shape::meet).
@@ -15,6 +16,7 @@ mod build;
 mod lanes;
 mod node;
 mod tree;
+mod two;
 
 pub(crate) use lanes::{InstructionSet, Lanes, Task};
-pub(crate) use tree::Wide;
+pub(crate) use tree::{Closest, Occluded, Wide};

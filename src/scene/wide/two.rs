@@ -1,0 +1,54 @@
+//! Two rays at a time go through the tree in turns: while one waits for memory, the other goes on.
+//!
+//! ```text
+//! ray 0, step 1 → ray 1, step 1 → ray 0, step 2 → ray 1, step 2 → …        a ray that is done makes room for the next one
+//! ```
+//!
+//! What a step needs next is known only at its end, and a large tree is not in the fast caches. The steps of two rays do not depend
+//! on each other, so a processor begins the second while the first still waits. Each ray gets the same bits as alone (tested).
+//!
+//! With three or four rays, rays that begin side by side take longer than with two, and only those of a large tree are as fast
+//! (`DESIGN.md`, performance).
+
+use super::super::shape::Shape;
+use super::lanes::Lanes;
+use super::tree::{Search, Wide};
+
+impl Wide {
+    /// The answers for rays 0, 1, … < n: `begin` returns the search for one, `done` gets its number and answer.
+    #[inline(always)]
+    pub(crate) fn search_all<S: Search>(
+        &self,
+        l: impl Lanes,
+        shapes: &[Shape],
+        n: usize,
+        begin: impl Fn(usize) -> S,
+        mut done: impl FnMut(usize, S::Answer),
+    ) {
+        let mut memory = vec![0; 2 * self.waiting];
+        let (first, second) = memory.split_at_mut(self.waiting);
+        if n < 2 {
+            for i in 0..n {
+                done(i, self.search(l, shapes, begin(i), first));
+            }
+            return;
+        }
+        let mut turns = [(0, begin(0), first), (1, begin(1), second)];
+        let mut next = 2;
+        let alone = 'turns: loop {
+            for (turn, (i, search, stack)) in turns.iter_mut().enumerate() {
+                if search.step(l, self, shapes, stack) {
+                    done(*i, search.answer());
+                    if next == n {
+                        break 'turns 1 - turn;
+                    }
+                    (*i, *search) = (next, begin(next));
+                    next += 1;
+                }
+            }
+        };
+        let (i, search, stack) = &mut turns[alone];
+        while !search.step(l, self, shapes, stack) {}
+        done(*i, search.answer());
+    }
+}
