@@ -9,9 +9,9 @@
 //! | A | surface area of the box of a shape: how likely a ray meets it | [`Front::of`] |
 //! | A₀ | the same of the box of the scene | |
 //!
-//! A shape is taken in front if A > A₀/1024 and it is no triangle; the largest parallelograms, and the largest spheres and disks, as
-//! many as [`few`](super::few) tests at once for a single ray. The formulas are those of the shapes themselves, so hits have the same
-//! bits as through the tree (tested).
+//! A shape is in front if it is no triangle and A > A₀/1024: at most 16 parallelograms and 4 spheres or disks, the largest ones. For
+//! a single ray, [`few`](super::few) tests them. All use the formulas of the shapes, so hits have the same bits as through the tree
+//! (tested).
 
 use super::few::Few;
 use super::shape::{Hit, Shape};

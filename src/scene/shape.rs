@@ -266,9 +266,13 @@ impl Shape {
     /// Prepares a primitive for rays. `touch` is the largest difference of two corners that are meant to be the same, m.
     pub(crate) fn new(p: &Primitive, touch: f64) -> Self {
         match *p {
-            Primitive::Parallelogram { origin, edge_u, edge_v } => Self::Flat(Box::new(Flat::new(origin, edge_u, edge_v, touch))),
+            Primitive::Parallelogram { origin, edge_u, edge_v } => {
+                Self::Flat(Box::new(Flat::new(origin, edge_u, edge_v, touch)))
+            }
             Primitive::Triangle(p) => Self::Triangle(Triangle::new(p)),
-            Primitive::Sphere { center, radius, z, inward } => Self::Ball(Box::new(Ball::new(center, radius, z, inward))),
+            Primitive::Sphere { center, radius, z, inward } => {
+                Self::Ball(Box::new(Ball::new(center, radius, z, inward)))
+            }
             Primitive::Disk { center, normal, radius } => Self::Disc(Disc {
                 center: center.as_vec3(),
                 n: normal.as_vec3(),

@@ -13,9 +13,9 @@ const LEAST: f32 = f32::from_bits(1);
 /// The largest number below 1.
 const BELOW_ONE: f32 = 1.0 - 0.5 * f32::EPSILON;
 
-/// Up to eight triangles.
+/// Up to eight triangles. The corners, which every visit reads, begin with a cache line.
 #[derive(Clone)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 pub(crate) struct Block {
     /// `[corner][axis][triangle]`. A free place has corners that are not a number and is never met.
     corners: [[[f32; N]; 3]; 3],
