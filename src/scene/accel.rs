@@ -1,8 +1,8 @@
 //! Ray tracing with a tree of boxes: the first surface on a ray, and a test whether a segment is free.
 //!
 //! The tree is [`wide`](super::wide). If two primitives are hit at the same distance, the one with the lower number is
-//! returned, whatever the order of traversal. A wave of rays shares one choice of the instruction set and one stack. Single
-//! rays in very small scenes go without the tree: [`few`](super::few).
+//! returned, whatever the order of traversal. A wave of rays shares one choice of the instruction set. Single rays in very small
+//! scenes go without the tree: [`few`](super::few). Large shapes are tested before it: [`front`](super::front).
 
 use super::few::Few;
 use super::front::Front;

@@ -7,8 +7,7 @@
 //! What a step needs next is known only at its end, and a large tree is not in the fast caches. The steps of two rays do not depend
 //! on each other, so a processor begins the second while the first still waits. Each ray gets the same bits as alone (tested).
 //!
-//! With three or four rays, rays that begin side by side take longer than with two, and only those of a large tree are as fast
-//! (`DESIGN.md`, performance).
+//! Three or four rays in turns were slower for camera rays, and no faster for others (`DESIGN.md`, performance).
 
 use super::super::shape::Shape;
 use super::lanes::Lanes;
