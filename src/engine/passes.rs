@@ -279,7 +279,8 @@ impl Between for Passes<'_, '_> {
 }
 
 impl Passes<'_, '_> {
-    /// Stores the variances of the film after a pass, and early images of some slots. The film is read once for both.
+    /// After a pass, stores the variances of the film if they are wanted, and early images of some slots. The film is read once for
+    /// both; after the last pass the variances have been read with all other statistics.
     fn store(&mut self, film: &TermFilm, part: Part, mut variances: bool, early: Option<Range<usize>>) {
         if let (Some((_, read)), true) = (&self.last, variances) {
             self.snapshots.push(read.snapshot.clone());
@@ -288,9 +289,8 @@ impl Passes<'_, '_> {
         if !variances && early.is_none() {
             return;
         }
-        let keeps_early = early.is_some();
         let (stand, images) = Stand::with_images(film, part, early);
-        if keeps_early {
+        if !images.is_empty() {
             self.history.early.push(Early::new(film.samples_of(Part::WHOLE).end, images));
         }
         if !variances {

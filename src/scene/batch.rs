@@ -10,7 +10,7 @@ use glam::Vec3;
 /// A way to find what rays meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// The tree, all rays of a batch at once.
+    /// The tree, all rays of a batch at once. Large shapes go in packets before the tree, here and in the other ways through it.
     Tree,
     /// One ray at a time: through the tree, or in lanes in a very small scene.
     Single,

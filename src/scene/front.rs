@@ -1,15 +1,17 @@
 //! Large shapes in front of the tree: every ray is tested against them first, sixteen rays at once, and the tree holds the rest.
 //!
 //! ```text
-//! a wall of a room: its box is met by most rays      in the tree: a visit for each of them      in a packet: a sixteenth of one test
+//! in front if  A > A₀/1024      first hit = the nearer of (in front, tree)      blocked = in front or tree
 //! ```
+//!
+//! Most rays meet the box of a wall, and every shadow ray the box of a lamp. In the tree, each ray would visit them alone.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
 //! | A | surface area of the box of a shape: how likely a ray meets it | [`Front::of`] |
-//! | A₀ | the same of the box of the scene | |
+//! | A₀ | the same of the box of the scene | [`Front::of`] |
 //!
-//! A shape is in front if it is no triangle and A > A₀/1024: at most 16 parallelograms and 4 spheres or disks, the largest ones. For
+//! Triangles stay in the tree. Of the other shapes, at most 16 parallelograms and 4 spheres or disks are in front, the largest ones. For
 //! a single ray, [`few`](super::few) tests them. All use the formulas of the shapes, so hits have the same bits as through the tree
 //! (tested).
 
@@ -25,9 +27,11 @@ const LARGE: f32 = 1.0 / 1024.0;
 
 /// The shapes in front.
 pub(crate) struct Front {
+    /// For single rays.
     few: Few,
+    /// For packets: copies, side by side.
     shapes: Vec<Shape>,
-    /// Their numbers, in ascending order.
+    /// Their numbers in the scene, in ascending order.
     prims: Vec<u32>,
 }
 

@@ -252,8 +252,8 @@ impl Disc {
     }
 }
 
-/// A primitive, ready for rays. There may be millions of triangles, and the other kinds need more memory than they: a reference
-/// keeps all of them as small as a triangle.
+/// A primitive, ready for rays. Parallelograms and spheres need more memory than triangles. They are stored by reference, so that a
+/// mesh of millions of triangles does not pay for them.
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     Flat(Box<Flat>),

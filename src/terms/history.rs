@@ -66,8 +66,8 @@ const TERMS: usize = 2;
 /// Larger films keep no early images: they would fill the memory.
 const PIXELS: usize = 1 << 18;
 
-/// The slots of which images are kept after a pass: none unless the number of samples is 16 times a power of 4, and a later pass
-/// will follow.
+/// The slots of which early images are kept after this pass. They are kept if the number of samples is 16 times a power of 4 and a
+/// later pass will follow.
 pub fn kept(film: &TermFilm, planned: u32) -> Option<Range<usize>> {
     let spp = film.samples_of(Part::WHOLE).end;
     let is_one = spp >= 16 && spp.is_power_of_two() && spp.trailing_zeros().is_multiple_of(2);
@@ -78,10 +78,10 @@ pub fn kept(film: &TermFilm, planned: u32) -> Option<Range<usize>> {
 }
 
 impl Early {
-    /// Images after so many samples: of the terms that are [`kept`], and of all terms and the tail.
-    pub fn new(spp: u32, mut terms: Vec<Vec<[f32; 3]>>) -> Self {
-        let whole = terms.pop().unwrap_or_default();
-        Self { spp, terms, whole }
+    /// The images after so many samples: of the terms that are [`kept`]; the last one is of all terms and the tail.
+    pub fn new(spp: u32, mut images: Vec<Vec<[f32; 3]>>) -> Self {
+        let whole = images.pop().unwrap_or_default();
+        Self { spp, terms: images, whole }
     }
 
     /// All its images.

@@ -79,7 +79,7 @@ struct Band {
 }
 
 impl Band {
-    /// Reads a piece, and copies to their places the means of some slots and of the sum of all slots.
+    /// Reads a piece. `images` says of which slots the means are kept, and the places of these pixels in the band.
     fn piece(
         &mut self,
         piece: &Piece<'_>,
@@ -117,8 +117,8 @@ impl Stand {
         Self::with_images(film, part, None).0
     }
 
-    /// The same, and from the same reading the means of some slots and of the sum of all slots, by pixel; pixels outside the part are
-    /// zero.
+    /// Reads a part of a film, and takes from the same reading the images of some slots and, as the last one, of the sum of all slots.
+    /// Without `slots` there are no images. Pixels outside the part are zero.
     pub fn with_images(film: &TermFilm, part: Part, slots: Option<Range<usize>>) -> (Self, Vec<Image>) {
         let shape = film.shape;
         let images = slots.as_ref().map_or(0, |s| s.len() + 1);

@@ -43,7 +43,7 @@ impl Codes {
     /// The code of a value in [0, 1].
     #[inline]
     pub(super) fn of(&self, v: f64) -> u8 {
-        // without a branch: neighbouring pixels have thresholds in an order that no processor foresees
+        // two comparisons and no branch: a processor cannot predict the codes of noisy pixels
         let first = self.first[((v * PARTS as f64) as usize).min(PARTS - 1)];
         let next = usize::from(first);
         first + u8::from(self.thresholds[next] <= v) + u8::from(self.thresholds[next + 1] <= v)

@@ -283,6 +283,7 @@ impl Data {
     ) -> Vec<[f32; 3]> {
         let (n, [w, h]) = (self.reduced, self.full);
         if n == 1 {
+            // a pixel is the mean of itself, and an error the root of its square
             return pixels.to_vec();
         }
         let block = |x: usize, y: usize| {

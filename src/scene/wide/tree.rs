@@ -27,8 +27,8 @@ pub(crate) struct Wide {
 pub(crate) trait Search {
     /// What is asked for.
     type Answer;
-    /// Visits one child and chooses the next. Returns true if the answer is known. `stack` has room for [`Wide::waiting`] entries,
-    /// and is that of the steps before.
+    /// Visits one child and chooses the next. Returns true if the answer is known. `stack` has room for [`Wide::waiting`] entries; it
+    /// must be the same for all steps of a search.
     fn step<L: Lanes>(&mut self, l: L, tree: &Wide, shapes: &[Shape], stack: &mut [u64]) -> bool;
     /// The answer.
     fn answer(&self) -> Self::Answer;
@@ -148,7 +148,9 @@ pub(crate) struct Occluded {
     o: Vec3,
     d: Vec3,
     blocked: bool,
+    /// Number of children that wait on the stack.
     top: usize,
+    /// The child that is visited next.
     current: u32,
 }
 
