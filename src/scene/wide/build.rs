@@ -15,8 +15,8 @@
 //! Reference: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs* (2017), sec. 4.
 
 use super::super::shape::Shape;
-use super::block::Block;
 use super::lanes::N;
+use super::leaves::Leaves;
 use super::node::{LEAF, Node, SINGLE};
 use super::tree::Wide;
 use glam::Vec3;
@@ -25,7 +25,7 @@ use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2};
 /// A subtree of the two-wide tree.
 #[derive(Clone, Copy)]
 struct Part {
-    /// Places of a block that it needs; a shape that is no triangle fills a block.
+    /// Places of a leaf that it needs; a shape that is no triangle fills a leaf.
     places: u32,
     /// `cost[i − 1]` is C(n, i).
     cost: [f32; N],
@@ -46,7 +46,7 @@ impl Wide {
     /// shapes, with margins.
     pub(crate) fn new(shapes: &[Shape], bounds: Vec<[Vec3; 2]>, without: &[u32]) -> Self {
         if shapes.len() == without.len() {
-            return Self { nodes: vec![Node::EMPTY], blocks: vec![], waiting: 0 };
+            return Self { nodes: vec![Node::EMPTY], leaves: Leaves::with_capacity(0), waiting: 0 };
         }
         let mut boxes: Vec<Aabb> = bounds.into_iter().map(|b| Aabb::new(b[0].into(), b[1].into())).collect();
         for &prim in without.iter().rev() {
@@ -139,9 +139,9 @@ impl Collapse<'_> {
 
     fn collapse(mut self) -> Wide {
         self.costs();
-        // a block of a mesh holds about five triangles: room for all blocks, so that they are never copied
-        let blocks = Vec::with_capacity(self.parts[0].places as usize / 4);
-        let mut wide = Wide { nodes: vec![], blocks, waiting: 0 };
+        // room for all triangles, so that they are never copied
+        let leaves = Leaves::with_capacity(self.shapes.len());
+        let mut wide = Wide { nodes: vec![], leaves, waiting: 0 };
         // subtrees that become nodes, and their places in their parents
         let (mut todo, mut parts) = (vec![(0, None)], vec![]);
         while let Some((n, place)) = todo.pop() {
@@ -162,7 +162,7 @@ impl Collapse<'_> {
                     node.planes[axis][1][i] = b.max[axis];
                 }
                 if self.parts[c].left[0] == 1 {
-                    node.child[i] = self.leaf(c, &mut wide.blocks);
+                    node.child[i] = self.leaf(c, &mut wide.leaves);
                 } else {
                     todo.push((c, Some((at, i))));
                 }
@@ -174,8 +174,8 @@ impl Collapse<'_> {
     }
 
     /// The number of a leaf with the shapes of subtree `n`.
-    fn leaf(&self, n: usize, blocks: &mut Vec<Block>) -> u32 {
-        let (mut block, mut todo, mut i) = (Block::EMPTY, vec![n], 0);
+    fn leaf(&self, n: usize, leaves: &mut Leaves) -> u32 {
+        let (mut triangles, mut todo) = (vec![], vec![n]);
         while let Some(n) = todo.pop() {
             if let Some([l, r]) = self.halves(n) {
                 todo.extend([r, l]);
@@ -183,11 +183,9 @@ impl Collapse<'_> {
             }
             let prim = self.prim(n);
             let Shape::Triangle(t) = &self.shapes[prim as usize] else { return LEAF | SINGLE | prim };
-            block.put(i, prim, t);
-            i += 1;
+            triangles.push((prim, t));
         }
-        blocks.push(block);
-        LEAF | (blocks.len() - 1) as u32
+        LEAF | leaves.push(&triangles)
     }
 }
 

@@ -4,16 +4,16 @@
 //! |---|---|
 //! | operations on lanes, and the choice of the instruction set | `lanes` |
 //! | a node: eight boxes | `node` |
-//! | a leaf: eight triangles | `block` |
+//! | the leaves: up to eight triangles each | `leaves` |
 //! | how a ray goes through the tree | `tree` |
 //! | how two rays take turns | `two` |
 //! | building | `build` |
 //!
 //! Shapes that are not triangles are leaves of their own, tested by [`Shape::meet`](super::shape::Shape::meet).
 
-mod block;
 mod build;
 mod lanes;
+mod leaves;
 mod node;
 mod tree;
 mod two;

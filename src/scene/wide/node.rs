@@ -20,9 +20,9 @@
 use super::lanes::{Lanes, N, Pack};
 use glam::Vec3;
 
-/// Marks a child that is no node: the rest of its number is a block.
+/// Marks a child that is no node: the rest of its number is a leaf of triangles.
 pub(crate) const LEAF: u32 = 1 << 31;
-/// Marks a leaf that is no block: the rest of its number is a primitive.
+/// Marks a leaf of one shape that is no triangle: the rest of its number is that primitive.
 pub(crate) const SINGLE: u32 = 1 << 30;
 
 /// The largest distance that can be met. Just below the largest number, so that it can be enlarged, and less than the
@@ -37,7 +37,7 @@ const LEAST: f32 = 1e-37;
 pub(crate) struct Node {
     /// `[axis][low, high][child]`. A free place has low = ∞ and high = −∞ and is never met.
     pub(crate) planes: [[[f32; N]; 2]; 3],
-    /// A node; or [`LEAF`] and a block; or [`LEAF`], [`SINGLE`] and a primitive.
+    /// A node; or [`LEAF`] and a leaf of triangles; or [`LEAF`], [`SINGLE`] and a primitive.
     pub(crate) child: [u32; N],
 }
 

@@ -10,15 +10,15 @@
 //! sort as integers.
 
 use super::super::shape::{Hit, Shape};
-use super::block::Block;
 use super::lanes::{Lanes, N};
+use super::leaves::Leaves;
 use super::node::{FARTHEST, LEAF, Node, SINGLE, Slabs};
 use glam::Vec3;
 
 /// A tree of eight-wide nodes over shapes; see [`super`].
 pub(crate) struct Wide {
     pub(crate) nodes: Vec<Node>,
-    pub(crate) blocks: Vec<Block>,
+    pub(crate) leaves: Leaves,
     /// Largest number of children that wait at one time.
     pub(crate) waiting: usize,
 }
@@ -114,7 +114,7 @@ impl Search for Closest {
             }
         } else {
             if *current & SINGLE == 0 {
-                tree.blocks[(*current & !LEAF) as usize].nearest(l, *o, *d, best);
+                tree.leaves.nearest(l, *current & !LEAF, *o, *d, best);
             } else {
                 let prim = *current & !(LEAF | SINGLE);
                 let (t, met) = shapes[prim as usize].meet(*o, *d);
@@ -183,7 +183,7 @@ impl Search for Occluded {
                 return false;
             }
         } else if *current & SINGLE == 0 {
-            *blocked = tree.blocks[(*current & !LEAF) as usize].occluded(l, *o, *d);
+            *blocked = tree.leaves.occluded(l, *current & !LEAF, *o, *d);
         } else {
             let (t, met) = shapes[(*current & !(LEAF | SINGLE)) as usize].meet(*o, *d);
             *blocked = met && t < 1.0;
