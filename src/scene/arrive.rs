@@ -10,17 +10,39 @@
 //! | t, primitive | what it meets first | [`Met`] |
 //! | x, n, side | what it sees | `Rays::q`, `m`, `side` |
 //!
-//! Planes of parallelograms and disks, and spheres, are gathered from [`Table`] into lanes. Triangles of small scenes, and hits
-//! near the edge of a parallelogram, follow one by one. All call the functions of [`shape`](super::shape), so that the bits are
+//! In small scenes, planes of parallelograms and disks, and spheres, are gathered from [`Table`] into lanes. Triangles, and hits
+//! near the edge of a parallelogram, follow one by one. In larger scenes, each ray takes the [`Sheet`] of its shape. All call the functions of [`shape`](super::shape), so that the bits are
 //! those of single rays.
 
 use super::packets::{self, MOST, Met};
 use super::rounding::onto;
-use super::shape::{self, Ball, Hit, Shape, Triangle};
+use super::shape::{self, Ball, Hit, Shape};
+use super::sheet::Sheet;
 use super::sixteen::{LANES, Lane, Lane3, ZERO3, get, load3, put, put_if, store3};
 use super::vertex::{Rays, Side, Vertex};
 use glam::Vec3;
 use pulp::{Arch, Simd};
+
+/// How the rays of a wave are traced, and what finds where they arrive.
+#[derive(Debug)]
+pub(crate) enum Arrivals {
+    /// In packets, in a scene of few shapes.
+    ByPackets(Box<Table>),
+    /// Through the tree; a sheet for each shape.
+    ByTree(Vec<Sheet>),
+}
+
+impl Arrivals {
+    /// What is faster for these shapes.
+    pub(crate) fn new(shapes: &[Shape]) -> Self {
+        if packets::suit(shapes) { Self::ByPackets(Box::new(Table::new(shapes))) } else { Self::by_tree(shapes) }
+    }
+
+    /// Through the tree, also in a scene of few shapes.
+    pub(crate) fn by_tree(shapes: &[Shape]) -> Self {
+        Self::ByTree(shapes.iter().map(Sheet::new).collect())
+    }
+}
 
 /// Kinds of primitives.
 const FLAT: u32 = 0;
@@ -164,23 +186,29 @@ fn see_balls(table: &Table, (o, d, t): (&Lane3, &Lane3, &Lane), prim: &[u32; LAN
     }
 }
 
-/// Rays whose shapes are found together.
+/// Rays whose sheets are found together.
 const AHEAD: usize = 16;
 
-/// What the first `n` rays see in a scene of any size, from `rays.t` and `rays.prim`; like [`look_in_lanes`].
-pub(crate) fn see_one_by_one(shapes: &[Shape], rays: &mut Rays, n: usize, (nothing, beyond): (Side, f32)) {
+/// What the first `n` rays see in a scene of any size, from `rays.t` and `rays.prim`; like [`look_in_lanes`]. There is a sheet for each
+/// shape.
+pub(crate) fn see_by_sheets(
+    sheets: &[Sheet],
+    shapes: &[Shape],
+    rays: &mut Rays,
+    n: usize,
+    (nothing, beyond): (Side, f32),
+) {
     for first in (0..n).step_by(AHEAD) {
-        // the kinds of many shapes, before a branch depends on one: their memory is far away and is waited for once
-        let triangles: [Option<&Triangle>; AHEAD] =
-            std::array::from_fn(|j| match shapes.get(rays.prim[first + j] as usize) {
-                Some(Shape::Triangle(t)) => Some(t),
-                _ => None,
-            });
-        for (i, triangle) in (first..n).zip(triangles) {
+        // the memory of sixteen sheets, which is far away, is waited for once
+        let normals: [Vec3; AHEAD] =
+            std::array::from_fn(|j| sheets.get(rays.prim[first + j] as usize).map_or(Vec3::NAN, Sheet::normal));
+        for (i, normal) in (first..n).zip(normals) {
             let (o, d, hit) = (rays.o.get(i), rays.d.get(i), Hit { t: rays.t[i], prim: rays.prim[i] });
-            let v = match triangle {
-                Some(t) => vertex(t.settle(o + d * hit.t), t.n, d, hit.prim),
-                None if hit.prim != u32::MAX => arrive(shapes, o, d, hit),
+            let v = match sheets.get(hit.prim as usize) {
+                Some(sheet) => match sheet.settle(o + d * hit.t) {
+                    Some(p) => vertex(p, normal, d, hit.prim),
+                    None => arrive(shapes, o, d, hit),
+                },
                 None => Vertex { p: o + d * beyond, n: -d, omega: -d, side: nothing },
             };
             rays.q.set(i, v.p);

@@ -1,6 +1,7 @@
 //! Rays in a scene: the operator G of T = K G, for single rays, packets and waves. A ray gives the first visible surface; a
 //! segment is tested for occlusion.
 
+use super::arrive::Arrivals;
 use super::vertex::{ESCAPED, NOWHERE, Rays, Vertex};
 use super::{Scene, arrive, packets, rounding::offset_origin, rounding::segment, shape};
 use glam::Vec3;
@@ -29,15 +30,15 @@ impl Scene {
     #[doc(hidden)]
     #[must_use]
     pub fn one_by_one(mut self) -> Self {
-        (self.waves, self.table) = (false, None);
+        (self.waves, self.arrivals) = (false, Arrivals::by_tree(&self.accel.shapes));
         self
     }
 
     /// The nearest hits of the first `n` rays of a wave, in packets or through the tree: sets `rays.t` and `rays.prim`.
     fn closest_wave(&self, rays: &mut Rays, n: usize) {
-        match self.table {
-            Some(_) => packets::closest(&self.accel.shapes, rays, n),
-            None => self.accel.closest_wave(rays, n),
+        match self.arrivals {
+            Arrivals::ByPackets(_) => packets::closest(&self.accel.shapes, rays, n),
+            Arrivals::ByTree(_) => self.accel.closest_wave(rays, n),
         }
     }
 
@@ -56,11 +57,11 @@ impl Scene {
     /// leaves the scene sees the sky, if there is one, or [`NOWHERE`].
     pub(crate) fn look_wave(&self, rays: &mut Rays, n: usize) {
         let nothing = (if self.has_environment() { ESCAPED } else { NOWHERE }, self.beyond);
-        match &self.table {
-            Some(table) => arrive::look_in_lanes(table, &self.accel.shapes, rays, n, nothing),
-            None => {
+        match &self.arrivals {
+            Arrivals::ByPackets(table) => arrive::look_in_lanes(table, &self.accel.shapes, rays, n, nothing),
+            Arrivals::ByTree(sheets) => {
                 self.accel.closest_wave(rays, n);
-                arrive::see_one_by_one(&self.accel.shapes, rays, n, nothing);
+                arrive::see_by_sheets(sheets, &self.accel.shapes, rays, n, nothing);
             }
         }
     }
@@ -68,9 +69,9 @@ impl Scene {
     /// Tests the segments of the rays in the first `n` entries of `rays.list`: sets `rays.prim[ray]` to 1 if the segment is
     /// blocked, else to 0.
     pub(crate) fn block_wave(&self, rays: &mut Rays, n: usize) {
-        match self.table {
-            Some(_) => packets::occluded(&self.accel.shapes, rays, n),
-            None => self.accel.occluded_wave(rays, n),
+        match self.arrivals {
+            Arrivals::ByPackets(_) => packets::occluded(&self.accel.shapes, rays, n),
+            Arrivals::ByTree(_) => self.accel.occluded_wave(rays, n),
         }
     }
 

@@ -42,6 +42,7 @@ pub mod raster;
 mod rounding;
 pub mod sensor;
 mod shape;
+mod sheet;
 mod sixteen;
 mod stand_in;
 mod textures;
@@ -61,7 +62,7 @@ pub use vertex::{ESCAPED, LIGHT, Side, Vertex, VertexWave};
 
 use crate::math::Rgb;
 use accel::Accel;
-use arrive::Table;
+use arrive::Arrivals;
 use bsdf::Bsdf;
 use coplanar::Relation;
 use description::LightDescription;
@@ -102,8 +103,8 @@ pub struct Scene {
     /// All lights.
     pub lights: Lights,
     accel: Accel,
-    /// The primitives of a small scene, whose waves are traced in packets of rays.
-    table: Option<Box<Table>>,
+    /// How the rays of a wave are traced, and where they arrive.
+    arrivals: Arrivals,
     /// True if waves are advanced together, and not path by path.
     waves: bool,
     /// For every side: its BSDF, largest albedo and emission, and whether it takes part in light transport.
@@ -157,7 +158,7 @@ impl Scene {
         // building the tree needs most of the memory
         drop(surfaces);
         Self {
-            table: packets::suit(&shapes).then(|| Box::new(Table::new(&shapes))),
+            arrivals: Arrivals::new(&shapes),
             waves: true,
             camera: Camera::new(&description.camera, center, radius),
             lights,

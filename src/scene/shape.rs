@@ -53,7 +53,7 @@ pub(crate) struct Triangle {
     pub(crate) n: Vec3,
     pub(crate) h: f32,
     /// M (m) for the edge opposite to each corner.
-    keep: [f32; 3],
+    pub(super) keep: [f32; 3],
 }
 
 impl Triangle {
