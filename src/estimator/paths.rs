@@ -11,7 +11,7 @@
 use super::roulette::Roulette;
 use super::technique::Technique;
 use super::{Job, TermSink};
-use crate::math::{Columns, Key, Purpose, Rgb, Streams, columns};
+use crate::math::{Columns, Key, Purpose, Rgb, Streams, pick};
 use crate::operator::{Samples, Sensor, Transport, Wave};
 use std::ops::Range;
 
@@ -197,8 +197,8 @@ impl<W> Paths<W> {
     {
         if self.alive.len() < self.n {
             self.state.keep(&self.alive);
-            columns::keep(&mut self.samples.pdf, &self.alive);
-            columns::keep(&mut self.samples.other_pdf, &self.alive);
+            pick::keep(&mut self.samples.pdf, &self.alive);
+            pick::keep(&mut self.samples.other_pdf, &self.alive);
         }
         self.keep_names();
     }
@@ -207,8 +207,8 @@ impl<W> Paths<W> {
     fn keep_names(&mut self) {
         if self.alive.len() < self.n {
             self.throughput.keep(&self.alive);
-            columns::keep(&mut self.pixel, &self.alive);
-            columns::keep(&mut self.sample, &self.alive);
+            pick::keep(&mut self.pixel, &self.alive);
+            pick::keep(&mut self.sample, &self.alive);
             self.n = self.alive.len();
         }
         self.alive.clear();

@@ -11,7 +11,7 @@
 //! that find light by [`Transport`](crate::operator::Transport) alone, and needs no densities.
 
 use super::Batch;
-use crate::math::{Columns, Key, Purpose, Rgb, Streams, columns};
+use crate::math::{Columns, Key, Purpose, Rgb, Streams, pick};
 use crate::operator::{Adjoint, Role, Sensor, Steps, Wave};
 
 /// Index of the random stream for walks from the light.
@@ -141,7 +141,7 @@ impl<W> Walk<W> {
             self.throughput.keep(alive);
             self.steps.keep(alive);
             for names in [&mut self.pixel, &mut self.sample, &mut self.place] {
-                columns::keep(names, alive);
+                pick::keep(names, alive);
             }
             self.n = alive.len();
         }

@@ -8,7 +8,7 @@
 //! Everything else is passed on to the wrapped transport, with the same random numbers and the same bits.
 
 use super::expected::Expecting;
-use crate::math::{Columns, Rgb, Rng, Streams, columns};
+use crate::math::{Columns, Rgb, Rng, Streams, pick};
 use crate::operator::{Samples, Sensor, Step, Transport, Wave};
 use crate::scene::Crop;
 
@@ -53,8 +53,8 @@ impl<X: Copy, W: Wave<X>> Wave<Track<X>> for TrackedWave<W> {
     }
     fn keep(&mut self, indices: &[u32]) {
         self.states.keep(indices);
-        columns::keep(&mut self.start, indices);
-        columns::keep(&mut self.siblings, indices);
+        pick::keep(&mut self.start, indices);
+        pick::keep(&mut self.siblings, indices);
     }
 }
 
@@ -91,8 +91,8 @@ impl<T: Expecting> Transport for Tracked<'_, T> {
     }
     fn scatter_wave(&self, wave: &mut Self::Wave, streams: Streams, out: &mut Samples, alive: &mut Vec<u32>) {
         self.0.scatter_wave(&mut wave.states, streams, out, alive);
-        columns::keep(&mut wave.start, alive);
-        columns::keep(&mut wave.siblings, alive);
+        pick::keep(&mut wave.start, alive);
+        pick::keep(&mut wave.siblings, alive);
     }
 }
 

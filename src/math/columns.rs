@@ -1,6 +1,7 @@
 //! Arrays of vectors in structure-of-arrays layout: one column per component. Loops over a wave of paths then use all SIMD
 //! lanes.
 
+use super::pick::{gather, keep};
 use glam::Vec3;
 use pulp::{Arch, Simd};
 
@@ -95,30 +96,5 @@ fn multiply_with_simd<'a, S: Simd>(_simd: S, a: &'a mut [f32], b: &'a [f32]) {
 fn negate_with_simd<'a, S: Simd>(_simd: S, a: &'a mut [f32]) {
     for a in a {
         *a = -*a;
-    }
-}
-
-/// Length of the runs that are copied at once.
-const RUN: usize = 16;
-
-/// `to[j] = from[indices[j]]`. Runs of consecutive indices are copied as a whole.
-pub fn gather<X: Copy>(to: &mut [X], from: &[X], indices: &[u32]) {
-    let to = &mut to[..indices.len()];
-    let (runs, last) = indices.as_chunks::<RUN>();
-    let (places, rest) = to.as_chunks_mut::<RUN>();
-    for (to, run) in places.iter_mut().zip(runs) {
-        if run[RUN - 1].wrapping_sub(run[0]) as usize == RUN - 1 && run.is_sorted() {
-            to.copy_from_slice(&from[run[0] as usize..][..RUN]);
-        } else {
-            to.iter_mut().zip(run).for_each(|(to, &i)| *to = from[i as usize]);
-        }
-    }
-    rest.iter_mut().zip(last).for_each(|(to, &i)| *to = from[i as usize]);
-}
-
-/// Keeps only the chosen entries of one column: `v[j] = v[indices[j]]`. The indices must ascend, so the order is kept.
-pub fn keep<X: Copy>(v: &mut [X], indices: &[u32]) {
-    for (j, &i) in indices.iter().enumerate() {
-        v[j] = v[i as usize];
     }
 }

@@ -9,6 +9,7 @@ pub mod direction;
 pub mod distribution;
 pub mod names;
 mod pcg;
+pub mod pick;
 pub mod polygon;
 pub mod random;
 pub mod sobol;

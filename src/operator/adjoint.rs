@@ -20,7 +20,7 @@
 //! light, for a direction light or for a row of a matrix. Reference: Veach (1997), ch. 8 and 10; Arvo (1995), ch. 6.
 
 use super::{Transport, Wave};
-use crate::math::{Columns, Rgb, Rng, Streams, columns};
+use crate::math::{Columns, Rgb, Rng, Streams, pick};
 
 /// The quantity that a walk transports when it leaves a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,8 +77,8 @@ impl Steps {
     /// Keeps only the steps listed in `indices` (ascending).
     pub fn keep(&mut self, indices: &[u32]) {
         self.weight.keep(indices);
-        columns::keep(&mut self.density, indices);
-        columns::keep(&mut self.choice, indices);
+        pick::keep(&mut self.density, indices);
+        pick::keep(&mut self.choice, indices);
     }
 }
 

@@ -15,7 +15,7 @@
 
 use super::scene_transport::SceneTransport;
 use super::transport::Samples;
-use crate::math::{Columns, Rgb, Streams, columns};
+use crate::math::{Columns, Rgb, Streams, pick};
 use crate::scene::bsdf::{Bsdf, TransportMode};
 use crate::scene::{
     Camera, DELTA, ESCAPED, LIGHT, NOTHING, NOWHERE, Rays, Received, VertexWave, Vertices, by_path, camera_rays,
@@ -81,7 +81,7 @@ impl SceneTransport<'_> {
         let list = &rays.list[..on];
         alive.extend(list.iter().map(|&place| rays.order[place as usize]));
         out.value.gather(&rays.value, list);
-        columns::gather(&mut out.pdf, &rays.cosine, list);
+        pick::gather(&mut out.pdf, &rays.cosine, list);
         out.other_pdf[..on].fill(0.0);
         for (to, &place) in list.iter().enumerate() {
             let (seen, place) = (rays.side[place as usize], place as usize);
@@ -157,7 +157,7 @@ fn take(wave: &mut VertexWave, n: usize) {
         for (state, seen) in [(p, &rays.q), (normals, &rays.m), (&mut *omega, &rays.d)] {
             state.gather(seen, list);
         }
-        columns::gather(side, &rays.side, list);
+        pick::gather(side, &rays.side, list);
     }
     omega.negate(n);
 }

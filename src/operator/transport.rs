@@ -15,7 +15,7 @@
 //! to rounding. References for the operators: Arvo, *Analytic Methods for Simulated Light Transport* (1995); Veach, *Robust
 //! Monte Carlo Methods* (1997), ch. 4.
 
-use crate::math::{Columns, Rgb, Rng, Streams, columns};
+use crate::math::{Columns, Rgb, Rng, Streams};
 use crate::scene::Crop;
 
 /// One sample of the kernel of T: the new state, its weight and its densities.
@@ -150,7 +150,9 @@ impl<S: Copy + Default + Send> Wave<S> for Vec<S> {
         self[i] = state;
     }
     fn keep(&mut self, indices: &[u32]) {
-        columns::keep(self, indices);
+        for (j, &i) in indices.iter().enumerate() {
+            self[j] = self[i as usize];
+        }
     }
 }
 

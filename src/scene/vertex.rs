@@ -1,6 +1,6 @@
 //! The vertex: a surface point with a direction, at which radiance is evaluated.
 
-use crate::math::{Columns, columns};
+use crate::math::{Columns, pick};
 use glam::Vec3;
 
 /// Number of one side of one primitive: `2·primitive`, plus 1 for the back. Numbers from [`LIGHT`] on do not denote a
@@ -197,6 +197,6 @@ impl VertexWave {
         self.p.keep(indices);
         self.n.keep(indices);
         self.omega.keep(indices);
-        columns::keep(&mut self.side, indices);
+        pick::keep(&mut self.side, indices);
     }
 }

@@ -1,0 +1,147 @@
+//! Entries of a column by number: sixteen at a time where their numbers lie close together.
+//!
+//! ```text
+//! to[j] = from[i_j]        i_j … i_{j+15} within 32 neighbouring places:   one permutation of 32 numbers
+//! ```
+//!
+//! In a wave, the paths that go on are listed in ascending order, and most paths do. Sixteen of them were then almost always within 32
+//! places. AVX-512 permutes two registers by one instruction; elsewhere, and for other lists, the entries are taken one by one. Every
+//! way copies the same numbers.
+//!
+//! | notation | meaning | place |
+//! |---|---|---|
+//! | i_j | numbers of the entries | `indices` |
+
+use pulp::bytemuck::{Pod, cast_slice, cast_slice_mut};
+
+/// `to[j] = from[indices[j]]`.
+pub fn gather<X: Pod>(to: &mut [X], from: &[X], indices: &[u32]) {
+    let to = &mut to[..indices.len()];
+    #[cfg(target_arch = "x86_64")]
+    if size_of::<X>() == 4
+        && let Some(v4) = pulp::x86::V4::try_new()
+    {
+        return v4.vectorize(sixteen::Gather { v4, to: cast_slice_mut(to), from: cast_slice(from), indices });
+    }
+    to.iter_mut().zip(indices).for_each(|(to, &i)| *to = from[i as usize]);
+}
+
+/// Keeps only the chosen entries of one column: `v[j] = v[indices[j]]`. The indices must ascend, so the order is kept.
+pub fn keep<X: Pod>(v: &mut [X], indices: &[u32]) {
+    #[cfg(target_arch = "x86_64")]
+    if size_of::<X>() == 4
+        && let Some(v4) = pulp::x86::V4::try_new()
+    {
+        return v4.vectorize(sixteen::Keep { v4, v: cast_slice_mut(v), indices });
+    }
+    for (j, &i) in indices.iter().enumerate() {
+        v[j] = v[i as usize];
+    }
+}
+
+/// The same with AVX-512.
+#[cfg(target_arch = "x86_64")]
+mod sixteen {
+    use pulp::{NullaryFnOnce, cast, x86::V4};
+
+    const N: usize = 16;
+    type Numbers = [u32; N];
+
+    pub(super) struct Gather<'a> {
+        pub(super) v4: V4,
+        pub(super) to: &'a mut [u32],
+        pub(super) from: &'a [u32],
+        pub(super) indices: &'a [u32],
+    }
+
+    impl NullaryFnOnce for Gather<'_> {
+        type Output = ();
+        #[inline(always)]
+        fn call(self) {
+            let Self { v4, to, from, indices } = self;
+            let (lists, last) = indices.as_chunks::<N>();
+            let (places, rest) = to.as_chunks_mut::<N>();
+            for (to, list) in places.iter_mut().zip(lists) {
+                *to = pick(v4, from, list);
+            }
+            rest.iter_mut().zip(last).for_each(|(to, &i)| *to = from[i as usize]);
+        }
+    }
+
+    pub(super) struct Keep<'a> {
+        pub(super) v4: V4,
+        pub(super) v: &'a mut [u32],
+        pub(super) indices: &'a [u32],
+    }
+
+    impl NullaryFnOnce for Keep<'_> {
+        type Output = ();
+        #[inline(always)]
+        fn call(self) {
+            let Self { v4, v, indices } = self;
+            let (lists, last) = indices.as_chunks::<N>();
+            // what is written lies before everything that is read later
+            for (j, list) in lists.iter().enumerate() {
+                let kept = pick(v4, v, list);
+                v[N * j..][..N].copy_from_slice(&kept);
+            }
+            for (j, &i) in (N * lists.len()..).zip(last) {
+                v[j] = v[i as usize];
+            }
+        }
+    }
+
+    /// Sixteen entries.
+    #[inline(always)]
+    fn pick(v4: V4, from: &[u32], list: &Numbers) -> Numbers {
+        let first = list[0] as usize;
+        let off = v4.avx512f._mm512_sub_epi32(cast(*list), v4.avx512f._mm512_set1_epi32(list[0] as i32));
+        let near = v4.avx512f._mm512_cmplt_epu32_mask(off, v4.avx512f._mm512_set1_epi32(2 * N as i32));
+        if near == u16::MAX
+            && let Some([a, b]) = from.get(first..first + 2 * N).map(|from| from.as_chunks::<N>().0)
+        {
+            return cast(v4.avx512f._mm512_permutex2var_epi32(cast(*a), off, cast(*b)));
+        }
+        let mut picked = [0; N];
+        for (to, &i) in picked.iter_mut().zip(list) {
+            *to = from[i as usize];
+        }
+        picked
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{gather, keep};
+
+    /// Lists that skip few, many, or almost all entries, up to the end of the column, and numbers of four and of eight bytes.
+    #[test]
+    fn entries_are_those_of_a_plain_loop() {
+        for n in [0, 1, 15, 16, 31, 32, 47, 48, 1000] {
+            for skip in [0, 1, 2, 3, 10] {
+                let mut chosen = 7_u32;
+                let list: Vec<u32> = (0..n)
+                    .filter(|_| {
+                        chosen = chosen.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                        chosen >> 16 & 15 >= 3 * skip || skip == 10 && chosen >> 16 & 15 == 0
+                    })
+                    .collect();
+                let column: Vec<f32> = (0..n).map(|i| i as f32 + 0.5).collect();
+                let truth: Vec<f32> = list.iter().map(|i| *i as f32 + 0.5).collect();
+                let mut kept = column.clone();
+                keep(&mut kept, &list);
+                assert_eq!(kept[..list.len()], truth);
+                // in another order too
+                let turned: Vec<u32> = list.iter().rev().copied().collect();
+                for (list, truth) in [(&list, truth.clone()), (&turned, truth.iter().rev().copied().collect())] {
+                    let mut found = vec![0.0; n as usize];
+                    gather(&mut found, &column, list);
+                    assert_eq!(found[..list.len()], truth);
+                    let (wide, mut found): (Vec<u64>, _) = ((0..u64::from(n)).collect(), vec![0; n as usize]);
+                    gather(&mut found, &wide, list);
+                    assert!(found.iter().zip(list.iter()).all(|(a, b)| *a == u64::from(*b)));
+                }
+            }
+        }
+    }
+}
