@@ -1,7 +1,8 @@
-//! Entries of a column by number: sixteen at a time where their numbers lie close together.
+//! Lists of entries of a column, and the entries of a list: sixteen at a time.
 //!
 //! ```text
-//! to[j] = from[i_j]        i_j … i_{j+15} within 32 neighbouring places:   one permutation of 32 numbers
+//! list      i_j = number of the j-th entry that equals x, or differs from it
+//! gather    to[j] = from[i_j]
 //! ```
 //!
 //! In a wave, the paths that go on are listed in ascending order, and most paths do. Sixteen of them were then almost always within 32
@@ -10,7 +11,7 @@
 //!
 //! | notation | meaning | place |
 //! |---|---|---|
-//! | i_j | numbers of the entries | `indices` |
+//! | i_j | numbers of the entries | `list`, `indices` |
 
 use pulp::bytemuck::{Pod, cast_slice, cast_slice_mut};
 
@@ -37,6 +38,30 @@ pub fn keep<X: Pod>(v: &mut [X], indices: &[u32]) {
     for (j, &i) in indices.iter().enumerate() {
         v[j] = v[i as usize];
     }
+}
+
+/// Lists the entries of a column that equal `x`. Returns their number. `list` must be longer than the column by at least fifteen; the
+/// places behind the listed numbers may be written too.
+pub(crate) fn list_equal(list: &mut [u32], column: &[u32], x: u32) -> usize {
+    list_if::<true>(list, column, x)
+}
+
+/// The same for the entries that differ from `x`.
+pub(crate) fn list_other(list: &mut [u32], column: &[u32], x: u32) -> usize {
+    list_if::<false>(list, column, x)
+}
+
+fn list_if<const EQUAL: bool>(list: &mut [u32], column: &[u32], x: u32) -> usize {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(v4) = pulp::x86::V4::try_new() {
+        return v4.vectorize(sixteen::List::<EQUAL> { v4, list, column, x });
+    }
+    let mut n = 0;
+    for (i, y) in (0..).zip(column) {
+        list[n] = i;
+        n += usize::from((*y == x) == EQUAL);
+    }
+    n
 }
 
 /// The same with AVX-512.
@@ -91,6 +116,39 @@ mod sixteen {
         }
     }
 
+    pub(super) struct List<'a, const EQUAL: bool> {
+        pub(super) v4: V4,
+        pub(super) list: &'a mut [u32],
+        pub(super) column: &'a [u32],
+        pub(super) x: u32,
+    }
+
+    impl<const EQUAL: bool> NullaryFnOnce for List<'_, EQUAL> {
+        type Output = usize;
+        #[inline(always)]
+        fn call(self) -> usize {
+            let Self { v4, list, column, x } = self;
+            let avx = v4.avx512f;
+            let all = avx._mm512_set1_epi32(x as i32);
+            let mut numbers = cast(std::array::from_fn::<u32, N, _>(|i| i as u32));
+            let (rows, last) = column.as_chunks::<N>();
+            let mut n = 0;
+            for row in rows {
+                let equal = avx._mm512_cmpeq_epi32_mask(cast(*row), all);
+                let chosen = if EQUAL { equal } else { !equal };
+                let listed: Numbers = cast(avx._mm512_maskz_compress_epi32(chosen, numbers));
+                list[n..][..N].copy_from_slice(&listed);
+                n += chosen.count_ones() as usize;
+                numbers = avx._mm512_add_epi32(numbers, avx._mm512_set1_epi32(N as i32));
+            }
+            for (i, y) in (N * rows.len()..).zip(last) {
+                list[n] = i as u32;
+                n += usize::from((*y == x) == EQUAL);
+            }
+            n
+        }
+    }
+
     /// Sixteen entries.
     #[inline(always)]
     fn pick(v4: V4, from: &[u32], list: &Numbers) -> Numbers {
@@ -112,7 +170,27 @@ mod sixteen {
 
 #[cfg(test)]
 mod tests {
-    use super::{gather, keep};
+    use super::{gather, keep, list_equal, list_other};
+
+    /// Columns of few and of many entries, all of them equal, some, or none.
+    #[test]
+    fn lists_are_those_of_a_filter() {
+        for n in [0, 1, 15, 16, 17, 100, 1000] {
+            for kinds in [1, 2, 3, 50] {
+                let column: Vec<u32> =
+                    (0..n).map(|i: u32| i.wrapping_mul(2_654_435_761) >> 7).map(|x| x % kinds).collect();
+                for x in [0, 1, u32::MAX] {
+                    let mut list = vec![0; n as usize + 15];
+                    let equal: Vec<u32> = (0..n).filter(|&i| column[i as usize] == x).collect();
+                    let found = list_equal(&mut list, &column, x);
+                    assert_eq!(list[..found], equal);
+                    let other: Vec<u32> = (0..n).filter(|&i| column[i as usize] != x).collect();
+                    let found = list_other(&mut list, &column, x);
+                    assert_eq!(list[..found], other);
+                }
+            }
+        }
+    }
 
     /// Lists that skip few, many, or almost all entries, up to the end of the column, and numbers of four and of eight bytes.
     #[test]

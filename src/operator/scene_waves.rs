@@ -52,11 +52,7 @@ impl SceneTransport<'_> {
         }
         self.scene.light_wave(at, rays, places);
         self.scene.connect(at, rays, self.sampling);
-        let mut some = 0;
-        for place in 0..places {
-            rays.list[some] = place as u32;
-            some += usize::from(rays.flag[place] != NOTHING);
-        }
+        let some = pick::list_other(&mut rays.list, &rays.flag[..places], NOTHING);
         self.scene.block_wave(rays, some);
         by_path(rays, Received { value: &mut out.value, pdf: &mut out.pdf, other: &mut out.other_pdf });
     }
@@ -108,21 +104,17 @@ impl SceneTransport<'_> {
         let rest = rays.keep_samples(places);
         std::mem::swap(&mut rays.t, &mut rays.cosine);
         self.scene.look_wave(rays, rest);
+        if rays.groups() <= 1 {
+            return pick::list_other(&mut rays.list, &rays.side[..rest], NOWHERE);
+        }
+        rays.place[..n].fill(u32::MAX);
+        for place in 0..rest {
+            rays.place[rays.order[place] as usize] = place as u32;
+        }
         let mut on = 0;
-        let mut go_on = |place: usize, side: &[u32], list: &mut [u32]| {
-            list[on] = place as u32;
-            on += usize::from(side[place] != NOWHERE);
-        };
-        if rays.groups() > 1 {
-            rays.place[..n].fill(u32::MAX);
-            for place in 0..rest {
-                rays.place[rays.order[place] as usize] = place as u32;
-            }
-            for &place in rays.place[..n].iter().filter(|&&place| place != u32::MAX) {
-                go_on(place as usize, &rays.side, &mut rays.list);
-            }
-        } else {
-            (0..rest).for_each(|place| go_on(place, &rays.side, &mut rays.list));
+        for &place in rays.place[..n].iter().filter(|&&place| place != u32::MAX) {
+            rays.list[on] = place;
+            on += usize::from(rays.side[place as usize] != NOWHERE);
         }
         on
     }
@@ -135,10 +127,9 @@ impl SceneTransport<'_> {
         rays.sorted.clear();
         camera_rays(camera, streams.pixel, rays);
         self.scene.look_wave(rays, streams.len());
-        let seen = (0..streams.len()).filter(|&i| rays.side[i] != NOWHERE).map(|i| i as u32);
-        alive.extend(seen);
-        rays.list[..alive.len()].copy_from_slice(alive);
-        take(wave, alive.len());
+        let seen = pick::list_other(&mut rays.list, &rays.side[..streams.len()], NOWHERE);
+        alive.extend_from_slice(&rays.list[..seen]);
+        take(wave, seen);
     }
 }
 

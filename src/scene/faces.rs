@@ -52,6 +52,8 @@ pub(crate) struct Faces {
     /// [`Face::colour`] and [`Face::emission`] by side, if there are few.
     colours: Option<Box<ColourTable>>,
     emissions: Option<Box<ColourTable>>,
+    /// [`Face::group`] by side, if there are few.
+    by_side: Option<Box<[u32; FEW]>>,
 }
 
 impl Faces {
@@ -85,6 +87,8 @@ impl Faces {
         if all.sides() as usize <= FEW {
             all.colours = Some(all.by_side(|face| face.colour));
             all.emissions = Some(all.by_side(|face| face.emission));
+            let group = |side: usize| if side < all.sides() as usize { all.of(side as u32).group } else { 0 };
+            all.by_side = Some(Box::new(std::array::from_fn(group)));
         }
         all
     }
@@ -130,6 +134,11 @@ impl Faces {
     #[inline(always)]
     pub(crate) fn group_of(&self, side: Side) -> u32 {
         if side < LIGHT { self.of(side).group } else { 0 }
+    }
+
+    /// [`Face::group`] by side, if there are few sides.
+    pub(crate) fn groups_by_side(&self) -> Option<&[u32; FEW]> {
+        self.by_side.as_deref()
     }
 
     /// All groups; the first is black.

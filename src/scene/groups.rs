@@ -15,9 +15,9 @@ use super::bsdf::{Bsdf, Model, Sampling, TransportMode, Visitor};
 use super::faces::{ColourTable, FEW, Group};
 use super::rounding::{offset_origin, segment};
 use super::sixteen::{LANES, Lane3, ZERO, ZERO3, get, load, load3, put, store, store3};
-use super::vertex::{DELTA, NOTHING, Rays, SOME, Side};
+use super::vertex::{DELTA, LIGHT, NOTHING, Rays, SOME, Side};
 use super::{Scene, Vertex};
-use crate::math::{Columns, Rgb};
+use crate::math::{Columns, Rgb, pick};
 use glam::Vec3;
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
@@ -60,39 +60,29 @@ impl Scene {
     }
 
     fn sort_anew(&self, at: Vertices, n: usize, rays: &mut Rays, wants: &[bool]) -> usize {
+        let side = &at.side[..n];
+        match self.faces.groups_by_side() {
+            Some(table) => groups_in_lanes(table, side, &mut rays.group[..n]),
+            None => rays.group.iter_mut().zip(side).for_each(|(g, &side)| *g = self.faces.group_of(side)),
+        }
         rays.ends.clear();
-        rays.ends.resize(wants.len() + 1, 0);
-        if let [_, wants] = *wants {
-            // one group needs no sorting, and one pass over the wave
+        rays.ends.resize(wants.len(), 0);
+        let groups = &mut rays.group[..n];
+        let places = if wants.len() <= FEW_GROUPS {
+            // one pass for each group
             let mut places = 0;
-            for (i, &side) in at.side[..n].iter().enumerate() {
-                rays.order[places] = i as u32;
-                places += usize::from(wants && self.faces.group_of(side) != 0);
+            for (g, (end, wanted)) in rays.ends.iter_mut().zip(wants).enumerate() {
+                if *wanted {
+                    places += pick::list_equal(&mut rays.order[places..], groups, g as u32);
+                }
+                *end = places as u32;
             }
-            rays.ends[1] = places as u32;
-            self.colours(at, rays);
-            return places;
-        }
-        for (group, &side) in rays.group[..n].iter_mut().zip(&at.side[..n]) {
-            let of = self.faces.group_of(side);
-            *group = if wants[of as usize] { of } else { 0 };
-            rays.ends[*group as usize] += 1;
-        }
-        // the starts of groups 1, 2, …; group 0 has no place
-        let mut start = 0;
-        for end in rays.ends.iter_mut().skip(1) {
-            (*end, start) = (start, start + *end);
-        }
-        for i in 0..n {
-            let group = rays.group[i] as usize;
-            if group != 0 {
-                rays.order[rays.ends[group] as usize] = i as u32;
-                rays.ends[group] += 1;
-            }
-        }
-        rays.ends[0] = 0;
+            places
+        } else {
+            counting_sort(groups, wants, &mut rays.order, &mut rays.ends)
+        };
         self.colours(at, rays);
-        start as usize
+        places
     }
 
     /// The reflectance of every vertex in a coloured group.
@@ -140,6 +130,37 @@ impl Scene {
         self.each_group(rays, |group, places, rays| {
             group.bsdf.welcome(Connect { at, rays, places, coloured: group.coloured, sampling });
         });
+    }
+}
+
+/// Up to so many groups are listed one after the other.
+const FEW_GROUPS: usize = 9;
+
+/// Lists the members of all groups that are wanted, group by group, and the end of each group. Returns the number of members.
+fn counting_sort(groups: &[u32], wants: &[bool], order: &mut [u32], ends: &mut [u32]) -> usize {
+    for &g in groups {
+        ends[g as usize] += u32::from(wants[g as usize]);
+    }
+    let mut start = 0;
+    for end in ends.iter_mut() {
+        (*end, start) = (start, start + *end);
+    }
+    for (i, &g) in (0..).zip(groups) {
+        if wants[g as usize] {
+            order[ends[g as usize] as usize] = i;
+            ends[g as usize] += 1;
+        }
+    }
+    start as usize
+}
+
+/// The group of each side; 0 if it is not on a surface.
+#[pulp::with_simd(groups_in_lanes = Arch::new())]
+#[inline(always)]
+fn groups_in_lanes_with_simd<'a, S: Simd>(_simd: S, table: &'a [u32; FEW], side: &'a [Side], group: &'a mut [u32]) {
+    for (group, &side) in group.iter_mut().zip(side) {
+        let of = table[side as usize % FEW];
+        *group = if side < LIGHT { of } else { 0 };
     }
 }
 
