@@ -33,6 +33,8 @@ use cursor::beside;
 pub use missing::is_scene_file;
 pub use mtl_material::MtlMaterial;
 
+use super::description::Geometry;
+use super::wide::MOST_TRIANGLES;
 use super::{Description, SceneError, builtin, stand_in};
 use crate::math::names::suggest;
 use glam::DVec3;
@@ -124,6 +126,9 @@ struct Draft {
 
 fn finish(mut draft: Draft, file: &Path, options: &Options) -> Result<Loaded, SceneError> {
     let scene = &mut draft.description;
+    let triangles =
+        scene.shapes.iter().map(|s| if let Geometry::Mesh { faces, .. } = &s.geometry { faces.len() } else { 0 });
+    few_enough(triangles.sum()).map_err(|e| e.file(file))?;
     options.emit.iter().try_for_each(|e| emit(scene, e))?;
     if scene.shapes.iter().all(|s| s.emission == DVec3::ZERO) && scene.lights.iter().all(lights::dark) {
         let names = in_use(scene);
@@ -141,6 +146,15 @@ fn finish(mut draft: Draft, file: &Path, options: &Options) -> Result<Loaded, Sc
     }
     let canonical = format!("{:?}", draft.description);
     Ok(Loaded { description: draft.description, warnings: draft.warnings, canonical })
+}
+
+/// Refuses more triangles than the tree of a scene can number.
+fn few_enough(triangles: usize) -> Result<(), SceneError> {
+    if triangles <= MOST_TRIANGLES {
+        return Ok(());
+    }
+    let what = format!("the scene has {triangles} triangles; {MOST_TRIANGLES} are possible");
+    Err(SceneError::new(what).help("simplify its meshes"))
 }
 
 /// Names of the materials that at least one shape uses.
@@ -209,4 +223,16 @@ fn bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
     std::fs::read(path).map_err(|e| {
         SceneError::new(format!("cannot read the file: {e}")).file(path).help("check the path and its permissions")
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MOST_TRIANGLES, few_enough};
+
+    #[test]
+    fn more_triangles_than_have_numbers_are_refused() {
+        assert!(few_enough(MOST_TRIANGLES).is_ok());
+        let e = few_enough(MOST_TRIANGLES + 1).unwrap_err().to_string();
+        assert!(e.contains("134217729 triangles; 134217728 are possible"), "{e}");
+    }
 }

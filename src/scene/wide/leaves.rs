@@ -21,6 +21,8 @@ const CORNERS: usize = 9;
 const ROWS: usize = 14;
 /// Number of bits of a leaf's number that count its triangles.
 const COUNT: u32 = 3;
+/// Most triangles of a scene: the first triangle of a leaf has 27 bits.
+pub(crate) const MOST_TRIANGLES: usize = 1 << (30 - COUNT);
 /// Numbers after the last leaf: a visit takes as many as a full leaf has.
 const FREE: usize = ROWS * N;
 
@@ -58,6 +60,7 @@ impl Leaves {
     /// Adds a leaf of 1 to 8 triangles, each with its number in the scene, and returns the number of the leaf.
     pub(crate) fn push(&mut self, triangles: &[(u32, &Triangle)]) -> u32 {
         let first = self.len;
+        assert!(first < MOST_TRIANGLES, "the loader refuses larger scenes");
         self.rows.truncate(ROWS * first);
         let mut row = |number: &dyn Fn(&(u32, &Triangle)) -> f32| self.rows.extend(triangles.iter().map(number));
         for (corner, axis) in (0..3).flat_map(|corner| (0..3).map(move |axis| (corner, axis))) {

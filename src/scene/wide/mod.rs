@@ -19,4 +19,5 @@ mod tree;
 mod two;
 
 pub(crate) use lanes::{InstructionSet, Lanes, Task};
+pub(crate) use leaves::MOST_TRIANGLES;
 pub(crate) use tree::{Closest, Occluded, Wide};

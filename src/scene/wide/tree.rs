@@ -3,7 +3,7 @@
 //! | question | order | stops |
 //! |---|---|---|
 //! | [`Closest`]: the first hit | by the distance of the boxes | when all boxes that are left begin behind the best hit |
-//! | [`Occluded`]: any hit with t < 1 | the nearest box of a node first, then the others, the smallest first | at the first hit |
+//! | [`Occluded`]: any hit with t < 1 | as stored: the largest box first | at the first hit |
 //!
 //! A search goes through the tree in steps, so that [two rays](super::two) can take turns. Each stack entry of the first
 //! question is one number: the distance of the box above the number of the child. Distances are not negative, so the entries
@@ -44,6 +44,13 @@ fn entry(t: f32, child: u32) -> u64 {
 #[inline(always)]
 fn first(set: u32) -> (usize, u32) {
     (set.trailing_zeros() as usize % N, set & (set - 1))
+}
+
+/// The highest bit of a set, which must not be empty, and the rest.
+#[inline(always)]
+fn last(set: u32) -> (usize, u32) {
+    let i = 31 - set.leading_zeros();
+    (i as usize % N, set ^ (1 << i))
 }
 
 /// The nearest hit with t > 0; of two at the same distance the one with the lower number.
@@ -163,20 +170,16 @@ impl Search for Occluded {
         let Self { slabs, o, d, blocked, top, current } = self;
         if *current & LEAF == 0 {
             let node = &tree.nodes[*current as usize];
-            let (met, t) = node.meet(l, slabs, 1.0);
+            let (met, _) = node.meet(l, slabs, 1.0);
             if met != 0 {
                 let (i, mut met) = first(met);
-                let mut nearest = entry(t[i], node.child[i]);
                 while met != 0 {
-                    let (i, rest) = first(met);
+                    let (i, rest) = last(met);
                     met = rest;
-                    let new = entry(t[i], node.child[i]);
-                    let (near, far) = if nearest < new { (nearest, new) } else { (new, nearest) };
-                    nearest = near;
-                    stack[*top] = far;
+                    stack[*top] = u64::from(node.child[i]);
                     *top += 1;
                 }
-                *current = nearest as u32;
+                *current = node.child[i];
                 return false;
             }
         } else if *current & SINGLE == 0 {
