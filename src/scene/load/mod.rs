@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn more_triangles_than_have_numbers_are_refused() {
         assert!(few_enough(MOST_TRIANGLES).is_ok());
-        let e = few_enough(MOST_TRIANGLES + 1).unwrap_err().to_string();
+        let e = few_enough(MOST_TRIANGLES + 1).expect_err("one too many").to_string();
         assert!(e.contains("134217729 triangles; 134217728 are possible"), "{e}");
     }
 }
