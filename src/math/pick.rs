@@ -24,7 +24,24 @@ pub fn gather<X: Pod>(to: &mut [X], from: &[X], indices: &[u32]) {
     {
         return v4.vectorize(sixteen::Gather { v4, to: cast_slice_mut(to), from: cast_slice(from), indices });
     }
-    to.iter_mut().zip(indices).for_each(|(to, &i)| *to = from[i as usize]);
+    gather_by_runs(to, from, indices);
+}
+
+/// Numbers that are copied at once.
+const RUN: usize = 16;
+
+/// The same on any machine. Sixteen consecutive entries are copied as a whole.
+fn gather_by_runs<X: Copy>(to: &mut [X], from: &[X], indices: &[u32]) {
+    let (runs, last) = indices.as_chunks::<RUN>();
+    let (places, rest) = to.as_chunks_mut::<RUN>();
+    for (to, run) in places.iter_mut().zip(runs) {
+        if run[RUN - 1].wrapping_sub(run[0]) as usize == RUN - 1 && run.is_sorted() {
+            to.copy_from_slice(&from[run[0] as usize..][..RUN]);
+        } else {
+            to.iter_mut().zip(run).for_each(|(to, &i)| *to = from[i as usize]);
+        }
+    }
+    rest.iter_mut().zip(last).for_each(|(to, &i)| *to = from[i as usize]);
 }
 
 /// Keeps only the chosen entries of one column: `v[j] = v[indices[j]]`. The indices must ascend, so the order is kept.
@@ -38,6 +55,14 @@ pub fn keep<X: Pod>(v: &mut [X], indices: &[u32]) {
     for (j, &i) in indices.iter().enumerate() {
         v[j] = v[i as usize];
     }
+}
+
+/// True if this machine lists sixteen entries at a time. Several lists of one column then cost little.
+pub(crate) fn lists_at_once() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return pulp::x86::V4::try_new().is_some();
+    #[cfg(not(target_arch = "x86_64"))]
+    false
 }
 
 /// Lists the entries of a column that equal `x`. Returns their number. `list` must be longer than the column by at least fifteen; the
@@ -170,7 +195,7 @@ mod sixteen {
 
 #[cfg(test)]
 mod tests {
-    use super::{gather, keep, list_equal, list_other};
+    use super::{gather, gather_by_runs, keep, list_equal, list_other};
 
     /// Columns of few and of many entries, all of them equal, some, or none.
     #[test]
@@ -214,6 +239,9 @@ mod tests {
                 for (list, truth) in [(&list, truth.clone()), (&turned, truth.iter().rev().copied().collect())] {
                     let mut found = vec![0.0; n as usize];
                     gather(&mut found, &column, list);
+                    assert_eq!(found[..list.len()], truth);
+                    found.fill(0.0);
+                    gather_by_runs(&mut found[..list.len()], &column, list);
                     assert_eq!(found[..list.len()], truth);
                     let (wide, mut found): (Vec<u64>, _) = ((0..u64::from(n)).collect(), vec![0; n as usize]);
                     gather(&mut found, &wide, list);

@@ -67,20 +67,10 @@ impl Scene {
         }
         rays.ends.clear();
         rays.ends.resize(wants.len(), 0);
-        let groups = &mut rays.group[..n];
-        let places = if wants.len() <= FEW_GROUPS {
-            // one pass for each group
-            let mut places = 0;
-            for (g, (end, wanted)) in rays.ends.iter_mut().zip(wants).enumerate() {
-                if *wanted {
-                    places += pick::list_equal(&mut rays.order[places..], groups, g as u32);
-                }
-                *end = places as u32;
-            }
-            places
-        } else {
-            counting_sort(groups, wants, &mut rays.order, &mut rays.ends)
-        };
+        let groups = &rays.group[..n];
+        let few = if pick::lists_at_once() { FEW_GROUPS } else { 2 };
+        let sort = if wants.len() <= few { list_by_list } else { counting_sort };
+        let places = sort(groups, wants, &mut rays.order, &mut rays.ends);
         self.colours(at, rays);
         places
     }
@@ -133,10 +123,23 @@ impl Scene {
     }
 }
 
-/// Up to so many groups are listed one after the other.
+/// Up to so many groups, with the black one, are listed one after the other where a list costs little.
 const FEW_GROUPS: usize = 9;
 
-/// Lists the members of all groups that are wanted, group by group, and the end of each group. Returns the number of members.
+/// Lists the members of all groups that are wanted, group by group, and the end of each group. Returns the number of members. There is
+/// one pass for each group.
+fn list_by_list(groups: &[u32], wants: &[bool], order: &mut [u32], ends: &mut [u32]) -> usize {
+    let mut places = 0;
+    for (g, (end, wanted)) in (0..).zip(ends.iter_mut().zip(wants)) {
+        if *wanted {
+            places += pick::list_equal(&mut order[places..], groups, g);
+        }
+        *end = places as u32;
+    }
+    places
+}
+
+/// The same in two passes for any number of groups. `ends` holds zeros.
 fn counting_sort(groups: &[u32], wants: &[bool], order: &mut [u32], ends: &mut [u32]) -> usize {
     for &g in groups {
         ends[g as usize] += u32::from(wants[g as usize]);
@@ -341,5 +344,31 @@ impl Scene {
             return rho;
         }
         self.faces.of(side).colour
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{counting_sort, list_by_list};
+
+    /// Both ways to sort give the members of each group that is wanted, in ascending order.
+    #[test]
+    fn groups_are_sorted_in_order() {
+        for n in [0_u32, 1, 17, 1000] {
+            for wants in [vec![false, true], vec![false, false], vec![false, true, false, true, true]] {
+                let groups: Vec<u32> =
+                    (0..n).map(|i| (i.wrapping_mul(2_654_435_761) >> 16) % wants.len() as u32).collect();
+                let (mut truth, mut bounds) = (vec![], vec![]);
+                for (g, wanted) in (0..).zip(&wants) {
+                    truth.extend((0..n).filter(|&i| *wanted && groups[i as usize] == g));
+                    bounds.push(truth.len() as u32);
+                }
+                for sort in [list_by_list, counting_sort] {
+                    let (mut order, mut ends) = (vec![0; n as usize + 16], vec![0; wants.len()]);
+                    let places = sort(&groups, &wants, &mut order, &mut ends);
+                    assert_eq!((&order[..places], &ends), (truth.as_slice(), &bounds));
+                }
+            }
+        }
     }
 }
