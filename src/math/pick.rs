@@ -5,9 +5,11 @@
 //! gather    to[j] = from[i_j]
 //! ```
 //!
-//! In a wave, the paths that go on are listed in ascending order, and most paths do. Sixteen of them were then almost always within 32
-//! places. AVX-512 permutes two registers by one instruction; elsewhere, and for other lists, the entries are taken one by one. Every
-//! way copies the same numbers.
+//! In a wave, the paths that go on are listed in ascending order, and most paths do. So sixteen of them usually lie within 32
+//! neighbouring places, and AVX-512 permutes these 32 numbers by one instruction. It also lists sixteen entries at a time: it
+//! compresses their numbers by a mask. Other machines, and other lists, take the entries one by one. Every way gives the same result.
+//!
+//! Measured: `series cornell` took 0.92 of the time with these lists, `env-ggx` 0.96 (`DESIGN.md`, performance).
 //!
 //! | notation | meaning | place |
 //! |---|---|---|

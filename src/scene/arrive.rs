@@ -11,8 +11,8 @@
 //! | x, n, side | what it sees | `Rays::q`, `m`, `side` |
 //!
 //! In small scenes, planes of parallelograms and disks, and spheres, are gathered from [`Table`] into lanes. Triangles, and hits
-//! near the edge of a parallelogram, follow one by one. In larger scenes, each ray takes the [`Sheet`] of its shape. All call the functions of [`shape`](super::shape), so that the bits are
-//! those of single rays.
+//! near the edge of a parallelogram, follow one by one. In larger scenes, each ray takes the [`Sheet`] of its shape. All call the
+//! functions of [`shape`](super::shape) or give the same bits (tested).
 
 use super::packets::{self, MOST, Met};
 use super::rounding::onto;
