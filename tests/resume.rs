@@ -187,7 +187,8 @@ fn a_signal_in_the_first_pass_ends_the_run() {
 fn a_part_is_written_by_one_run_at_a_time() {
     let desk = TempDir::new().unwrap();
     let desk = desk.path();
-    let line = "series cornell --worlds terms,path --size 32x32 --spp 100000 -q --shard 1/2 --checkpoint 10ms -o 1.fsh";
+    let line =
+        "series cornell --worlds terms,path --size 32x32 --spp 10000000 -q --shard 1/2 --checkpoint 10ms -o 1.fsh";
     let mut first = command(desk, line).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     while !desk.join("1.fsh").exists() {
         std::thread::sleep(Duration::from_millis(10));
@@ -365,9 +366,9 @@ fn parts_that_do_not_belong_together_are_refused_by_name() {
     refused(desk, &format!("{line} --shard 1/3 -o 2.fsh"), &["this is part 2/3, not 1/3", "--force"]);
     refused(desk, &format!("{line} --seed 1 --shard 2/3 -o 2.fsh"), &["--seed"]);
     // a part that was stopped
-    let long = "series room.toml --worlds terms --size 24x24 --spp 100000 -q";
+    let long = "series room.toml --worlds terms --size 24x24 --spp 10000000 -q";
     killed(desk, &format!("{long} --shard 1/2 --checkpoint 10ms -o long1.fsh"), Duration::from_millis(500));
-    ok(desk, &format!("{} --shard 2/2 -o long2.fsh", long.replace("100000", "64")));
+    ok(desk, &format!("{} --shard 2/2 -o long2.fsh", long.replace("10000000", "64")));
     refused(desk, "merge long1.fsh long2.fsh -o x", &["--spp"]);
     let damage = |name: &str| {
         let mut bytes = std::fs::read(desk.join(name)).unwrap();

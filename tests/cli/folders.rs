@@ -27,7 +27,7 @@ fn hidden(desk: &Desk, folder: &str) -> Vec<String> {
 #[test]
 fn a_folder_has_one_run_at_a_time() {
     let desk = Desk::new();
-    let long = format!("series cornell --worlds terms --spp 100000 {SMALL}");
+    let long = format!("series cornell --worlds terms --spp 10000000 {SMALL}");
     let child = at_work(&desk, &format!("{long} -o long"), "long");
     let said = desk.run(&format!("{long} -o long"));
     assert_eq!(said.code, 3, "{}", said.err);
@@ -54,7 +54,7 @@ fn a_folder_has_one_run_at_a_time() {
 #[test]
 fn a_killed_run_leaves_its_folder_to_the_same_command() {
     let desk = Desk::new();
-    let long = format!("series cornell --worlds terms --spp 100000 {SMALL} -o long");
+    let long = format!("series cornell --worlds terms --spp 10000000 {SMALL} -o long");
     let mut child = at_work(&desk, &long, "long");
     child.kill().unwrap();
     child.wait().unwrap();
@@ -82,7 +82,7 @@ fn every_signal_saves_and_has_its_exit_code() {
             continue;
         }
         let desk = Desk::new();
-        let long = format!("series cornell --worlds terms --spp 100000 {SMALL} -o long");
+        let long = format!("series cornell --worlds terms --spp 10000000 {SMALL} -o long");
         let child = at_work(&desk, &long, "long");
         send(signal, &child);
         let output = child.wait_with_output().unwrap();
@@ -95,7 +95,7 @@ fn every_signal_saves_and_has_its_exit_code() {
 #[test]
 fn a_second_signal_ends_at_once_and_leaves_nothing_half_written() {
     let desk = Desk::new();
-    let long = format!("series cornell --spp 100000 {SMALL} -o long");
+    let long = format!("series cornell --spp 10000000 {SMALL} -o long");
     let child = at_work(&desk, &long, "long");
     send("-TERM", &child);
     send("-TERM", &child);
