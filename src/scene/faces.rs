@@ -53,7 +53,7 @@ pub(crate) struct Faces {
     colours: Option<Box<ColourTable>>,
     emissions: Option<Box<ColourTable>>,
     /// [`Face::group`] by side, if there are few.
-    by_side: Option<Box<[u32; FEW]>>,
+    group_by_side: Option<Box<[u32; FEW]>>,
 }
 
 impl Faces {
@@ -88,7 +88,7 @@ impl Faces {
             all.colours = Some(all.by_side(|face| face.colour));
             all.emissions = Some(all.by_side(|face| face.emission));
             let group = |side: usize| if side < all.sides() as usize { all.of(side as u32).group } else { 0 };
-            all.by_side = Some(Box::new(std::array::from_fn(group)));
+            all.group_by_side = Some(Box::new(std::array::from_fn(group)));
         }
         all
     }
@@ -138,7 +138,7 @@ impl Faces {
 
     /// [`Face::group`] by side, if there are few sides.
     pub(crate) fn groups_by_side(&self) -> Option<&[u32; FEW]> {
-        self.by_side.as_deref()
+        self.group_by_side.as_deref()
     }
 
     /// All groups; the first is black.

@@ -162,11 +162,7 @@ mod tests {
     /// The bits are those of every shape in turn, also for rays at edges and corners, where the tests in lanes leave off.
     #[test]
     fn lanes_give_the_bits_of_single_shapes() {
-        let mut seed = 1u32;
-        let mut next = move || {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(seed >> 8) / f64::from(1 << 24) - 0.5
-        };
+        let mut next = crate::scene::chance::numbers();
         let mut v = move || DVec3::new(next(), next(), next());
         let (mut hits, mut blocked) = (0, 0);
         for n in 1..30 {

@@ -86,11 +86,7 @@ mod tests {
     /// plane must be e, with an error of at most the ten units that e allows for.
     #[test]
     fn a_lifted_point_lies_off_its_plane() {
-        let mut seed = 1u32;
-        let mut next = || {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(seed >> 8) / f64::from(1 << 24) - 0.5
-        };
+        let mut next = crate::scene::chance::numbers();
         for i in 0..20_000 {
             let size = [1.0, 1e-3, 1e4][i % 3];
             // normals exactly along an axis, nearly along an axis, and in general directions

@@ -95,19 +95,14 @@ fn from_edges(triangle: &Triangle) -> [Across; 3] {
 mod tests {
     use super::*;
     use crate::scene::Primitive;
+    use crate::scene::rounding::onto;
     use glam::DVec3;
 
     /// Hits everywhere on random shapes, most of them as near to an edge as `settle` begins to move them: a sheet gives the bits of
     /// `settle`, or none. Far from the edges it always gives them.
     #[test]
     fn a_sheet_settles_like_its_shape() {
-        let mut next = {
-            let mut seed = 1u32;
-            move || {
-                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                f64::from(seed >> 8) / f64::from(1 << 24) - 0.5
-            }
-        };
+        let mut next = crate::scene::chance::numbers();
         let (mut settled, mut moved) = (0, 0);
         for i in 0..200_000 {
             let size = [1.0, 1e-7, 1e12][i % 3];
@@ -142,8 +137,7 @@ mod tests {
             let x = (origin + edge_u * a + edge_v * b + off).as_vec3();
             let truth = shape.settle(x);
             let sheet = Sheet::new(&shape);
-            let projected = x - sheet.normal() * (rounded_dot(sheet.normal(), x) + sheet.0[3].x);
-            moved += usize::from(projected != truth);
+            moved += usize::from(onto(x, sheet.normal(), -sheet.0[3].x) != truth);
             if let Some(p) = sheet.settle(x) {
                 settled += 1;
                 assert_eq!(p.to_array().map(f32::to_bits), truth.to_array().map(f32::to_bits), "{i}: {shape:?} at {x}");
@@ -154,10 +148,6 @@ mod tests {
             }
         }
         assert!(settled > 60_000 && moved > 10_000, "{settled} settled, {moved} moved");
-    }
-
-    fn rounded_dot(n: Vec3, x: Vec3) -> f32 {
-        n.x * x.x + n.y * x.y + n.z * x.z
     }
 
     /// A disk moves no hit inside its edge, and a sphere decides for itself.

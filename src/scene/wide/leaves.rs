@@ -156,13 +156,7 @@ mod tests {
     /// volumes are too large for a number.
     #[test]
     fn leaves_give_the_bits_of_single_triangles() {
-        let mut next = {
-            let mut seed = 1u32;
-            move || {
-                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                f64::from(seed >> 8) / f64::from(1 << 24) - 0.5
-            }
-        };
+        let mut next = crate::scene::chance::numbers();
         let mut met = [0; 3];
         for i in 0..60_000 {
             let size = [1.0, 1e-9, 1e13][i % 3];
