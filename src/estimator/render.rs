@@ -213,9 +213,9 @@ fn pass<T: Transport>(
         return splats::pass(t, sensor, estimator, pass, film, progress);
     }
     let shape = film.shape;
-    let sums = film.sums.par_chunks_mut(BLOCK * shape.per_pixel());
-    let squares = film.squares.par_chunks_mut(BLOCK * shape.slots);
-    let counts = film.samples.par_chunks_mut(BLOCK);
+    let sums = film.sums.chunks_mut(BLOCK * shape.per_pixel());
+    let squares = film.squares.chunks_mut(BLOCK * shape.slots);
+    let counts = film.samples.chunks_mut(BLOCK);
     let Pass { key, until, part, due } = pass;
     let ([width, height], crop) = (sensor.size(), sensor.crop());
     let at_once = at_once(width * height);
@@ -255,7 +255,8 @@ fn pass<T: Transport>(
         block.largest.iter().zip(&floors).for_each(|(l, floor)| l.tell(floor));
         Totals { rays: block.rays, non_finite: block.non_finite, largest: block.largest }
     };
-    let parts = sums.zip(squares).zip(counts).enumerate().map_init(Paths::default, job);
+    // every thread takes the next block, so that all of them end together
+    let parts = sums.zip(squares).zip(counts).enumerate().par_bridge().map_init(Paths::default, job);
     let totals = parts.reduce(|| Totals::new(shape.slots), Totals::plus);
     totals.add_to(film);
 }

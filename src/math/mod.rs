@@ -4,6 +4,8 @@
 //! Everything that runs per ray is plain scalar code marked `#[inline(always)]`. The same function serves a single path and,
 //! inside a loop over SIMD lanes, a wave of paths, and both give the same bits.
 
+#[cfg(test)]
+pub(crate) mod chance;
 pub mod columns;
 pub mod direction;
 pub mod distribution;

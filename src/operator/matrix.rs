@@ -16,6 +16,7 @@
 
 mod columns;
 mod lanczos;
+mod product;
 mod reach;
 mod spectrum;
 mod weight;
@@ -23,6 +24,7 @@ mod weight;
 use super::form_factor::FormFactors;
 pub use columns::{Columns, PatchColumns, Transposed};
 pub use lanczos::{Extremes, Ritz, extremes, leading};
+use product::{dot, product};
 use rayon::prelude::*;
 pub use reach::reached;
 pub use spectrum::{Spectral, spectral_radius};
@@ -143,7 +145,7 @@ impl LinearOperator for PatchOperator<'_> {
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64]) {
-        y.par_iter_mut().with_min_len(16).enumerate().for_each(|(i, y)| *y = self.row_times(i, x));
+        product(self.factors, &self.rho, x, y);
     }
 
     fn apply_adjoint(&self, x: &[f64], y: &mut [f64]) {
@@ -164,17 +166,4 @@ impl LinearOperator for PatchOperator<'_> {
             }
         });
     }
-}
-
-/// Σ aⱼ xⱼ as eight interleaved partial sums, so that the compiler can use vector registers.
-fn dot(a: &[f32], x: &[f64]) -> f64 {
-    let (blocks, rest) = a.as_chunks::<8>();
-    let (xs, tail) = x.as_chunks::<8>();
-    let mut sums = [0.0; 8];
-    for (a, x) in blocks.iter().zip(xs) {
-        for l in 0..8 {
-            sums[l] += f64::from(a[l]) * x[l];
-        }
-    }
-    sums.iter().sum::<f64>() + rest.iter().zip(tail).map(|(a, x)| f64::from(*a) * x).sum::<f64>()
 }

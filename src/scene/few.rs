@@ -162,7 +162,7 @@ mod tests {
     /// The bits are those of every shape in turn, also for rays at edges and corners, where the tests in lanes leave off.
     #[test]
     fn lanes_give_the_bits_of_single_shapes() {
-        let mut next = crate::scene::chance::numbers();
+        let mut next = crate::math::chance::numbers();
         let mut v = move || DVec3::new(next(), next(), next());
         let (mut hits, mut blocked) = (0, 0);
         for n in 1..30 {

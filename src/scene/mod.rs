@@ -19,8 +19,6 @@ pub mod builtin;
 mod by_path;
 mod cast;
 pub mod centre;
-#[cfg(test)]
-mod chance;
 pub mod coplanar;
 mod crop;
 pub mod description;

@@ -86,7 +86,7 @@ mod tests {
     /// plane must be e, with an error of at most the ten units that e allows for.
     #[test]
     fn a_lifted_point_lies_off_its_plane() {
-        let mut next = crate::scene::chance::numbers();
+        let mut next = crate::math::chance::numbers();
         for i in 0..20_000 {
             let size = [1.0, 1e-3, 1e4][i % 3];
             // normals exactly along an axis, nearly along an axis, and in general directions

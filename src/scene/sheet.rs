@@ -102,7 +102,7 @@ mod tests {
     /// `settle`, or none. Far from the edges it always gives them.
     #[test]
     fn a_sheet_settles_like_its_shape() {
-        let mut next = crate::scene::chance::numbers();
+        let mut next = crate::math::chance::numbers();
         let (mut settled, mut moved) = (0, 0);
         for i in 0..200_000 {
             let size = [1.0, 1e-7, 1e12][i % 3];

@@ -50,16 +50,26 @@ pub fn solve_nalgebra(t: &PatchOperator<'_>, emission: &[f64]) -> Result<Direct,
     checked(t, emission, x.as_slice().to_vec())
 }
 
-/// Solves (I − T) x = E with faer.
+/// Solves (I − T) x = E with faer. The factors take the place of the matrix, so that there is only one of it in memory.
 ///
 /// # Errors
 /// [`Singular`] if 1 is an eigenvalue of T, up to rounding.
 #[cfg(feature = "faer")]
 pub fn solve_faer(t: &PatchOperator<'_>, emission: &[f64]) -> Result<Direct, Singular> {
-    use faer::{Mat, linalg::solvers::Solve};
-    let n = t.len();
-    let matrix = Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - t.entry(i, j));
-    let x = matrix.partial_piv_lu().solve(Mat::from_fn(n, 1, |i, _| emission[i]));
+    use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+    use faer::linalg::lu::partial_pivoting::{factor, solve};
+    let (n, par) = (t.len(), faer::get_global_parallelism());
+    let mut lu = faer::Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - t.entry(i, j));
+    let mut x = faer::Mat::from_fn(n, 1, |i, _| emission[i]);
+    let memory = StackReq::any_of(&[
+        factor::lu_in_place_scratch::<usize, f64>(n, n, par, Default::default()),
+        solve::solve_in_place_scratch::<usize, f64>(n, 1, par),
+    ]);
+    let mut memory = MemBuffer::new(memory);
+    let mut memory = MemStack::new(&mut memory);
+    let (mut order, mut places) = (vec![0_usize; n], vec![0; n]);
+    let (_, rows) = factor::lu_in_place(lu.as_mut(), &mut order, &mut places, par, &mut memory, Default::default());
+    solve::solve_in_place(lu.as_ref(), lu.as_ref(), rows, x.as_mut(), par, &mut memory);
     checked(t, emission, (0..n).map(|i| x[(i, 0)]).collect())
 }
 

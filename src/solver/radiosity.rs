@@ -22,6 +22,7 @@ use crate::operator::{
     patches::Patches,
 };
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// A scene as a radiosity matrix.
 #[derive(Clone, Debug)]
@@ -94,9 +95,10 @@ impl Radiosity {
     /// # Errors
     /// [`Singular`] if, in some channel, a part of the scene neither absorbs light nor lets it escape.
     pub fn solve(&self) -> Result<Solution, Singular> {
+        let one = |c: usize| direct::solve(&self.operator(c), &self.emission(c));
+        let solved = (0..3).into_par_iter().map(one).collect::<Result<Vec<_>, _>>()?;
         let mut out = Solution { radiance: vec![DVec3::ZERO; self.patches.len()], residual: DVec3::ZERO };
-        for channel in 0..3 {
-            let solved = direct::solve(&self.operator(channel), &self.emission(channel))?;
+        for (channel, solved) in solved.into_iter().enumerate() {
             out.residual[channel] = solved.residual;
             out.radiance.iter_mut().zip(solved.x).for_each(|(l, x)| l[channel] = x);
         }

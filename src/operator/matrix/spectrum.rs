@@ -13,8 +13,8 @@
 //! The ratio of lengths is the square root of the Rayleigh quotient of S². It converges even if both +r and −r are
 //! eigenvalues (two plates); the Rayleigh quotient of S itself need not converge then.
 
+use super::product::product;
 use crate::operator::form_factor::FormFactors;
-use rayon::prelude::*;
 
 /// Result of the power iteration.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,10 +45,7 @@ pub fn spectral_radius(factors: &FormFactors, w: &[f64], tolerance: f64, max_ste
     let right: Vec<f64> = w.iter().zip(&factors.area).map(|(w, a)| (w / a).sqrt()).collect();
     let apply = |v: &[f64], y: &mut [f64]| {
         let scaled: Vec<f64> = v.iter().zip(&right).map(|(v, r)| v * r).collect();
-        y.par_iter_mut()
-            .with_min_len(16)
-            .enumerate()
-            .for_each(|(i, y)| *y = left[i] * super::dot(factors.row(i), &scaled));
+        product(factors, &left, &scaled, y);
     };
     // the start u = w is the first bounce of a uniformly lit scene; it has a positive part along the top mode of every
     // connected component

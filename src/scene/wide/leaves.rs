@@ -156,7 +156,7 @@ mod tests {
     /// volumes are too large for a number.
     #[test]
     fn leaves_give_the_bits_of_single_triangles() {
-        let mut next = crate::scene::chance::numbers();
+        let mut next = crate::math::chance::numbers();
         let mut met = [0; 3];
         for i in 0..60_000 {
             let size = [1.0, 1e-9, 1e13][i % 3];
