@@ -187,6 +187,20 @@ fn coincident_and_degenerate_shapes() {
     }
 }
 
+/// Large walls are tested before the tree, and rays that do not meet its box end there. The box may be as thin as a sheet.
+#[test]
+fn meshes_in_a_room() {
+    let size = DVec3::splat(3.0);
+    let walls = Geometry::Box { min: -size, max: size, rotate_y: 0.0, inward: true };
+    let mut v = vectors(5);
+    let sheet: Vec<_> = (0..200).map(|_| [(); 3].map(|()| v().with_z(0.25))).collect();
+    for (name, inside) in [("heap", heap(500, 1)), ("sheet", mesh(&sheet))] {
+        let n = 20_000;
+        let [hits, blocked] = compare(&format!("{name} in a room"), &scene(vec![walls.clone(), inside]), n);
+        assert!(hits > n / 2 && blocked > n / 20, "{name}: {hits} hits, {blocked} blocked");
+    }
+}
+
 /// Shells around shells make a tree so deep that single rays need more room for their stack than they hold ready.
 #[test]
 fn deep_trees() {

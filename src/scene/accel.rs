@@ -4,6 +4,7 @@
 //! returned, whatever the order of traversal. A wave of rays shares one choice of the instruction set. Single rays in very small
 //! scenes go without the tree: [`few`](super::few). Large shapes are tested before it: [`front`](super::front).
 
+use super::enter::Entrance;
 use super::few::Few;
 use super::front::Front;
 use super::rounding::{EPSILON, WIDER};
@@ -17,7 +18,8 @@ pub(crate) struct Accel {
     pub(crate) shapes: Vec<Shape>,
     wide: Wide,
     few: Option<Few>,
-    front: Option<Front>,
+    /// Large shapes, and the box of the tree behind them.
+    front: Option<(Front, Entrance)>,
     best: InstructionSet,
 }
 
@@ -37,6 +39,7 @@ impl Accel {
         let few = Few::new(&shapes);
         let front = if few.is_none() { Front::of(&shapes, &bounds) } else { None };
         let wide = Wide::new(&shapes, bounds, front.as_ref().map_or(&[], Front::prims));
+        let front = front.map(|front| (front, Entrance::of(&wide)));
         Self { shapes, wide, few, front, best: InstructionSet::best() }
     }
 
@@ -86,7 +89,7 @@ impl Task for ClosestOne<'_> {
         if let Some(few) = few {
             return few.closest(shapes, o, d);
         }
-        let best = if let Some(front) = front { front.closest(shapes, o, d) } else { Hit::NONE };
+        let best = if let Some((front, _)) = front { front.closest(shapes, o, d) } else { Hit::NONE };
         wide.search_one(l, shapes, Closest::new(o, d, best))
     }
 }
@@ -105,7 +108,7 @@ impl Task for OccludedOne<'_> {
         if let Some(few) = few {
             return few.occluded(shapes, o, d);
         }
-        if let Some(front) = front
+        if let Some((front, _)) = front
             && front.occluded(shapes, o, d)
         {
             return true;
@@ -125,23 +128,22 @@ impl Task for ClosestWave<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
         let Self { accel: Accel { shapes, wide, front, .. }, rays, n } = self;
-        match front {
-            Some(front) => front.closest_wave(rays, n),
-            None => rays.prim[..n].fill(u32::MAX),
-        }
+        let list = if let Some((front, entrance)) = front {
+            entrance.closest(front, rays, n)
+        } else {
+            rays.prim[..n].fill(u32::MAX);
+            rays.t[..n].fill(f32::INFINITY);
+            (0..n as u32).collect()
+        };
         let Rays { o, d, t, prim, .. } = rays;
         let (t, prim) =
             (Cell::from_mut(&mut t[..n]).as_slice_of_cells(), Cell::from_mut(&mut prim[..n]).as_slice_of_cells());
         wide.search_all(
             l,
             shapes,
-            n,
+            &list,
             #[inline(always)]
-            |i| {
-                let prim = prim[i].get();
-                let best = if prim == u32::MAX { Hit::NONE } else { Hit { t: t[i].get(), prim } };
-                Closest::new(o.get(i), d.get(i), best)
-            },
+            |i| Closest::new(o.get(i), d.get(i), Hit { t: t[i].get(), prim: prim[i].get() }),
             #[inline(always)]
             |i, hit| {
                 t[i].set(hit.t);
@@ -162,20 +164,19 @@ impl Task for OccludedWave<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
         let Self { accel: Accel { shapes, wide, front, .. }, rays, n } = self;
-        let mut free = rays.list[..n].to_vec();
-        if let Some(front) = front {
-            front.occluded_wave(rays, n);
-            free.retain(|&ray| rays.prim[ray as usize] == 0);
-        }
+        let list = match front {
+            Some((front, entrance)) => entrance.occluded(front, rays, n),
+            None => rays.list[..n].to_vec(),
+        };
         let Rays { o, d, prim, .. } = rays;
         wide.search_all(
             l,
             shapes,
-            free.len(),
+            &list,
             #[inline(always)]
-            |i| Occluded::new(o.get(free[i] as usize), d.get(free[i] as usize)),
+            |i| Occluded::new(o.get(i), d.get(i)),
             #[inline(always)]
-            |i, blocked| prim[free[i] as usize] = u32::from(blocked),
+            |i, blocked| prim[i] = u32::from(blocked),
         );
     }
 }

@@ -23,6 +23,7 @@ pub mod coplanar;
 mod crop;
 pub mod description;
 mod emitted;
+mod enter;
 pub mod emitter;
 mod error;
 pub mod export;

@@ -20,4 +20,5 @@ mod two;
 
 pub(crate) use lanes::{InstructionSet, Lanes, Task};
 pub(crate) use leaves::MOST_TRIANGLES;
-pub(crate) use tree::{Closest, Occluded, Wide};
+pub(crate) use node::{ROUNDING, reciprocal};
+pub(crate) use tree::{Closest, Occluded, Wide, behind};

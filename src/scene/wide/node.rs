@@ -31,6 +31,15 @@ pub(crate) const FARTHEST: f32 = 3e38;
 /// The smallest component of a direction.
 const LEAST: f32 = 1e-37;
 
+/// By how much the distance at which a ray leaves a box is enlarged: more than the rounding of the distances.
+pub(crate) const ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
+
+/// 1/d for a component of a direction.
+#[inline(always)]
+pub(crate) fn reciprocal(d: f32) -> f32 {
+    1.0 / if d.abs() < LEAST { LEAST.copysign(d) } else { d }
+}
+
 /// A node.
 #[derive(Clone)]
 #[repr(C, align(32))]
@@ -53,8 +62,7 @@ pub(crate) struct Slabs {
 impl Slabs {
     #[inline(always)]
     pub(crate) fn new(o: Vec3, d: Vec3) -> Self {
-        let inverse = |x: f32| 1.0 / if x.abs() < LEAST { LEAST.copysign(x) } else { x };
-        let inverse = Vec3::new(inverse(d.x), inverse(d.y), inverse(d.z));
+        let inverse = Vec3::new(reciprocal(d.x), reciprocal(d.y), reciprocal(d.z));
         let first = [usize::from(inverse.x < 0.0), usize::from(inverse.y < 0.0), usize::from(inverse.z < 0.0)];
         Self { o, inverse, first }
     }
@@ -74,6 +82,6 @@ impl Node {
             near = ((Pack::load(l, &self.planes[a][first]) - o) * inverse).max(near);
             far = ((Pack::load(l, &self.planes[a][first ^ 1]) - o) * inverse).min(far);
         }
-        (near.le(far * Pack::splat(l, 1.0 + 4.0 * f32::EPSILON)), near.store())
+        (near.le(far * Pack::splat(l, ROUNDING)), near.store())
     }
 }

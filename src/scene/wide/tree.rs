@@ -71,14 +71,14 @@ impl Closest {
     /// Begins at the root. `best` is the nearest hit of shapes outside the tree.
     #[inline(always)]
     pub(crate) fn new(o: Vec3, d: Vec3, best: Hit) -> Self {
-        Self { slabs: Slabs::new(o, d), o, d, best, most: behind(best), top: 0, current: 0 }
+        Self { slabs: Slabs::new(o, d), o, d, best, most: behind(best.t), top: 0, current: 0 }
     }
 }
 
-/// How far to look after a hit: slightly more than t, so that a hit at the same t with a lower number is still visited.
+/// How far to look after a hit at t: slightly farther, so that a hit at the same t with a lower number is still visited.
 #[inline(always)]
-fn behind(best: Hit) -> f32 {
-    (best.t * (1.0 + 1e-6)).min(FARTHEST)
+pub(crate) fn behind(t: f32) -> f32 {
+    (t * (1.0 + 1e-6)).min(FARTHEST)
 }
 
 impl Search for Closest {
@@ -122,7 +122,7 @@ impl Search for Closest {
                     best.take(Hit { t, prim });
                 }
             }
-            *most = behind(*best);
+            *most = behind(best.t);
         }
         loop {
             if *top == 0 {
@@ -208,6 +208,14 @@ const ROOM: usize = 96;
 const SMALL_ROOM: usize = 32;
 
 impl Wide {
+    /// The box of everything in the tree.
+    pub(crate) fn bounds(&self) -> [Vec3; 2] {
+        let all = |a: usize, side: usize| self.nodes[0].planes[a][side].into_iter();
+        let low = |a| all(a, 0).fold(f32::INFINITY, f32::min);
+        let high = |a| all(a, 1).fold(f32::NEG_INFINITY, f32::max);
+        [Vec3::new(low(0), low(1), low(2)), Vec3::new(high(0), high(1), high(2))]
+    }
+
     /// The answer for a single ray.
     #[inline(always)]
     pub(crate) fn search_one<S: Search>(&self, l: impl Lanes, shapes: &[Shape], search: S) -> S::Answer {

@@ -14,35 +14,28 @@ use super::lanes::Lanes;
 use super::tree::{Search, Wide};
 
 impl Wide {
-    /// The answers for rays 0, 1, … < n: `begin` returns the search for one, `done` gets its number and answer.
+    /// The answers for the rays of a list: `begin` returns the search for one, `done` gets its number and answer.
     #[inline(always)]
     pub(crate) fn search_all<S: Search>(
         &self,
         l: impl Lanes,
         shapes: &[Shape],
-        n: usize,
+        list: &[u32],
         begin: impl Fn(usize) -> S,
         mut done: impl FnMut(usize, S::Answer),
     ) {
         let mut memory = vec![0; 2 * self.waiting];
         let (first, second) = memory.split_at_mut(self.waiting);
-        if n < 2 {
-            for i in 0..n {
-                done(i, self.search(l, shapes, begin(i), first));
-            }
-            return;
-        }
-        let mut turns = [(0, begin(0), first), (1, begin(1), second)];
-        let mut next = 2;
+        let mut rays = list.iter().map(|&ray| ray as usize);
+        let Some(a) = rays.next() else { return };
+        let Some(b) = rays.next() else { return done(a, self.search(l, shapes, begin(a), first)) };
+        let mut turns = [(a, begin(a), first), (b, begin(b), second)];
         let alone = 'turns: loop {
             for (turn, (i, search, stack)) in turns.iter_mut().enumerate() {
                 if search.step(l, self, shapes, stack) {
                     done(*i, search.answer());
-                    if next == n {
-                        break 'turns 1 - turn;
-                    }
+                    let Some(next) = rays.next() else { break 'turns 1 - turn };
                     (*i, *search) = (next, begin(next));
-                    next += 1;
                 }
             }
         };
