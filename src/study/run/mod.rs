@@ -295,7 +295,8 @@ impl Run {
         }
         let (description, scene, settings) = (&self.description, &self.scene, &self.settings);
         let reached = self.terms.iter().map(|t| t.spp).min().unwrap_or(0).clamp(1, settings.spp.max(1));
-        let share = Share::of(self.size(), reached);
+        let rays = self.terms.iter().map(|t| t.series.cost.rays).min().unwrap_or(0);
+        let share = Share::of(self.size(), reached, rays, settings.max_bounces);
         // where the paths of the run never end by roulette, the scene may keep all its light, and these paths would not end either
         let longer = self.asked.bounces && settings.roulette.ends();
         let prefixes = self.asked.moments && self.asked.estimators.contains(&Estimator::Prefix);

@@ -1,16 +1,19 @@
 //! How many paths the results without an image get: a share of the run.
 //!
 //! ```text
-//! P = pixels · samples        norms P/128        long terms P/64 on each sensor        each surface P/512        moments P/96
+//! P = min(pixels · samples, rays/(K + 1))        norms P/128        long terms P/64 on each sensor        each surface P/512
+//! moments (pixels · samples)/96
 //! ```
 //!
-//! The long terms and the moments have longer paths than the run, and the norms by `single` walk once for each term. With these
-//! shares all together take less than a tenth of the run. Below a lower limit their answers would be useless; a run of fewer
+//! The long terms and the moments have longer paths than the run, and the norms by `single` walk once for each term. Where most paths
+//! of the run leave the scene early, paths from its surfaces are longer than those, so P is smaller there. With these shares all together
+//! take about a tenth of the run. Below a lower limit their answers would be useless; a run of fewer
 //! paths than that takes a moment anyway. Beyond an upper limit they are more exact than anything that is printed.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
-//! | P | paths of one estimator of the run | [`Share::of`] |
+//! | P | paths of one estimator of the run, or fewer if these are short | [`Share::of`] |
+//! | rays | rays of the run, closest-hit and shadow together: 2 K + 1 for a path that never ends early | [`Share::of`] |
 //! | | paths for ‖T^k E‖₁, by estimator | [`Share::norms`] |
 //! | | paths for the question how many bounces are enough, on each of two sensors | [`Share::bounces`] |
 //! | | paths for the question which bounce lights what, on each of up to six surfaces | [`Share::lit`] |
@@ -36,11 +39,12 @@ const SAMPLES: [u32; 2] = [2, 16];
 const PIXELS: u64 = 4096;
 
 impl Share {
-    /// The shares of a run.
-    pub(super) fn of([w, h]: [u32; 2], spp: u32) -> Self {
+    /// The shares of a run with terms up to K = `max_bounces` that has traced so many rays.
+    pub(super) fn of([w, h]: [u32; 2], spp: u32, rays: u64, max_bounces: usize) -> Self {
         let pixels = u64::from(w) * u64::from(h);
         let run = pixels * u64::from(spp);
-        let part = |of: u64, [least, most]: [u64; 2]| (run / of).clamp(least, most) as u32;
+        let paths = run.min(rays / (max_bounces as u64 + 1));
+        let part = |of: u64, [least, most]: [u64; 2]| (paths / of).clamp(least, most) as u32;
         Self { pixels, run, norms: part(128, NORMS), bounces: part(64, BOUNCES), lit: part(512, LIT) }
     }
 
@@ -72,17 +76,20 @@ mod tests {
     use super::Share;
 
     /// With one path tracer and one estimator, all together stay below a tenth, counted in paths; the smallest run gets the
-    /// lower limits.
+    /// lower limits, and short paths a smaller share.
     #[test]
     fn what_was_not_asked_for_is_a_small_share() {
         for (size, spp) in [([256, 256], 64), ([512, 512], 1024), ([1920, 1080], 256)] {
-            let share = Share::of(size, spp);
             let run = u64::from(size[0] * size[1]) * u64::from(spp);
+            let share = Share::of(size, spp, 17 * run, 8);
             assert!(share.all(2, true, true) * 12 < run, "{share:?}");
             let (samples, pixels) = share.moments(spp);
             assert!(samples >= 2 && u64::from(samples) * u64::from(pixels) * 90 < run);
         }
-        let tiny = Share::of([8, 8], 64);
+        // paths of three rays in place of seventeen
+        let [long, short] = [17, 3].map(|rays| Share::of([256, 256], 256, rays << 24, 8));
+        assert_eq!((short.norms, short.bounces), (long.norms / 3, long.bounces / 3));
+        let tiny = Share::of([8, 8], 64, 17 << 12, 8);
         assert_eq!((tiny.norms, tiny.bounces, tiny.lit, tiny.moments(64)), (1 << 14, 1 << 15, 1 << 13, (2, 64)));
     }
 }
