@@ -25,7 +25,7 @@ use crate::math::{Columns, Key};
 use crate::operator::{Sensor, Transport};
 use crate::progress::Progress;
 use crate::terms::Part;
-use crate::terms::film::{BLOCK, FilmBlock, Shape, TermFilm};
+use crate::terms::film::{BLOCK, FilmBlocks, Shape, TermFilm};
 use crate::terms::largest::Largest;
 use rayon::prelude::*;
 
@@ -50,13 +50,18 @@ impl Amount {
     }
 }
 
-/// Number of paths of a wave.
+/// Number of paths of a block that are traced together.
 const WAVE: u32 = 1024;
 
-impl TermSink for FilmBlock<'_> {
+/// Most blocks that are traced together. After some bounces few paths are left, and sixteen of them cost as much as one.
+const TOGETHER: usize = 4;
+/// Fewest jobs of a thread in a pass, so that all threads end at about the same time.
+const JOBS: usize = 8;
+
+impl TermSink for FilmBlocks<'_> {
     #[inline(always)]
     fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
-        FilmBlock::add(self, slot, pixel, sample, value);
+        FilmBlocks::add(self, slot, pixel, sample, value);
     }
     fn rays(&mut self, slot: usize, rays: usize) {
         self.rays[slot] += rays as u64;
@@ -190,9 +195,6 @@ impl Render<'_> {
     }
 }
 
-/// The part of the film that one job fills: sums, squares, sample counts.
-type Block<'a> = ((&'a mut [f64], &'a mut [f64]), &'a mut [u32]);
-
 /// Number of samples of a pixel that are computed together, in a picture of so many pixels. It is the same for each pixel, in every
 /// block and every crop, so that they get the same bits.
 fn at_once(pixels: u32) -> u32 {
@@ -213,50 +215,80 @@ fn pass<T: Transport>(
         return splats::pass(t, sensor, estimator, pass, film, progress);
     }
     let shape = film.shape;
-    let sums = film.sums.chunks_mut(BLOCK * shape.per_pixel());
-    let squares = film.squares.chunks_mut(BLOCK * shape.slots);
-    let counts = film.samples.chunks_mut(BLOCK);
+    let together = (shape.blocks() / (JOBS * rayon::current_num_threads())).clamp(1, TOGETHER);
+    let pixels = together * BLOCK;
+    let sums = film.sums.chunks_mut(pixels * shape.per_pixel());
+    let squares = film.squares.chunks_mut(pixels * shape.slots);
+    let counts = film.samples.chunks_mut(pixels);
     let Pass { key, until, part, due } = pass;
     let ([width, height], crop) = (sensor.size(), sensor.crop());
     let at_once = at_once(width * height);
-    // only contributions above these floors are kept; every finished block raises the floors for the others
+    // only contributions above these floors are kept; every finished job raises the floors for the others
     let floors = Largest::floors(&film.largest);
-    let job = |paths: &mut Paths<T::Wave>, (i, ((sums, squares), counts)): (usize, Block)| {
-        let samples = counts[0]..until;
-        let stops = || (samples.start > 0 || !part.is_whole()) && progress.stopped() || due();
-        if samples.is_empty() || !part.has(i) || stops() {
-            return Totals::new(shape.slots);
-        }
-        let first = (i * BLOCK) as u32;
-        let pixels = first..first + counts.len() as u32;
-        let largest = floors.iter().map(Largest::above).collect();
-        let rays = vec![0; shape.slots];
-        let mut block = FilmBlock {
-            shape,
-            first,
-            pixels: pixels.len(),
-            shared: false,
-            sums,
-            squares,
-            largest,
-            non_finite: 0,
-            rays,
-            fresh: vec![samples.start == 0; shape.slots],
-        };
-        for (own, pixels) in crop.rows(pixels.clone(), width) {
-            block.first = pixels.start - (own - first);
-            for s in samples.clone().step_by(at_once as usize) {
-                let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + at_once).min(samples.end) };
-                estimator.sample(&Job { t, sensor, batch: &batch }, paths, &mut block);
+    let job = |paths: &mut Paths<T::Wave>, mut blocks: Blocks| {
+        let mut totals = Totals::new(shape.slots);
+        while let Some(Blocks { first, both, counts }) = blocks.next(part, shape) {
+            let first = (first * BLOCK) as u32;
+            let samples = counts[0]..until;
+            let stops = || (samples.start > 0 || !part.is_whole()) && progress.stopped() || due();
+            if samples.is_empty() || stops() {
+                continue;
             }
+            let largest = floors.iter().map(Largest::above).collect();
+            let mut film = FilmBlocks::new(shape, false, first, both, largest, samples.start == 0);
+            for (own, pixels) in crop.rows(first..first + counts.len() as u32, width) {
+                film.first = pixels.start - (own - first);
+                for s in samples.clone().step_by(at_once as usize) {
+                    let batch = Batch { key, pixels: pixels.clone(), samples: s..(s + at_once).min(samples.end) };
+                    estimator.sample(&Job { t, sensor, batch: &batch }, paths, &mut film);
+                }
+            }
+            counts.iter_mut().for_each(|n| *n += samples.len() as u32);
+            progress.advance(samples.len() as u64 * counts.len() as u64);
+            film.largest.iter().zip(&floors).for_each(|(l, floor)| l.tell(floor));
+            totals = totals.plus(Totals { rays: film.rays, non_finite: film.non_finite, largest: film.largest });
         }
-        counts.iter_mut().for_each(|n| *n += samples.len() as u32);
-        progress.advance(samples.len() as u64 * u64::from(pixels.end - pixels.start));
-        block.largest.iter().zip(&floors).for_each(|(l, floor)| l.tell(floor));
-        Totals { rays: block.rays, non_finite: block.non_finite, largest: block.largest }
+        totals
     };
-    // every thread takes the next block, so that all of them end together
-    let parts = sums.zip(squares).zip(counts).enumerate().par_bridge().map_init(Paths::default, job);
+    // every thread takes the next blocks, so that all of them end together
+    let blocks = sums.zip(squares).zip(counts).enumerate().map(|(i, ((sums, squares), counts))| Blocks {
+        first: i * together,
+        both: [sums, squares],
+        counts,
+    });
+    let parts = blocks.par_bridge().map_init(Paths::default, job);
     let totals = parts.reduce(|| Totals::new(shape.slots), Totals::plus);
     totals.add_to(film);
+}
+
+/// Neighbouring blocks: the number of the first, sums and squares, sample counts.
+struct Blocks<'a> {
+    first: usize,
+    both: [&'a mut [f64]; 2],
+    counts: &'a mut [u32],
+}
+
+impl<'a> Blocks<'a> {
+    /// Takes off the next blocks of a part that are traced together. They are whole and have the same number of samples, or there is only
+    /// one. The bits do not depend on what is traced together.
+    fn next(&mut self, part: Part, shape: Shape) -> Option<Self> {
+        loop {
+            let first = self.first;
+            let alike = |(i, c): &(usize, &[u32])| c.len() == BLOCK && c[0] == self.counts[0] && part.has(first + i);
+            let blocks = self.counts.chunks(BLOCK).enumerate().take_while(alike).count().max(1);
+            let pixels = (blocks * BLOCK).min(self.counts.len());
+            if pixels == 0 {
+                return None;
+            }
+            let per_pixel = [shape.per_pixel(), shape.slots];
+            let [sums, squares] = &mut self.both;
+            let sums = sums.split_off_mut(..pixels * per_pixel[0])?;
+            let squares = squares.split_off_mut(..pixels * per_pixel[1])?;
+            let counts = self.counts.split_off_mut(..pixels)?;
+            self.first += blocks;
+            if part.has(first) {
+                return Some(Self { first, both: [sums, squares], counts });
+            }
+        }
+    }
 }

@@ -14,7 +14,7 @@ use super::{Batch, Job, Paths, TermEstimator, TermSink};
 use crate::math::{Columns, Rgb};
 use crate::operator::{Sensor, Transport};
 use crate::progress::Progress;
-use crate::terms::film::{BLOCK, FilmBlock, Shape, TermFilm};
+use crate::terms::film::{BLOCK, FilmBlocks, Shape, TermFilm};
 use crate::terms::largest::Largest;
 use rayon::prelude::*;
 
@@ -152,11 +152,8 @@ fn add(jobs: &[Splats], film: &mut TermFilm) {
             blocks.enumerate().zip(starts.windows(shape.slots + 1).step_by(shape.slots))
         {
             let largest = std::mem::take(&mut totals.largest);
-            let rays = std::mem::take(&mut totals.rays);
-            let (first, pixels) = ((first + block * BLOCK) as u32, squares.len() / each);
-            let fresh = vec![false; shape.slots];
-            let mut block =
-                FilmBlock { shape, first, pixels, shared: true, sums, squares, largest, non_finite: 0, rays, fresh };
+            let first = (first + block * BLOCK) as u32;
+            let mut block = FilmBlocks::new(shape, true, first, [sums, squares], largest, false);
             for slot in 0..shape.slots {
                 let list = &list[starts[slot] as usize..starts[slot + 1] as usize];
                 pixel.clear();
@@ -170,7 +167,7 @@ fn add(jobs: &[Splats], film: &mut TermFilm) {
                 block.add(slot, &pixel, &sample, &value);
             }
             totals.non_finite += block.non_finite;
-            (totals.largest, totals.rays) = (block.largest, block.rays);
+            totals.largest = block.largest;
         }
         totals.largest.iter().zip(&floors).for_each(|(l, floor)| l.tell(floor));
         totals

@@ -97,13 +97,7 @@ fn before_hits_with_simd<'a, S: Simd>(_simd: S, bounds: [Vec3; 2], rays: &'a Ray
 
 #[pulp::with_simd(free_segments = Arch::new())]
 #[inline(always)]
-fn free_segments_with_simd<'a, S: Simd>(
-    _simd: S,
-    bounds: [Vec3; 2],
-    rays: &'a Rays,
-    n: usize,
-    to: &'a mut [u32],
-) {
+fn free_segments_with_simd<'a, S: Simd>(_simd: S, bounds: [Vec3; 2], rays: &'a Rays, n: usize, to: &'a mut [u32]) {
     for (to, list) in to.as_chunks_mut::<LANES>().0.iter_mut().zip(rays.list[..n].chunks(LANES)) {
         let (mut o, mut d, mut blocked) = (ZERO3, ZERO3, [0; LANES]);
         for (lanes, c) in [(&mut o, &rays.o), (&mut d, &rays.d)] {

@@ -66,10 +66,10 @@ pub fn solve_faer(t: &PatchOperator<'_>, emission: &[f64]) -> Result<Direct, Sin
         solve::solve_in_place_scratch::<usize, f64>(n, 1, par),
     ]);
     let mut memory = MemBuffer::new(memory);
-    let mut memory = MemStack::new(&mut memory);
+    let memory = MemStack::new(&mut memory);
     let (mut order, mut places) = (vec![0_usize; n], vec![0; n]);
-    let (_, rows) = factor::lu_in_place(lu.as_mut(), &mut order, &mut places, par, &mut memory, Default::default());
-    solve::solve_in_place(lu.as_ref(), lu.as_ref(), rows, x.as_mut(), par, &mut memory);
+    let (_, rows) = factor::lu_in_place(lu.as_mut(), &mut order, &mut places, par, memory, Default::default());
+    solve::solve_in_place(lu.as_ref(), lu.as_ref(), rows, x.as_mut(), par, memory);
     checked(t, emission, (0..n).map(|i| x[(i, 0)]).collect())
 }
 

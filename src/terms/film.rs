@@ -79,7 +79,7 @@ pub struct TermFilm {
     pub(crate) shared: bool,
 }
 
-/// Pixels of a block: the part of the film that one job fills.
+/// Pixels of a block. Its sums are one piece of memory.
 pub(crate) const BLOCK: usize = 64;
 
 /// Index of the sum of a slot, replicate and pixel inside a block. A wave adds to one slot at a time, over all replicates
@@ -89,26 +89,45 @@ fn place(slot: usize, replicate: usize, pixel: usize, replicates: usize, pixels:
     ((slot * replicates + replicate) * pixels + pixel) * 3
 }
 
-/// The part of a film that one thread works on: some neighbouring pixels.
-pub(crate) struct FilmBlock<'a> {
-    pub(crate) shape: Shape,
-    /// The number of a pixel minus its place in the block; in a crop it changes from row to row.
+/// The part of the film that one thread works on: neighbouring blocks that are whole, or one block.
+pub(crate) struct FilmBlocks<'a> {
+    shape: Shape,
+    /// The number of a pixel minus its place in the blocks; in a crop it changes from row to row.
     pub(crate) first: u32,
-    pub(crate) pixels: usize,
-    pub(crate) shared: bool,
-    pub(crate) sums: &'a mut [f64],
-    pub(crate) squares: &'a mut [f64],
+    /// Pixels of each block.
+    pixels: usize,
+    shared: bool,
+    sums: &'a mut [f64],
+    squares: &'a mut [f64],
+    /// Numbers in the sums and in the squares of a block.
+    strides: [usize; 2],
     pub(crate) largest: Vec<Largest>,
     pub(crate) non_finite: u64,
     pub(crate) rays: Vec<u64>,
     /// The slots whose memory has never been written.
-    pub(crate) fresh: Vec<bool>,
+    fresh: Vec<bool>,
 }
 
 /// Sums in a page of memory.
 const PAGE: usize = 4096 / size_of::<f64>();
 
-impl FilmBlock<'_> {
+impl<'a> FilmBlocks<'a> {
+    /// The blocks of these sums and squares, of which pixel `first` is the first one. They are `fresh` if nothing was added to them.
+    pub(crate) fn new(
+        shape: Shape,
+        shared: bool,
+        first: u32,
+        [sums, squares]: [&'a mut [f64]; 2],
+        largest: Vec<Largest>,
+        fresh: bool,
+    ) -> Self {
+        let pixels = (sums.len() / shape.per_pixel()).min(BLOCK);
+        let per_pixel = [shape.per_pixel(), squares_per_pixel(shape, shared)];
+        let (rays, fresh) = (vec![0; shape.slots], vec![fresh; shape.slots]);
+        let strides = per_pixel.map(|n| n * pixels);
+        Self { shape, first, pixels, shared, sums, squares, strides, largest, non_finite: 0, rays, fresh }
+    }
+
     #[inline(always)]
     pub(crate) fn add(&mut self, slot: usize, pixel: &[u32], sample: &[u32], value: &Columns) {
         let n = pixel.len();
@@ -138,7 +157,9 @@ impl FilmBlock<'_> {
     #[cold]
     fn touch(&mut self, slot: usize) {
         let each = self.shape.replicates * self.pixels * 3;
-        self.sums[slot * each..][..each].iter_mut().step_by(PAGE).for_each(|s| *s = 0.0);
+        for block in self.sums.chunks_mut(self.strides[0]) {
+            block[slot * each..][..each].iter_mut().step_by(PAGE).for_each(|s| *s = 0.0);
+        }
         self.fresh[slot] = false;
     }
 
@@ -147,7 +168,9 @@ impl FilmBlock<'_> {
         let replicates = self.shape.replicates as u32;
         let replicate = if replicates.is_power_of_two() { sample & (replicates - 1) } else { sample % replicates };
         let pixel = (pixel - self.first) as usize;
-        let at = place(slot, replicate as usize, pixel, replicates as usize, self.pixels);
+        let (block, pixel) = (pixel / BLOCK, pixel % BLOCK);
+        let [sums, squares] = self.strides.map(|n| n * block);
+        let at = sums + place(slot, replicate as usize, pixel, replicates as usize, self.pixels);
         let s = &mut self.sums[at..at + 3];
         s[0] += f64::from(v.x);
         s[1] += f64::from(v.y);
@@ -155,7 +178,7 @@ impl FilmBlock<'_> {
         let sum = v.x + v.y + v.z;
         let all = f64::from(sum);
         let row = if self.shared { slot * replicates as usize + replicate as usize } else { slot };
-        self.squares[row * self.pixels + pixel] += all * all;
+        self.squares[squares + row * self.pixels + pixel] += all * all;
         self.non_finite += u64::from(!sum.is_finite());
         self.largest[slot].push(sum);
     }
@@ -173,6 +196,11 @@ fn some_of([x, y, z]: [&[f32]; 3]) -> u32 {
         some += u32::from((*x != 0.0) | (*y != 0.0) | (*z != 0.0));
     }
     some
+}
+
+/// Numbers of [`TermFilm::squares`] for each pixel.
+fn squares_per_pixel(shape: Shape, shared: bool) -> usize {
+    shape.slots * if shared { shape.replicates } else { 1 }
 }
 
 impl TermFilm {
@@ -231,7 +259,7 @@ impl TermFilm {
 
     /// Numbers of [`TermFilm::squares`] for each pixel.
     pub(crate) fn squares_per_pixel(&self) -> usize {
-        self.shape.slots * if self.shared { self.shape.replicates } else { 1 }
+        squares_per_pixel(self.shape, self.shared)
     }
 
     /// A film of exactly known values: one sample of each pixel, `slots[s][pixel]`.
@@ -340,11 +368,8 @@ mod tests {
         const N: u32 = 1 << 21;
         let shape = Shape { size: [1, 1], slots: 1, replicates: 1 };
         let (mut sums, mut squares) = (vec![0.0; 3], vec![0.0]);
-        let (largest, rays) = (vec![Largest::default()], vec![0]);
-        let (sums, squares) = (&mut sums[..], &mut squares[..]);
-        let fresh = vec![true];
-        let mut block =
-            FilmBlock { shape, first: 0, pixels: 1, shared: false, sums, squares, largest, non_finite: 0, rays, fresh };
+        let both = [&mut sums[..], &mut squares[..]];
+        let mut block = FilmBlocks::new(shape, false, 0, both, vec![Largest::default()], true);
         // whole multiples of 2⁻⁴⁰, most of them small and a few of them large, so that the exact sum is a whole number
         let mut exact = 0_u128;
         let mut value = Columns::default();
@@ -360,7 +385,7 @@ mod tests {
             block.add(0, &[0], &[i], &value);
         }
         let exact = exact as f64 / (1_u64 << 40) as f64;
-        let wrong = block.sums.iter().map(|s| (s / exact - 1.0).abs()).fold(0.0, f64::max);
+        let wrong = sums.iter().map(|s| (s / exact - 1.0).abs()).fold(0.0, f64::max);
         assert!(wrong < f64::from(N) * 0.5 * f64::EPSILON && wrong < 1e-9, "{wrong:e}");
     }
 }

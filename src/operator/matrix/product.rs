@@ -24,16 +24,14 @@ const ROWS: usize = 4;
 
 /// y = diag(w) F x.
 pub(super) fn product(factors: &FormFactors, w: &[f64], x: &[f64], y: &mut [f64]) {
-    y.par_chunks_mut(ROWS).with_min_len(4).enumerate().for_each(|(block, y)| {
+    let (blocks, rest) = y.as_chunks_mut::<ROWS>();
+    let alone = ROWS * blocks.len();
+    blocks.par_iter_mut().with_min_len(4).enumerate().for_each(|(block, y)| {
         let first = block * ROWS;
-        if let Some(y) = y.as_mut_array::<ROWS>() {
-            let rows = std::array::from_fn(|k| factors.row(first + k));
-            let sums = dots(rows, x);
-            (0..ROWS).for_each(|k| y[k] = w[first + k] * sums[k]);
-        } else {
-            y.iter_mut().enumerate().for_each(|(k, y)| *y = w[first + k] * dot(factors.row(first + k), x));
-        }
+        let sums = dots(std::array::from_fn(|k| factors.row(first + k)), x);
+        (0..ROWS).for_each(|k| y[k] = w[first + k] * sums[k]);
     });
+    rest.iter_mut().zip(alone..).for_each(|(y, i)| *y = w[i] * dot(factors.row(i), x));
 }
 
 /// Σ aⱼ xⱼ.
