@@ -249,9 +249,10 @@ pub fn rows_fit_in_memory(scene: &Scene, settings: &Settings, parts: u32) -> Res
         ));
     }
     let n = settings.patches.max(sides) as u64;
-    // measured: a patch of the mesh takes about 400 bytes, a vector over the patches 24, a stored ray 3
+    // measured: a patch of the mesh takes about 400 bytes, a vector over the patches 24, a stored ray 3; an entry of a dense matrix takes 4,
+    // and 8 more for each channel while it is factorised
     let row = match settings.factors {
-        Factors::Dense => 4 * n,
+        Factors::Dense => (4 + 3 * 8) * n,
         Factors::Rays(rays) => 3 * u64::from(rays) / u64::from(parts),
     };
     let bytes = n * (row + 400 + 24 * (settings.max_bounces as u64 + 12));
