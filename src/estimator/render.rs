@@ -5,9 +5,9 @@
 //! ```
 //!
 //! Passes end at 1, 2, 4, … samples per replicate, and at other numbers if the caller asks for them. At the end of a pass
-//! the film is complete: a preview can be shown, and the variance curve gets a point. Within a pass, blocks of pixels are
-//! independent jobs. The samples of a pixel are added in order by one thread, so the sums have the same bits for any number
-//! of threads.
+//! the film is complete: a preview can be shown, and the variance curve gets a point. Within a pass, blocks of pixels do
+//! not depend on each other, and a job traces a few of them. The samples of a pixel are added in order by one thread, so the
+//! sums have the same bits for any number of threads.
 //!
 //! A render may be left and taken up again: within a pass a block has all samples of the pass or none, and the blocks
 //! that have none are done later. What a job adds is therefore always the same, and so are the bits of the film.

@@ -17,7 +17,7 @@
 //! box inside also meets this box. So no hit is lost.
 
 use super::front::Front;
-use super::sixteen::{LANES, Lane, Lane3, ZERO, ZERO3, load, load3};
+use super::sixteen::{LANES, Lane, Lane3, ZERO, load, load_some, load3};
 use super::vertex::Rays;
 use super::wide::{ROUNDING, Wide, behind, reciprocal};
 use crate::math::pick;
@@ -99,13 +99,9 @@ fn before_hits_with_simd<'a, S: Simd>(_simd: S, bounds: [Vec3; 2], rays: &'a Ray
 #[inline(always)]
 fn free_segments_with_simd<'a, S: Simd>(_simd: S, bounds: [Vec3; 2], rays: &'a Rays, n: usize, to: &'a mut [u32]) {
     for (to, list) in to.as_chunks_mut::<LANES>().0.iter_mut().zip(rays.list[..n].chunks(LANES)) {
-        let (mut o, mut d, mut blocked) = (ZERO3, ZERO3, [0; LANES]);
-        for (lanes, c) in [(&mut o, &rays.o), (&mut d, &rays.d)] {
-            for (lane, column) in lanes.iter_mut().zip([&c.x, &c.y, &c.z]) {
-                lane.iter_mut().zip(list).for_each(|(a, &ray)| *a = column[ray as usize]);
-            }
-        }
+        let mut blocked = [0; LANES];
         blocked.iter_mut().zip(list).for_each(|(b, &ray)| *b = rays.prim[ray as usize]);
+        let (o, d) = (load_some(&rays.o, list), load_some(&rays.d, list));
         let enters = enters(bounds, &o, &d, &[1.0; LANES]);
         for i in 0..LANES {
             to[i] = enters[i] & (blocked[i] ^ 1);

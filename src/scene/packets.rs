@@ -7,7 +7,7 @@
 
 use super::flat::{Flat, Form};
 use super::shape::{Ball, Shape};
-use super::sixteen::{LANES, Lane, Lane3, ZERO, ZERO3, get, load3};
+use super::sixteen::{LANES, Lane, Lane3, ZERO, get, load_some, load3};
 use super::vertex::Rays;
 use crate::math::{Points, Streams};
 use glam::Vec3;
@@ -216,14 +216,7 @@ pub(crate) fn occluded_with_simd<'a, S: Simd>(_simd: S, shapes: &'a [Shape], ray
     let balls = balls(shapes);
     for at in (0..n).step_by(LANES) {
         let list = &rays.list[at..n.min(at + LANES)];
-        let (mut o, mut d) = (ZERO3, ZERO3);
-        for (lanes, c) in [(&mut o, &rays.o), (&mut d, &rays.d)] {
-            for (lane, column) in lanes.iter_mut().zip([&c.x, &c.y, &c.z]) {
-                for (a, &ray) in lane.iter_mut().zip(list) {
-                    *a = column[ray as usize];
-                }
-            }
-        }
+        let (o, d) = (load_some(&rays.o, list), load_some(&rays.d, list));
         let blocked = if balls { any::<true>(shapes, &o, &d) } else { any::<false>(shapes, &o, &d) };
         for (&ray, &b) in list.iter().zip(&blocked) {
             rays.prim[ray as usize] = b;

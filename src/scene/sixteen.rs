@@ -28,6 +28,18 @@ pub(super) fn load3(c: &Columns, at: usize) -> Lane3 {
     [load(&c.x, at), load(&c.y, at), load(&c.z, at)]
 }
 
+/// The vectors of a list of at most sixteen; the lanes behind it are zero.
+#[inline(always)]
+pub(super) fn load_some(c: &Columns, list: &[u32]) -> Lane3 {
+    let mut lanes = ZERO3;
+    for (lane, column) in lanes.iter_mut().zip([&c.x, &c.y, &c.z]) {
+        for (a, &i) in lane.iter_mut().zip(list) {
+            *a = column[i as usize];
+        }
+    }
+    lanes
+}
+
 #[inline(always)]
 pub(super) fn store(column: &mut [f32], at: usize, lane: &Lane) {
     column[at..at + LANES].copy_from_slice(lane);

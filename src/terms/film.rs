@@ -121,10 +121,10 @@ impl<'a> FilmBlocks<'a> {
         largest: Vec<Largest>,
         fresh: bool,
     ) -> Self {
-        let pixels = (sums.len() / shape.per_pixel()).min(BLOCK);
-        let per_pixel = [shape.per_pixel(), squares_per_pixel(shape, shared)];
+        let all = sums.len() / shape.per_pixel();
+        let pixels = all.min(BLOCK);
+        let strides = [&*sums, &*squares].map(|numbers| numbers.len() / all * pixels);
         let (rays, fresh) = (vec![0; shape.slots], vec![fresh; shape.slots]);
-        let strides = per_pixel.map(|n| n * pixels);
         Self { shape, first, pixels, shared, sums, squares, strides, largest, non_finite: 0, rays, fresh }
     }
 
@@ -198,11 +198,6 @@ fn some_of([x, y, z]: [&[f32]; 3]) -> u32 {
     some
 }
 
-/// Numbers of [`TermFilm::squares`] for each pixel.
-fn squares_per_pixel(shape: Shape, shared: bool) -> usize {
-    shape.slots * if shared { shape.replicates } else { 1 }
-}
-
 impl TermFilm {
     /// An empty film for paths that add to their own pixel.
     pub fn new(shape: Shape) -> Self {
@@ -259,7 +254,7 @@ impl TermFilm {
 
     /// Numbers of [`TermFilm::squares`] for each pixel.
     pub(crate) fn squares_per_pixel(&self) -> usize {
-        squares_per_pixel(self.shape, self.shared)
+        self.shape.slots * if self.shared { self.shape.replicates } else { 1 }
     }
 
     /// A film of exactly known values: one sample of each pixel, `slots[s][pixel]`.

@@ -6,9 +6,9 @@
 //! ```
 //!
 //! The long terms and the moments have longer paths than the run, and the norms by `single` walk once for each term. Where most paths
-//! of the run leave the scene early, paths from its surfaces are longer than those, so P is smaller there. With these shares all together
-//! take about a tenth of the run. Below a lower limit their answers would be useless; a run of fewer
-//! paths than that takes a moment anyway. Beyond an upper limit they are more exact than anything that is printed.
+//! of the run leave the scene early, paths that start on its surfaces are longer, so P is smaller there. All these results together
+//! take about a tenth of the run. Below a lower limit their answers would be useless; a run of fewer paths than that takes a moment anyway.
+//! Beyond an upper limit they are more exact than anything that is printed.
 //!
 //! | symbol | meaning | place |
 //! |---|---|---|
