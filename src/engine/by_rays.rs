@@ -48,12 +48,12 @@ pub fn watched(
             // walks from the light ignore the technique
             let technique =
                 if estimator.begins() == Begins::AtLight { String::new() } else { format!(", {technique}") };
-            passes.finish(&film, World::Terms, format!("{estimator}{technique}{points}"))
+            passes.finish(film, World::Terms, format!("{estimator}{technique}{points}"))
         }
         None => {
             let path = PathTracer(Plan { roulette: path_roulette.clone(), ..settings.plan() });
             let film = passes.render(&t, camera, &path, amount);
-            passes.finish(&film, World::Path, format!("path tracer, {technique}, roulette {path_roulette}{points}"))
+            passes.finish(film, World::Path, format!("path tracer, {technique}, roulette {path_roulette}{points}"))
         }
     };
     let doubt = doubt(&t, estimator, settings);
@@ -159,5 +159,5 @@ pub(crate) fn sample<T: Transport>(
     let clock = settings.time.map(Clock::start);
     let mut passes = Passes::begin((stream, stream), sensor.crop().size, settings, progress, clock.as_ref(), watch);
     let film = passes.render(t, sensor, estimator, amount(settings, stream));
-    passes.finish(&film, world, label)
+    passes.finish(film, world, label)
 }

@@ -147,15 +147,15 @@ impl<'a, 'l> Passes<'a, 'l> {
         (self.left, self.history) = (Some(film), history);
     }
 
-    /// The result of the render.
-    pub(crate) fn finish(self, film: &TermFilm, world: World, label: String) -> Sampled {
+    /// The result of the render. The film is not needed any more.
+    pub(crate) fn finish(self, film: TermFilm, world: World, label: String) -> Sampled {
         let slots = film.shape.slots;
-        self.keep(film, true);
+        self.keep(&film, true);
         let now = self.seconds();
         // a film that was stopped within a pass has not been read yet, and a part of a film never is
         let (seconds, read) = match self.last {
             Some(read) => read,
-            None if part(&self.watch).is_whole() => (now, Statistics::of(film)),
+            None if part(&self.watch).is_whole() => (now, Statistics::of(&film)),
             None => (now, Statistics::default()),
         };
         let paths = film.samples.iter().map(|&n| u64::from(n)).sum();
@@ -170,6 +170,9 @@ impl<'a, 'l> Passes<'a, 'l> {
             let whole = events.first().copied().unwrap_or(0.0);
             events.extend([0.0, whole]);
         }
+        let (rays, spp) = (film.rays.clone(), film.least_samples());
+        // giving hundreds of megabytes back to the system takes a while, for which nobody has to wait
+        rayon::spawn(move || drop(film));
         Sampled {
             series: Series {
                 world,
@@ -188,12 +191,12 @@ impl<'a, 'l> Passes<'a, 'l> {
             total: next(),
             replicates,
             tiles,
-            rays: film.rays.clone(),
+            rays,
             pixel_events: events,
             snapshots: self.snapshots,
             early: self.history.early,
             norms,
-            spp: film.least_samples(),
+            spp,
         }
     }
 }

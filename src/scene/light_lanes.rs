@@ -162,7 +162,7 @@ fn points_of_balls(scene: &Scene, r: &Receivers, found: &mut Found) {
     for i in 0..LANES {
         let row = scene.lights.row(r.light[i]);
         (numbers[0][i], numbers[1][i], numbers[2][i]) = row.center.into();
-        (numbers[3][i], numbers[4][i], prim[i]) = (row.radius, 1.0, row.prim);
+        (numbers[3][i], numbers[4][i], prim[i]) = (row.radius, 1.0 / row.radius, row.prim);
     }
     let mut inside = 0;
     for i in 0..LANES {

@@ -147,7 +147,7 @@ pub fn walk(matrix: &Matrix<Radiosity>, walker: Walker, settings: &Settings, pro
         _ => format!(", {}", settings.technique),
     };
     let world = if walker == Walker::Path { World::Path } else { World::Terms };
-    let mut found = passes.finish(&film, world, format!("walk, {walker}{technique}"));
+    let mut found = passes.finish(film, world, format!("walk, {walker}{technique}"));
     let exact = exact(matrix, settings.max_bounces, walker == Walker::Path, ends);
     if !ends {
         by_rays::cut(&mut found.series, settings);

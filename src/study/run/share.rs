@@ -1,8 +1,8 @@
 //! How many paths the results without an image get: a share of the run.
 //!
 //! ```text
-//! P = min(pixels · samples, rays/(K + 1))        norms P/128        long terms P/64 on each sensor        each surface P/512
-//! moments (pixels · samples)/96
+//! P = min(pixels · samples, rays/(K + 1))        norms P/192        long terms P/96 on each sensor        each surface P/768
+//! moments (pixels · samples)/128
 //! ```
 //!
 //! The long terms and the moments have longer paths than the run, and the norms by `single` walk once for each term. Where most paths
@@ -45,20 +45,20 @@ impl Share {
         let run = pixels * u64::from(spp);
         let paths = run.min(rays / (max_bounces as u64 + 1));
         let part = |of: u64, [least, most]: [u64; 2]| (paths / of).clamp(least, most) as u32;
-        Self { pixels, run, norms: part(128, NORMS), bounces: part(64, BOUNCES), lit: part(512, LIT) }
+        Self { pixels, run, norms: part(192, NORMS), bounces: part(96, BOUNCES), lit: part(768, LIT) }
     }
 
     /// Samples per pixel, and pixels, of which moments are recorded.
     pub(super) fn moments(&self, spp: u32) -> (u32, u32) {
         let samples = (spp / 32).clamp(SAMPLES[0], SAMPLES[1]);
-        let pixels = (self.run / 96 / u64::from(samples)).max(PIXELS).min(self.pixels);
+        let pixels = (self.run / 128 / u64::from(samples)).max(PIXELS).min(self.pixels);
         (samples, pixels as u32)
     }
 
     /// About the number of paths of all results, for the progress bar.
     pub(super) fn all(&self, estimators: usize, longer: bool, moments: bool) -> u64 {
         let longer = if longer { 2 * u64::from(self.bounces) + 6 * u64::from(self.lit) } else { 0 };
-        estimators as u64 * u64::from(self.norms) + longer + if moments { self.run / 96 } else { 0 }
+        estimators as u64 * u64::from(self.norms) + longer + if moments { self.run / 128 } else { 0 }
     }
 }
 
@@ -82,9 +82,9 @@ mod tests {
         for (size, spp) in [([256, 256], 64), ([512, 512], 1024), ([1920, 1080], 256)] {
             let run = u64::from(size[0] * size[1]) * u64::from(spp);
             let share = Share::of(size, spp, 17 * run, 8);
-            assert!(share.all(2, true, true) * 12 < run, "{share:?}");
+            assert!(share.all(2, true, true) * 16 < run, "{share:?}");
             let (samples, pixels) = share.moments(spp);
-            assert!(samples >= 2 && u64::from(samples) * u64::from(pixels) * 90 < run);
+            assert!(samples >= 2 && u64::from(samples) * u64::from(pixels) * 120 < run);
         }
         // paths of three rays in place of seventeen
         let [long, short] = [17, 3].map(|rays| Share::of([256, 256], 256, rays << 24, 8));
