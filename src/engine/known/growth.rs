@@ -24,8 +24,8 @@
 
 use crate::engine::Settings;
 use crate::estimator::Roulette;
-use crate::math::{Key, Purpose, Rgb, Rng};
-use crate::operator::{Adjoint, Role, Sensor, Transport};
+use crate::math::{Key, Purpose, Rgb, Rng, Streams};
+use crate::operator::{Adjoint, Role, Samples, Sensor, Steps, Transport, Wave};
 use crate::scene::bsdf::{Bsdf, Sampling};
 use crate::scene::{Scene, Vertex};
 use crate::terms::Variance;
@@ -84,14 +84,42 @@ impl Growth {
 pub trait WeightedWalk: Sync {
     /// State of a walk.
     type State: Copy + Send;
+    /// Memory in which many walkers take a step together.
+    type Room: Default;
     /// Start of walker `i`.
     fn start(&self, i: usize, rng: &mut Rng) -> Option<Self::State>;
-    /// One step and its weight.
-    fn step(&self, at: &Self::State, rng: &mut Rng) -> Option<(Self::State, Rgb)>;
+    /// One step of many walkers: the new state and the weight of each, or nothing if its walk ends.
+    fn steps(&self, at: &[Self::State], streams: Streams, room: &mut Self::Room) -> Vec<Option<(Self::State, Rgb)>>;
     /// q at vertex v for this throughput and state.
     fn q(&self, v: usize, throughput: Rgb, at: &Self::State) -> f32;
     /// Throughput at the start.
     fn lit(&self) -> Rgb;
+}
+
+/// The wave of walkers that take a step together, what the step gives, and the walkers that go on.
+#[derive(Default)]
+pub struct Together<W, S> {
+    wave: W,
+    steps: Option<S>,
+    alive: Vec<u32>,
+}
+
+impl<W, S> Together<W, S> {
+    /// A wave of these states, and room for their steps.
+    fn with<State: Copy>(&mut self, at: &[State], steps: impl FnOnce(usize) -> S) -> (&mut W, &mut S, &mut Vec<u32>)
+    where
+        W: Wave<State>,
+    {
+        // whole packets, so that batched methods may write past the end; resampling never adds walkers
+        let n = WALKERS.next_multiple_of(64);
+        let room = self.steps.get_or_insert_with(|| {
+            self.wave.resize(n);
+            steps(n)
+        });
+        at.iter().enumerate().for_each(|(i, state)| self.wave.set(i, *state));
+        self.alive.clear();
+        (&mut self.wave, room, &mut self.alive)
+    }
 }
 
 /// Walks from a sensor.
@@ -110,13 +138,21 @@ where
     Q: Fn(usize, Rgb, &T::State) -> f32 + Sync,
 {
     type State = T::State;
+    type Room = Together<T::Wave, Samples>;
     fn start(&self, i: usize, rng: &mut Rng) -> Option<T::State> {
         let [w, h] = self.sensor.size().map(u64::from);
         let pixel = (i as u64 * w * h / WALKERS as u64) as u32;
         self.sensor.start(self.t, pixel, rng)
     }
-    fn step(&self, at: &T::State, rng: &mut Rng) -> Option<(T::State, Rgb)> {
-        self.t.scatter(at, rng).map(|s| (s.state, s.weight))
+    fn steps(&self, at: &[T::State], streams: Streams, room: &mut Self::Room) -> Vec<Option<(T::State, Rgb)>> {
+        let (wave, steps, alive) = room.with(at, Samples::new);
+        self.t.scatter_wave(wave, streams, steps, alive);
+        // the walks that go on are at the front
+        let mut next = vec![None; at.len()];
+        for (to, &i) in alive.iter().enumerate() {
+            next[i as usize] = Some((wave.get(to), steps.value.get(to)));
+        }
+        next
     }
     fn q(&self, v: usize, throughput: Rgb, at: &T::State) -> f32 {
         (self.q)(v, throughput, at)
@@ -139,12 +175,20 @@ where
     T::State: Send,
 {
     type State = T::State;
+    type Room = Together<T::Wave, Steps>;
     fn start(&self, _: usize, rng: &mut Rng) -> Option<T::State> {
         let (light, _) = self.t.emit(rng)?;
         Some(self.t.walk(&light, Role::Emission, rng)?.state)
     }
-    fn step(&self, at: &T::State, rng: &mut Rng) -> Option<(T::State, Rgb)> {
-        self.t.walk(at, Role::Flux, rng).map(|s| (s.state, s.weight))
+    fn steps(&self, at: &[T::State], streams: Streams, room: &mut Self::Room) -> Vec<Option<(T::State, Rgb)>> {
+        let (wave, steps, alive) = room.with(at, |n| Steps { wanted: false, ..Steps::new(n) });
+        self.t.walk_wave(wave, Role::Flux, streams, steps, alive);
+        let mut next = vec![None; at.len()];
+        for &i in alive.iter() {
+            let i = i as usize;
+            next[i] = Some((wave.get(i), steps.weight.get(i)));
+        }
+        next
     }
     fn q(&self, v: usize, throughput: Rgb, at: &T::State) -> f32 {
         self.roulette.termination(v, throughput, self.t.albedo(at))
@@ -195,13 +239,18 @@ fn population<W: WeightedWalk>(walk: &W, from: usize, order: i32, channel: usize
         Some(Walker { x, throughput: walk.lit() })
     };
     let mut walkers: Vec<Walker<W::State>> = (0..WALKERS).filter_map(begin).collect();
-    let (mut sum, mut largest) = (0.0, 0.0f32);
+    // walker i has the random numbers of pixel i
+    let (pixel, sample): (Vec<u32>, Vec<u32>) = (0..WALKERS as u32).map(|i| (i, 0)).unzip();
+    let (mut sum, mut largest, mut room) = (0.0, 0.0f32, W::Room::default());
     for step in 0..STEPS {
         let mut factors = Vec::with_capacity(walkers.len());
-        for (i, w) in walkers.iter_mut().enumerate() {
+        let at: Vec<W::State> = walkers.iter().map(|w| w.x).collect();
+        let (pixel, sample) = (&pixel[..at.len()], &sample[..at.len()]);
+        let streams = Streams { key, pixel, sample, bounce: step, purpose: Purpose::Scatter };
+        let next = walk.steps(&at, streams, &mut room);
+        for (w, next) in walkers.iter_mut().zip(next) {
             let (q, before) = (walk.q(from + step, w.throughput, &w.x), w.throughput[channel]);
-            let next = if q < 1.0 { walk.step(&w.x, &mut rng(i, step, Purpose::Scatter)) } else { None };
-            let Some((x, weight)) = next.filter(|_| before > 0.0) else {
+            let Some((x, weight)) = next.filter(|_| q < 1.0 && before > 0.0) else {
                 factors.push(0.0);
                 continue;
             };
@@ -270,4 +319,65 @@ where
 {
     let q = |v: usize, throughput, at: &T::State| roulette.q(t, v, throughput, at);
     doubt(&FromEye { t, sensor, q }, roulette.settled(), settings)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::operator::SceneTransport;
+    use crate::scene::load;
+
+    /// The same walks, one walker after the other.
+    struct OneByOne<'a, T, W> {
+        t: &'a T,
+        walk: W,
+        from_light: bool,
+    }
+
+    impl<T: Adjoint, W: WeightedWalk<State = T::State>> WeightedWalk for OneByOne<'_, T, W>
+    where
+        T::State: Send,
+    {
+        type State = T::State;
+        type Room = ();
+        fn start(&self, i: usize, rng: &mut Rng) -> Option<T::State> {
+            self.walk.start(i, rng)
+        }
+        fn steps(&self, at: &[T::State], streams: Streams, (): &mut ()) -> Vec<Option<(T::State, Rgb)>> {
+            let step = |(i, at)| {
+                let rng = &mut streams.rng(i);
+                if self.from_light {
+                    self.t.walk(at, Role::Flux, rng).map(|s| (s.state, s.weight))
+                } else {
+                    self.t.scatter(at, rng).map(|s| (s.state, s.weight))
+                }
+            };
+            at.iter().enumerate().map(step).collect()
+        }
+        fn q(&self, v: usize, throughput: Rgb, at: &T::State) -> f32 {
+            self.walk.q(v, throughput, at)
+        }
+        fn lit(&self) -> Rgb {
+            self.walk.lit()
+        }
+    }
+
+    /// Walkers that step together have the bits of walkers that step alone.
+    #[test]
+    fn waves_have_the_bits_of_single_walkers() {
+        for name in ["env-ggx", "cornell-spheres"] {
+            let scene = Scene::new(&load::scene(name, &load::Options::default()).expect(name).description);
+            let (t, roulette) = (&SceneTransport::new(&scene), &Roulette::Albedo { from: 3 });
+            let light = || FromLight { t, roulette };
+            let q = |v: usize, throughput, at: &Vertex| roulette.q(t, v, throughput, at);
+            let eye = || FromEye { t, sensor: &scene.camera, q };
+            let found = [growth(&light(), 3, 2, 1), growth(&eye(), 3, 2, 1)];
+            let alone = [
+                growth(&OneByOne { t, walk: light(), from_light: true }, 3, 2, 1),
+                growth(&OneByOne { t, walk: eye(), from_light: false }, 3, 2, 1),
+            ];
+            assert_eq!(found, alone);
+            assert!(found.iter().any(|g| g.rate > 0.0), "{found:?}");
+        }
+    }
 }
