@@ -90,9 +90,8 @@ impl Camera {
     /// corner.
     #[inline(always)]
     pub fn ray(&self, pixel: u32, u: [f32; 2]) -> (Vec3, Vec3) {
-        // a quotient of 32-bit integers in `f64` never rounds up to the next integer; integer divisions would not vectorise
         let (number, width) = (f64::from(pixel), f64::from(self.size[0]));
-        let row = f64::from((number / width) as u32);
+        let row = row(number, width);
         let (x, y) = (number - row * width + f64::from(u[0]), row + f64::from(u[1]));
         let d = self.corner + self.across * x + self.down * y;
         let d = d * (1.0 / d.dot(d).sqrt());
@@ -112,6 +111,13 @@ impl Camera {
         // a part of the sphere behind the camera does not move the start backwards
         (self.origin + d * before.max(0.0)).as_vec3()
     }
+}
+
+/// The row of a pixel. Its middle is half a pixel away from the next row, which rounding cannot reach. The reciprocal is computed
+/// once for many pixels, and integer divisions would not vectorise.
+#[inline(always)]
+fn row(number: f64, width: f64) -> f64 {
+    f64::from(((number + 0.5) * (1.0 / width)) as u32)
 }
 
 /// [`Camera::ray`] for each of these pixels, from the first two columns of random numbers: rays into `rays.o` and `rays.d`.
@@ -174,5 +180,21 @@ impl SurfaceSensor {
         let side = self.sides[self.cdf.partition_point(|&c| c <= share).min(self.sides.len() - 1)];
         let (p, n) = scene.point(side, [u[2], u[3]]);
         Vertex { p, n, omega: cosine_hemisphere(n, [w[0], w[1]]).0, side }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    /// The first and the last pixel of every kind of row, up to the largest numbers.
+    #[test]
+    fn rows_are_those_of_integers() {
+        for width in (1..2000).chain([4095, 65_535, 99_991, 1 << 20, 3_000_001, u32::MAX]) {
+            let rows = u32::MAX / width;
+            for row in [0, 1, 2, 3, rows / 3, rows / 2, rows - rows.min(1)] {
+                for pixel in [row * width, row * width + width / 2, row * width + width - 1] {
+                    assert_eq!(super::row(f64::from(pixel), f64::from(width)), f64::from(pixel / width));
+                }
+            }
+        }
     }
 }
