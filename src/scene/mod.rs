@@ -12,6 +12,7 @@
 
 mod accel;
 mod arrive;
+mod ball;
 #[doc(hidden)]
 pub mod batch;
 pub mod bsdf;

@@ -15,11 +15,12 @@
 //! cannot leave through a corner. If primitives share corners, the edge test leaves no gap between them, however narrow they
 //! are. No primitive extends beyond its edges, because there it would catch rays that have just left its neighbour.
 
+pub(crate) use super::ball::Ball;
 pub(crate) use super::flat::Flat;
 use super::plucker;
 use super::primitive::Primitive;
 pub(crate) use super::rounding::dot;
-use super::rounding::{EPSILON, KEEP, MOST_KEEP, across, onto};
+use super::rounding::{KEEP, MOST_KEEP, across, onto};
 use glam::{DVec3, Vec3};
 
 /// A hit: the distance `t` in units of the direction's length, and the number of the primitive.
@@ -124,112 +125,6 @@ impl Triangle {
             }
         }
         p
-    }
-}
-
-/// A band of a sphere, ready for rays. Its radius may be far larger than the distances that matter on it, so intersections
-/// are computed in `f64`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Ball {
-    center: DVec3,
-    radius: f64,
-    /// Heights of the band over the centre, relative to the radius.
-    z: [f64; 2],
-    /// The same in metres; infinite at a pole, which is kept in spite of rounding.
-    heights: [f64; 2],
-    /// 1/radius if the front is outside, −1/radius if it is inside.
-    curvature: f64,
-    /// The centre in single precision, and the square of a radius that also covers its rounding.
-    about: Vec3,
-    wide2: f32,
-}
-
-/// 32 units of rounding of `f64`, relative to the radius.
-const SELF: f64 = 1.0 / 281_474_976_710_656.0;
-
-impl Ball {
-    fn new(center: DVec3, radius: f64, z: [f64; 2], inward: bool) -> Self {
-        let low = if z[0] <= -1.0 { f64::NEG_INFINITY } else { z[0] * radius };
-        let high = if z[1] >= 1.0 { f64::INFINITY } else { z[1] * radius };
-        Self {
-            center,
-            radius,
-            z,
-            heights: [low, high],
-            curvature: if inward { -1.0 } else { 1.0 } / radius,
-            about: center.as_vec3(),
-            wide2: (1.001 * radius + 8.0 * EPSILON * center.length()).powi(2) as f32,
-        }
-    }
-
-    /// Returns true only if the line of the ray certainly passes beside the sphere: |f|² − (f·d)²/|d|² > r², with a margin of
-    /// a hundred times the rounding of |f|², f being the vector from the centre to o. It costs a tenth of [`Self::meet`].
-    #[inline(always)]
-    pub(crate) fn passes(&self, o: Vec3, d: Vec3) -> bool {
-        let f = o - self.about;
-        let (a, b) = (dot(d, d), dot(f, d));
-        let most = dot(f, f) * a;
-        // numbers that overflow or underflow decide nothing
-        (most < 1e38) & (most * (1.0 - 1e-5) - b * b > self.wide2 * a + 1e-30)
-    }
-
-    #[inline(always)]
-    pub(crate) fn meet(&self, o: Vec3, d: Vec3) -> (f32, bool) {
-        let (f, d) = (o.as_dvec3() - self.center, d.as_dvec3());
-        let (a, b, r2) = (d.dot(d), -f.dot(d), self.radius * self.radius);
-        // one quotient for two: sixteen of them take as long as everything else here
-        let per_a = 1.0 / a;
-        let foot = f + d * (b * per_a);
-        let disc = r2 - foot.dot(foot);
-        if disc < 0.0 {
-            return (f32::INFINITY, false);
-        }
-        let q = b + (a * disc).sqrt().copysign(b);
-        let (t0, t1) = ((f.dot(f) - r2) / q, q * per_a);
-        let (near, far) = if t0 < t1 { (t0, t1) } else { (t1, t0) };
-        // a root nearer than this rounding is the surface that the ray leaves
-        let least = self.radius * SELF;
-        let on_band = |t: f64| {
-            let z = f.z + d.z * t;
-            (t > 0.0) & (t * t * a > least * least) & (z >= self.heights[0]) & (z <= self.heights[1])
-        };
-        if on_band(near) { (near as f32, true) } else { (far as f32, on_band(far)) }
-    }
-
-    #[inline(always)]
-    pub(crate) fn center(&self) -> DVec3 {
-        self.center
-    }
-
-    #[inline(always)]
-    pub(crate) fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    /// How many numbers describe where a hit lies: centre, radius and curvature.
-    pub(crate) const NUMBERS: usize = 5;
-
-    /// The numbers that [`Self::settle`] and [`Self::normal`] use.
-    pub(crate) fn numbers(&self) -> [f64; Self::NUMBERS] {
-        [self.center.x, self.center.y, self.center.z, self.radius, self.curvature]
-    }
-
-    /// The sphere with these numbers. It has no band, so no ray can meet it.
-    #[inline(always)]
-    pub(crate) fn around([x, y, z, radius, curvature]: [f64; Self::NUMBERS]) -> Self {
-        let center = DVec3::new(x, y, z);
-        Self { center, radius, curvature, z: [0.0; 2], heights: [0.0; 2], about: Vec3::ZERO, wide2: 0.0 }
-    }
-
-    #[inline(always)]
-    pub(crate) fn settle(&self, p: Vec3) -> Vec3 {
-        let f = p.as_dvec3() - self.center;
-        (self.center + f * (self.radius / f.length())).as_vec3()
-    }
-
-    #[inline(always)]
-    pub(crate) fn normal(&self, p: Vec3) -> Vec3 {
-        ((p.as_dvec3() - self.center) * self.curvature).as_vec3()
     }
 }
 
@@ -339,13 +234,7 @@ impl Shape {
         match self {
             Self::Flat(s) => s.point(u),
             Self::Triangle(s) => s.point(u),
-            Self::Ball(s) => {
-                let (lo, hi) = (s.z[0].max(-1.0), s.z[1].min(1.0));
-                let z = lo + (hi - lo) * f64::from(u[0]);
-                let r = (1.0 - z * z).max(0.0).sqrt();
-                let (c, sn) = crate::math::direction::cos_sin_turn(u[1]);
-                (s.center + s.radius * DVec3::new(r * f64::from(c), r * f64::from(sn), z)).as_vec3()
-            }
+            Self::Ball(s) => s.point(u),
             Self::Disc(s) => {
                 let r = s.radius * u[0].sqrt();
                 let (c, sn) = crate::math::direction::cos_sin_turn(u[1]);

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 const PARALLEL: f64 = 0.99;
 
 /// A primitive, prepared for comparison.
-enum Sheet {
+enum Outline {
     /// Corners counter-clockwise as seen from the front; a triangle uses the first three of the four.
     Polygon {
         n: DVec3,
@@ -43,12 +43,12 @@ enum Sheet {
 
 /// All pairs of primitives that coincide, in ascending order.
 pub(super) fn overlaps(list: &[(usize, Primitive)], scale: &Scale) -> Vec<Overlap> {
-    let sheets: Vec<Sheet> = list.iter().map(|(_, p)| Sheet::new(p)).collect();
+    let outlines: Vec<Outline> = list.iter().map(|(_, p)| Outline::new(p)).collect();
     let (tree, boxes) = boxes(list, scale);
     let of = |i: usize| {
         let mut found = vec![];
         near(&tree, boxes[i], |j| {
-            found.extend((j > i).then(|| meeting(&sheets, [i, j], scale)).flatten());
+            found.extend((j > i).then(|| meeting(&outlines, [i, j], scale)).flatten());
         });
         found.sort_unstable_by_key(|o: &Overlap| o.pair);
         found
@@ -79,11 +79,11 @@ fn near(tree: &Bvh2, own: Aabb, mut see: impl FnMut(usize)) {
     });
 }
 
-fn meeting(sheets: &[Sheet], pair: [usize; 2], scale: &Scale) -> Option<Overlap> {
-    let [a, b] = pair.map(|i| &sheets[i]);
+fn meeting(outlines: &[Outline], pair: [usize; 2], scale: &Scale) -> Option<Overlap> {
+    let [a, b] = pair.map(|i| &outlines[i]);
     if let (
-        Sheet::Sphere { center: c, radius: r, z, inward },
-        Sheet::Sphere { center: d, radius: s, z: w, inward: v },
+        Outline::Sphere { center: c, radius: r, z, inward },
+        Outline::Sphere { center: d, radius: s, z: w, inward: v },
     ) = (a, b)
     {
         let gap = scale.largest_gap();
@@ -107,7 +107,7 @@ fn meeting(sheets: &[Sheet], pair: [usize; 2], scale: &Scale) -> Option<Overlap>
 
 /// Lowest and highest height of `a` over `b` along the normal of `a`. Measured at the corners of one over the plane of the
 /// other; `None` if for neither choice all corners are within `gap`.
-fn heights(a: &Sheet, b: &Sheet, gap: f64) -> Option<[f64; 2]> {
+fn heights(a: &Outline, b: &Outline, gap: f64) -> Option<[f64; 2]> {
     let (n, m) = (a.normal()?, b.normal()?);
     let m = if n.dot(m) < 0.0 { -m } else { m };
     let (p, q) = (a.anchor(), b.anchor());
@@ -120,22 +120,22 @@ fn heights(a: &Sheet, b: &Sheet, gap: f64) -> Option<[f64; 2]> {
 
 /// Returns true if an edge of `a` has all of `b` outside, or less than the length `least` of it inside. Every tangent of a
 /// disk counts as an edge; only the one towards `b` has to be tested.
-fn apart(a: &Sheet, b: &Sheet, least: f64) -> bool {
+fn apart(a: &Outline, b: &Outline, least: f64) -> bool {
     match (a, b) {
-        (Sheet::Polygon { n, corners, count }, _) => (0..*count).any(|i| {
+        (Outline::Polygon { n, corners, count }, _) => (0..*count).any(|i| {
             let (p, q) = (corners[i], corners[(i + 1) % count]);
             let inward = n.cross(q - p).normalize();
             b.extent(inward)[1] - inward.dot(p) <= least
         }),
-        (Sheet::Disk { n, center, radius }, _) => {
+        (Outline::Disk { n, center, radius }, _) => {
             let to = b.nearest(*center, *n) - *center;
             radius - (to - *n * n.dot(to)).length() <= least
         }
-        (Sheet::Sphere { .. }, _) => true,
+        (Outline::Sphere { .. }, _) => true,
     }
 }
 
-impl Sheet {
+impl Outline {
     fn new(p: &Primitive) -> Self {
         match *p {
             Primitive::Triangle(p) => {
@@ -206,7 +206,7 @@ const FACETS: usize = 32;
 
 /// Outline and unit normal of a flat primitive; for a disk, an inscribed polygon. `None` for a sphere.
 pub(super) fn outline(p: &Primitive) -> Option<(Vec<DVec3>, DVec3)> {
-    match (*p, Sheet::new(p)) {
+    match (*p, Outline::new(p)) {
         (Primitive::Disk { center, normal, radius }, _) => {
             let (u, v) = normal.any_orthonormal_pair();
             let corner = |i: usize| {
@@ -215,7 +215,7 @@ pub(super) fn outline(p: &Primitive) -> Option<(Vec<DVec3>, DVec3)> {
             };
             Some(((0..FACETS).map(corner).collect(), normal))
         }
-        (_, Sheet::Polygon { n, corners, count }) => Some((corners[..count].to_vec(), n)),
+        (_, Outline::Polygon { n, corners, count }) => Some((corners[..count].to_vec(), n)),
         _ => None,
     }
 }
